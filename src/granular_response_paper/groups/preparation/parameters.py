@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
@@ -30,11 +31,11 @@ class Way(Description):
 
 
 class Taps(Description):
-    """Taps of slabs at rest: the box moves by one period of a triangular wave of vertical acceleration, up first."""
+    """Taps of a slab at rest: the box moves by one period of a triangular wave of vertical acceleration, up first."""
 
-    after: tuple[str, ...] = Field(min_length=1, description="Names of preparations.")
+    number: Count
     amplitudes: tuple[Positive, ...] = Field(min_length=1, description="Largest accelerations, in g.")
-    duration: Positive = Field(description="Of the period, in sqrt(R/g).")
+    durations: tuple[Positive, ...] = Field(min_length=1, description="Of the period, in sqrt(R/g).")
 
 
 class Part(Description):
@@ -43,10 +44,17 @@ class Part(Description):
     friction: Ratio
     walls: Literal["smooth", "rough"] = Field(default="smooth", description="rough: friction of the walls too.")
     ways: tuple[str, ...] = Field(default=(), description="Names of preparations; none: all of them.")
-    taps: tuple[Count, ...] = Field(default=(), description="Numbers of taps before the load; none: untapped only.")
     to: Positive = Field(description="Largest force, in mean disk weights.")
     polydispersity: Fraction = Field(default=0.0, description="delta; the largest disks touch in the initial lattice.")
     realizations: Count = Field(default=1, description="Of the disorder.")
+    taps: Taps | None = Field(default=None, description="Before the load, in each combination; none: untapped.")
+
+    @property
+    def tapped(self) -> list[tuple[int, float, float]]:
+        """Number, amplitude and duration of the taps of each slab; zeros: untapped."""
+        if self.taps is None:
+            return [(0, 0.0, 0.0)]
+        return [(self.taps.number, *one) for one in product(self.taps.amplitudes, self.taps.durations)]
 
 
 class Parameters(SceneGroup):
@@ -56,9 +64,8 @@ class Parameters(SceneGroup):
         Scene, over(UNIT_LOAD, "packing.polydispersity", "contact.friction", "wall.friction", "preparation", "loads")
     ] = UNIT_LOAD
     ways: tuple[Way, ...] = Field(min_length=1, description="The first one is what the others are compared with.")
-    taps: Taps
     forces: Growing = Field(description="In mean disk weights.")
-    parts: tuple[Part, ...] = Field(min_length=1, description="The first one is ordered.")
+    parts: tuple[Part, ...] = Field(min_length=1, description="The first one is ordered and untapped.")
     asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
 
     @model_validator(mode="after")
@@ -73,13 +80,13 @@ class Parameters(SceneGroup):
                 raise Problem(str(error), key=("ways", str(k))) from None
         if self.parts[0].polydispersity:
             raise Problem("must be 0", key=("parts", "0", "polydispersity"), value=self.parts[0].polydispersity)
-        asked: list[tuple[tuple[str, ...], tuple[str, ...]]] = [(("taps", "after"), self.taps.after)]
-        asked += [(("parts", str(k), "ways"), part.ways) for k, part in enumerate(self.parts)]
-        for key, chosen in asked:
-            for name in chosen:
-                if name not in names:
-                    raise Problem(f"must be one of the names in ways ({', '.join(names)})", key=key, value=name)
+        if self.parts[0].taps:
+            raise Problem("must be left out", key=("parts", "0", "taps"), value=self.parts[0].taps.model_dump())
         for k, part in enumerate(self.parts):
+            for name in part.ways:
+                if name not in names:
+                    rule = f"must be one of the names in ways ({', '.join(names)})"
+                    raise Problem(rule, key=("parts", str(k), "ways"), value=name)
             if part.to < self.forces[0]:
                 raise Problem("must not be below the first of forces", key=("parts", str(k), "to"), value=part.to)
         return self

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -22,7 +21,7 @@ from granular_response.scene import Scene
 from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.solvers.dynamics import Dynamics, Stop
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.settle import PROTOCOL, settle
+from granular_response.solvers.settle import CROSSING, CROSSING_STOP, settle
 from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import WEIGHTS
@@ -73,6 +72,7 @@ class Mobilized:
     realization: int = column("realization of the disorder")
     taps: int = column("how often the slab was tapped")
     tap_amplitude: float = column("largest acceleration of the box in a tap in g; 0 untapped")
+    tap_duration: float = column("duration of a tap in sqrt(radius/g); 0 untapped")
     mobilized_part: FloatArray = column(
         "part of the contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit",
         "margin",
@@ -91,13 +91,13 @@ class Outcome:
     measured: xr.Dataset
     events: list[slab.Event]
 
-    def mobilized(self, polydispersity: float, realization: int, taps: int, amplitude: float) -> Mobilized:
+    def mobilized(self, polydispersity: float, realization: int, taps: tuple[int, float, float]) -> Mobilized:
         high = {event.name: event.high for event in self.events}
         if polydispersity:
             high["crossover"] = np.nan
         part = self.rest.rest_mobilised / self.rest.contacts
         at = np.array([high[name] for name in AGAINST])
-        return Mobilized(polydispersity, realization, taps, amplitude, part, at)
+        return Mobilized(polydispersity, realization, *taps, part, at)
 
 
 def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration: float) -> State:
@@ -111,8 +111,8 @@ def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration:
     NotSettled, DynamicsError
         As of ``solvers.settle.settle``.
     """
-    protocol, plan = problem.scene.protocol, problem.plan
-    stop = Stop(plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
+    protocol = problem.scene.protocol
+    stop = Stop(CROSSING_STOP, maximum_steps=protocol.maximum_steps, least_time=problem.crossing_time)
     most, least = 1.0 + amplitude, 1.0 - amplitude
     for _ in range(taps):
         dynamics = Dynamics(problem, rest, protocol.integrator, resolve_time_step(problem))
@@ -122,7 +122,7 @@ def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration:
         dynamics.advance(steps)
         dynamics.set_ramps(gravity=(most, least, 2.0 * quarter))
         dynamics.advance(2 * steps)
-        rest = settle(problem, dynamics.state(), PROTOCOL, stop, what="taps", gravity=(least, 1.0, quarter))
+        rest = settle(problem, dynamics.state(), CROSSING, stop, what="taps", gravity=(least, 1.0, quarter))
     return rest
 
 
@@ -146,28 +146,27 @@ def compute(
 
 
 #: Of a slab: polydispersity, friction of its walls and disks, way and part by their numbers, realization, and the
-#: number and the amplitude of taps.
-Place = tuple[float, float, float, int, int, int, int, float]
+#: number, amplitude and duration of taps.
+Place = tuple[float, float, float, int, int, int, tuple[int, float, float]]
 
 
 def tasks(parameters: Parameters) -> dict[Place, partial[Outcome]]:
     """A task for each part, way and realization, and for the taps of each."""
-    taps = parameters.taps
     return {
-        (part.polydispersity, scene.wall.friction, part.friction, k, p, realization, number, amplitude): partial(
+        (part.polydispersity, scene.wall.friction, scene.contact.friction, k, p, realization, taps): partial(
             compute,
             way.name,
             scene,
-            (number, amplitude, taps.duration),
+            taps,
             tuple(force for force in parameters.forces if force <= part.to),
             parameters.asymmetry,
         )
         for p, part in enumerate(parameters.parts)
         for k, way in enumerate(parameters.ways)
         if not part.ways or way.name in part.ways
-        for number, amplitude in [(0, 0.0), *product(part.taps if way.name in taps.after else (), taps.amplitudes)]
         for realization in range(part.realizations)
         for scene in [_scene(parameters.base, part, realization).updated(way.changes)]
+        for taps in part.tapped
     }
 
 
@@ -194,8 +193,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     # the longest ramps of gravity take longest
     found = computed(asked, "prepared slabs", work=lambda place: asked[place].args[1].preparation.ramp_time)
     places = sorted(found)
-    outcomes = [found[place] for place in places if not place[0] and not place[-1]]
-    mobilized = table([found[place].mobilized(place[0], *place[-3:]) for place in places], "case")
+    outcomes = [found[place] for place in places if not place[0] and not place[-1][0]]
+    mobilized = table([found[place].mobilized(place[0], *place[-2:]) for place in places], "case")
     mobilized = mobilized.assign(table([found[place].prepared for place in places], "case").variables).assign_coords(
         axes(name=(AGAINST, "event"), margin=(slab.MARGINS, "fraction below the Coulomb limit"))
     )
