@@ -21,7 +21,7 @@ from granular_response.scene import Scene
 from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.solvers.dynamics import Dynamics, Stop
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.settle import CROSSING, CROSSING_STOP, settle
+from granular_response.solvers.settle import PROTOCOL, settle
 from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import WEIGHTS
@@ -112,7 +112,7 @@ def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration:
         As of ``solvers.settle.settle``.
     """
     protocol = problem.scene.protocol
-    stop = Stop(CROSSING_STOP, maximum_steps=protocol.maximum_steps, least_time=problem.crossing_time)
+    stop = Stop(problem.plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
     most, least = 1.0 + amplitude, 1.0 - amplitude
     for _ in range(taps):
         dynamics = Dynamics(problem, rest, protocol.integrator, resolve_time_step(problem))
@@ -122,7 +122,7 @@ def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration:
         dynamics.advance(steps)
         dynamics.set_ramps(gravity=(most, least, 2.0 * quarter))
         dynamics.advance(2 * steps)
-        rest = settle(problem, dynamics.state(), CROSSING, stop, what="taps", gravity=(least, 1.0, quarter))
+        rest = settle(problem, dynamics.state(), PROTOCOL, stop, what="taps", gravity=(least, 1.0, quarter))
     return rest
 
 
