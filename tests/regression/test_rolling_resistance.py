@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from granular_response.scene import Scene
 from granular_response_paper.groups.rolling_resistance import draw, simulate
 
 
@@ -35,14 +36,46 @@ def test_only_rolling_resistance_hands_on_couples_between_equal_disks(datasets):
     assert float(resisting["modulus"][0]) == pytest.approx(np.sqrt(3.0) / 4.0 * 0.8, rel=0.2)
 
 
+def test_couples_and_antisymmetric_stress_share_a_torque(datasets):
+    torques = datasets["torques"].sel(friction=0.2)
+    np.testing.assert_allclose(torques["couple"] + torques["antisymmetric"].cumsum("line"), 1.0, atol=1e-9)
+    assert (torques["moment_error"] < 1e-8).all()  # about one point, with the moments of all other forces
+    assert (torques["couple"].sel(rolling_friction=0.0) == 0.0).all()
+
+
+def test_couples_between_rows_in_closed_form(datasets):
+    """Rows of a lattice whose contacts stick, under a torque of 1 on the top row: sums over each row are enough.
+
+    A contact of two rows that turn by a and b hands on the couple ``k_R (a - b) / 4``, and each disk has two of them.
+    No horizontal force crosses between rows, so these shift until it takes ``q (a + b)`` from each of its disks, with
+    ``q = k_T k_N / (k_N + 3 k_T)``. Contacts along a row take ``4 k_T a`` from a disk.
+    """
+    k_t, k_r, layers = 0.8, 0.8, 5
+    q, balance = k_t / (1.0 + 3.0 * k_t), 4.0 * k_t * np.eye(layers)
+    for k in range(layers - 1):
+        balance[k : k + 2, k : k + 2] += 0.5 * k_r * np.array([[1, -1], [-1, 1]]) + 2.0 * q
+    turn = np.linalg.solve(balance, np.eye(layers)[0])
+    found = datasets["torques"]["couple"].sel(friction=0.2, rolling_friction=0.1).isel(torque=0)
+    np.testing.assert_allclose(found, 0.5 * k_r * (turn[:-1] - turn[1:]), atol=1.5e-3)
+
+
+def test_exponential_couples_give_the_length_of_their_solid():
+    scene = Scene().updated({"contact.stiffness_ratio": 0.5, "contact.rolling_stiffness_ratio": 12.0})
+    depth = np.arange(1.0, 20.0)
+    solid, *_ = simulate.decay(scene, depth, np.zeros(19))
+    _, left, length = simulate.decay(scene, depth, solid)
+    assert left < 1e-12 and length == pytest.approx(0.5 * np.sqrt(12.0 / 1.5), rel=1e-6)
+
+
 def test_values_are_the_stored_ones(datasets, num_regression):
     slabs, names = datasets["slabs"].sel(friction=0.2), ("floor_response", "opening", "couple_stress")
     np.testing.assert_allclose(slabs["floor_response"].sum("floor_disk"), 1.0, atol=1e-9)
     found = {name: slabs[name].values.ravel() for name in names}
+    found["couple"] = datasets["torques"]["couple"].isel(torque=1).values.ravel()
     num_regression.check(found, default_tolerance={"rtol": 1e-5, "atol": 1e-8})
 
 
 def test_the_figure(datasets, looks_as_stored):
     drawn = draw.draw(datasets)
-    assert list(drawn) == ["rolling_resistance"]
+    assert list(drawn) == ["rolling_resistance", "rolling_resistance_torque"]
     looks_as_stored(drawn)

@@ -622,6 +622,9 @@ def rolling_study():
     piles = {"layers": [5, 11], "rolling_friction": [0.0, 0.3], "ramp": [0.0, 30.0]}
     dims, ends = tuple(piles), np.array([[0.95], [0.1]])
     slabs = {"friction": [0.2, 1.0], "rolling_friction": [0.0, 0.5], "load": [0.5, 10.0]}
+    torques = {**slabs, "torque": slabs["load"]}
+    del torques["load"]
+    fits = {"unexplained": 0.05, "length": 3.0, "decay_unexplained": 0.05, "decay_length": 3.0}
     response = np.array([0.1, 0.2, 0.1]) * np.array([1.0, 1.2])[:, None, None]
     return {
         "thresholds": dataset(
@@ -640,6 +643,7 @@ def rolling_study():
             unexplained=(tuple(slabs), np.full((2, 2, 2), 0.05)),
             length=(tuple(slabs), np.full((2, 2, 2), 3.0)),
         ),
+        "torques": dataset(torques, **{fit: (tuple(torques), np.full((2, 2, 2), of)) for fit, of in fits.items()}),
     }
 
 

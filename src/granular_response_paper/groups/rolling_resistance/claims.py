@@ -64,9 +64,9 @@ def no_dip(data: Data, words: Bounds) -> Finding:
     )
 
 
-def _slabs(data: Data) -> xr.Dataset:
-    found = data.get(GROUP, "slabs").sortby("rolling_friction")
-    CLAIMS.needs(found.sizes["rolling_friction"] > 1, "slabs holds one rolling friction, there is nothing to compare")
+def _slabs(data: Data, name: str = "slabs") -> xr.Dataset:
+    found = data.get(GROUP, name).sortby("rolling_friction")
+    CLAIMS.needs(found.sizes["rolling_friction"] > 1, f"{name} holds one rolling friction, there is nothing to compare")
     return found
 
 
@@ -85,23 +85,20 @@ def small_load(data: Data, words: Bounds) -> Finding:
 
 @CLAIMS.measures("B17")
 def cosserat(data: Data, words: Bounds) -> Finding:
-    slabs = _slabs(data).isel(rolling_friction=slice(1, None))
+    slabs, turned = (_slabs(data, name).isel(rolling_friction=slice(1, None)) for name in ("slabs", "torques"))
+    loads = [(f"{load:g} mg", slabs.sel(load=load), [""]) for load in slabs["load"].values]
+    loads += [(f"torque {load:g}", turned.sel(torque=load), ["", "decay_"]) for load in turned["torque"].values]
     readings, lengths = [], []
     for mu in slabs["friction"].values.tolist():
-        for load in slabs["load"].values.tolist():
-            one = slabs.sel(friction=mu, load=load)
-            length = Quantity.range(one["length"].values)
-            left = Quantity.range(one["unexplained"].values)
-            name = f"friction {mu:g}, {load:g} mg"
-            lengths.append(f"{length.text()}, {left.text('%')} left ({name})")
-            readings.append(
-                Reading(
-                    name,
-                    asked.at_most("part of the squares that is left", left, words, "quite well", "%"),
-                    Condition("Cosserat length in radii", length, RADIUS),
-                )
-            )
-    return Finding(
-        f"the Cosserat length is {'; '.join(lengths)}",
-        readings,
-    )
+        for load, one, fits in loads:
+            name, conditions = f"friction {mu:g}, {load}", []
+            for fit in fits:
+                left, length = (Quantity.range(one[f"{fit}{of}"].sel(friction=mu)) for of in ("unexplained", "length"))
+                of_decay = " of the decay" if fit else ""
+                lengths.append(f"{length.text()}, {left.text('%')} left ({name}{of_decay and ', decay'})")
+                conditions += [
+                    asked.at_most(f"part of the squares{of_decay} that is left", left, words, "quite well", "%"),
+                    Condition(f"Cosserat length{of_decay} in radii", length, RADIUS),
+                ]
+            readings.append(Reading(name, *conditions))
+    return Finding(f"the Cosserat length is {'; '.join(lengths)}", readings)

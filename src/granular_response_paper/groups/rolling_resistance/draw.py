@@ -25,7 +25,7 @@ PILES = {"supported": "side walls", "free": "none", "resisting": f"none, ${ROLLI
 
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``rolling_resistance`` from the three datasets of the study of the same name."""
+    """``rolling_resistance`` and ``rolling_resistance_torque`` from the datasets of the study."""
     thresholds, piles, slabs = (datasets[name] for name in ("thresholds", "piles", "slabs"))
     figure, panels = style.figure(2, 3, width="double", height=5.2)
     (least, floor, events), (*responses, couples) = panels
@@ -39,7 +39,8 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     _couples(couples, slabs.sel(friction=drawn[0]))
     slab = [f"slab, {style.equals(style.FRICTION, friction)}" for friction in drawn]
     titles(panels.flat, ["least friction", "floor force", "events, slab", *slab, f"couple stress, {slab[0][6:]}"])
-    return {"rolling_resistance": figure}
+    turned = _torques(datasets["torques"].sel(friction=drawn[0]))
+    return {"rolling_resistance": figure, "rolling_resistance_torque": turned}
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
@@ -48,7 +49,10 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     said = of_scene(p.scene, friction=[slab.friction for slab in p.slabs])
     layers = ", ".join(map(str, p.layers))
     small, large = p.shown_forces
-    return of_group("rolling_resistance", {"rolling_resistance": said}, layers=layers, small=small, large=large)
+    turned = of_scene(p.scene, friction=p.slabs[0].friction)
+    pictures = {"rolling_resistance": said, "rolling_resistance_torque": turned}
+    fields = {"small": small, "large": large, "small_torque": p.torques[0], "large_torque": p.torques[1]}
+    return of_group("rolling_resistance", pictures, layers=layers, **fields)
 
 
 def _places(axes: Axes, values: np.ndarray) -> np.ndarray:
@@ -117,3 +121,24 @@ def _couples(axes: Axes, slab: xr.Dataset) -> None:
         for load, dashes in zip((0, -1), ("-", "--"), strict=True):
             axes.plot(part["z"], part.sel(rolling_friction=rolling).isel(load=load), **look | {"linestyle": dashes})
     axes.set(xlabel="height / slab's", ylabel=rf"couple stress$\,/\,\sigma_{{zz}}{style.RADIUS}$ (%)", ylim=(0.0, None))
+
+
+def _torques(slab: xr.Dataset) -> Figure:
+    """What the antisymmetric stress takes at each row, and what couples hand on below it."""
+    figure, panels = style.figure(1, 2, width="double", height=2.8, sharex=True, sharey=True)
+    rows = np.arange(slab.sizes["line"])
+    shares = {"antisymmetric": rows, "couple": rows + 0.5}
+    for axes, (name, below) in zip(panels[0], shares.items(), strict=True):
+        axes.axhline(0.0, color=style.MUTED, linewidth=0.6)
+        for rolling, look in family(slab["rolling_friction"].values, of="other"):
+            small, large = slab[name].sel(rolling_friction=rolling).values
+            axes.plot(below, small, **look, label=f"${ROLLING} = {rolling:g}$")
+            axes.plot(below, large, **look | {"linestyle": "--", "markersize": 2.5})
+        axes.set(xlabel="rows below the load", xlim=(-0.2, 4.7), xticks=range(5))
+        axes.set_yscale("symlog", linthresh=1e-3)
+    panels[0, 0].set(ylabel="moment / torque", ylim=(-0.06, 2.0))
+    solid = slab["solid"].isel(rolling_friction=-1, torque=0)
+    panels[0, 1].plot(shares["couple"], solid, color=style.FAINT, linewidth=3.5, zorder=1, label="Cosserat solid")
+    panels[0, 1].legend(loc="upper right", fontsize=7)
+    titles(panels.flat, ["antisymmetric stress, by row", "couples, between rows"])
+    return figure

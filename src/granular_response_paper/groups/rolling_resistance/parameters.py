@@ -41,6 +41,10 @@ class Parameters(SceneGroup):
     slabs: Annotated[tuple[Slab, ...], AfterValidator(some)] = Field(description="One for each friction.")
     slab_rolling_frictions: Coefficients = Field(description="Of disks in slabs.")
     shown_forces: tuple[Positive, Positive] = Field(description="Whose stresses are stored: a small and a large one.")
+    torques: tuple[Positive, Positive] = Field(
+        description="On the loaded disk, counter-clockwise, in mean disk weights times the mean radius: a small and a "
+        "large one."
+    )
     stress_width: Positive = Field(description="w of the Gaussian, in radii.")
     heights: Count = Field(description="Number of heights at which stresses are taken.")
 

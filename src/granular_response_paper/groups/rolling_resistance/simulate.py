@@ -2,8 +2,9 @@
 
 ``thresholds`` has the least friction that holds a pile on a flat floor, whose sides nothing supports, and that below
 which no forces balance whatever the preparation (:func:`balance`). ``piles`` are those of the paper's friction.
-``slabs`` has the response of a slab and its couple stress m, fitted by that of a Cosserat solid, ``m = -B grad(turn)``.
-Where the contacts of a lattice of equal disks stick, ``B = sqrt(3)/4 k_R`` and ``G = sqrt(3)/4 (k_N + k_T)``.
+``slabs`` has the response of a slab and its couple stress m, fitted by that of a Cosserat solid, ``m = -B grad(turn)``,
+``torques`` how couples and antisymmetric stress share a torque on the loaded disk, line by line between the rows. Where
+the contacts of a lattice of equal disks stick, ``B = sqrt(3)/4 k_R`` and ``G = sqrt(3)/4 (k_N + k_T)``.
 """
 
 from __future__ import annotations
@@ -12,14 +13,15 @@ from functools import partial
 
 import numpy as np
 import xarray as xr
-from scipy.optimize import linprog
+from numpy.typing import NDArray
+from scipy.optimize import linprog, minimize_scalar
 from scipy.sparse import coo_array, eye_array, hstack, vstack
 from scipy.spatial import cKDTree
 
 from granular_response.observe import stress as coarse
 from granular_response.observe.floor import floor_force
 from granular_response.observe.peaks import central_dip
-from granular_response.scene import PilePacking, Scene
+from granular_response.scene import Packing, PilePacking, Scene
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import NotSettled
 from granular_response.state import FloatArray, State
@@ -152,51 +154,150 @@ def balance(layers: int, rolling: float, most: float, tolerance: float) -> Balan
 
 @record
 class Slab:
-    """A slab under a growing force; along ``load`` under the small and the large force that are shown."""
+    """A slab under a growing force."""
 
     x: FloatArray = column(f"position from the loaded disk {RADII}", "floor_disk")
     opening: FloatArray = column(f"force of the first opening, before and after {WEIGHTS}", "end")
     crossover: FloatArray = column(f"force from which on there are two peaks, before and after {WEIGHTS}", "end")
-    floor_response: FloatArray = column("floor response per force", "load", "floor_disk")
-    width: FloatArray = column(f"full width at half maximum of the floor response {RADII}", "load")
-    couple_stress: FloatArray = column("largest couple stress of the load at a height, in weights", "load", "z")
-    vertical_stress: FloatArray = column("largest vertical stress of it there, in weights per radius", "load", "z")
-    modulus: FloatArray = column("couple stress per gradient of the rotation, in k_N times radii squared", "load")
-    unexplained: FloatArray = column("part of the squares of the couple stress that this modulus leaves", "load")
-    length: FloatArray = column(f"Cosserat length sqrt(B / 4 G) with the lattice's shear modulus {RADII}", "load")
-    moment_error: FloatArray = column("largest lack of the couples across a vertical line, per largest couple", "load")
 
 
-def respond(scene: Scene, forces: tuple[float, ...], shown: tuple[float, float], width: float, heights: int) -> Slab:
-    """``scene`` has one load, of unit force; stresses are those that the load adds. Raises what the solvers raise."""
-    path = LoadPath.of(scene)
-    measures, contact = Measures(path), scene.contact
-    path.through(sorted({*forces, *shown}))
+@record
+class Fit:
+    """The couple stress that a load adds, as that of a Cosserat solid."""
+
+    modulus: float = column("couple stress per gradient of the rotation, in k_N times radii squared")
+    unexplained: float = column("part of the squares of the couple stress that this modulus leaves")
+    length: float = column(f"Cosserat length sqrt(B / 4 G) with the lattice's shear modulus {RADII}")
+
+
+@record
+class Loaded(Fit):
+    """The slab under one of the forces that are shown."""
+
+    floor_response: FloatArray = column("floor response per force", "floor_disk")
+    width: float = column(f"full width at half maximum of the floor response {RADII}")
+    couple_stress: FloatArray = column("largest couple stress of the load at a height, in weights", "z")
+    vertical_stress: FloatArray = column("largest vertical stress of it there, in weights per radius", "z")
+    moment_error: float = column("largest lack of the couples across a vertical line, per largest couple")
+
+
+@record
+class Turned(Fit):
+    """The slab under a torque, which couples and antisymmetric stress share on each line between two rows."""
+
+    depth: FloatArray = column(f"depth of a line below the loaded disk {RADII}", "line")
+    couple: FloatArray = column("couple that contacts hand down across a line, per torque", "line")
+    antisymmetric: FloatArray = column(
+        "moment of the antisymmetric stress at the disks of the row above a line, per torque", "line"
+    )
+    solid: FloatArray = column("that couple in a Cosserat solid with the moduli of the lattice", "line")
+    decay_unexplained: float = column("part of the squares of these couples that an exponential of the depth leaves")
+    decay_length: float = column(f"Cosserat length sqrt(B / 4 G) by that exponential and the lattice's moduli {RADII}")
+    moment_error: float = column("largest lack of moments above a line, torque and couples included, per torque")
+
+
+def respond(parameters: Parameters, scene: Scene, forces: tuple[float, ...]) -> tuple[Slab, list[Loaded], list[Turned]]:
+    """The slab, under each force that is shown and under each torque on the loaded disk alone.
+
+    ``scene`` has one load, of unit force; stresses are those that the load adds. Raises what the solvers raise.
+    """
+    path, width = LoadPath.of(scene), parameters.stress_width
+    measures = Measures(path)
+    path.through(sorted({*forces, *parameters.shown_forces}))
     asked = first_opening(measures), Happening(measures.double_peaked, TWO_PEAKS)
     events = [np.array(path.first(forces, happening)) for happening in asked]
-    rest, radius, top = path.rest, path.problem.packing.radius, path.rest.position[measures.loaded_disk]
-    lines = coarse.grid_points(top[0] + measures.x, np.linspace(0.0, top[1], heights))
-    step = 0.5 * width
-    inner = coarse.grid_points(top[0] + measures.x[measures.interior], np.arange(width, top[1] - width, step))
-    found = []
-    for loaded in map(path.at, shown):
-        response = measures.response(loaded)
+    rest, packing, top = path.rest, path.problem.packing, path.rest.position[measures.loaded_disk]
+    lines = coarse.grid_points(top[0] + measures.x, np.linspace(0.0, top[1], parameters.heights))
+    inner = coarse.grid_points(top[0] + measures.x[measures.interior], np.arange(width, top[1] - width, 0.5 * width))
+    rows = np.arange(packing.row.max() + 1)[::-1]
+    above = packing.row > rows[1:, None]
+    height = [rest.position[packing.row == row, 1].mean() for row in rows]
+    depth = top[1] - 0.5 * np.add(height[:-1], height[1:])
+    loaded, turned = [], []
+    for state in map(path.at, parameters.shown_forces):
+        response = measures.response(state)
+        stress = coarse.coarse_grained_stress(coarse.load_forces(rest, state), lines, width)
+        couple = np.linalg.norm(_couple_stress(path.problem, rest, state, lines, width), axis=-1).max(axis=1)
+        left = state.position[:, 0] < (top[0] + measures.x[1:-1])[:, None]
+        across, needed = moments(path.problem, state, left)
+        largest = float(np.abs(across).max())
+        lack = float(np.abs(across - needed).max()) / largest if largest else float("nan")
+        loaded.append(
+            Loaded(
+                *fit(path.problem, rest, state, inner, width),
+                floor_response=response,
+                width=half_maximum_width(measures.x, response),
+                couple_stress=couple,
+                vertical_stress=np.abs(stress[..., 1, 1]).max(axis=1),
+                moment_error=lack,
+            )
+        )
+    twist = LoadPath.of(scene.updated({"loads.0.force": [0.0, 0.0], "loads.0.torque": 1.0}), rest)
+    for torque, state in zip(parameters.torques, twist.through(parameters.torques), strict=True):
+        across, needed = moments(twist.problem, state, above)
+        before, _ = moments(twist.problem, rest, above)
+        couple = (before - across) / torque
+        moment = above @ (_turning(packing, state) - _turning(packing, rest)) / torque
+        turned.append(
+            Turned(
+                *fit(twist.problem, rest, state, inner, width),
+                depth,
+                couple,
+                np.diff(moment, prepend=0.0),
+                *decay(scene, depth, couple),
+                moment_error=float(np.abs(across - needed).max(initial=0.0)) / torque,
+            )
+        )
+    return Slab(measures.x, *events), loaded, turned
 
-        def couples(at: FloatArray, loaded: State = loaded) -> FloatArray:
-            return coarse.couple_stress(loaded, radius, at, width) - coarse.couple_stress(rest, radius, at, width)
 
-        stress = coarse.coarse_grained_stress(coarse.load_forces(rest, loaded), lines, width)
-        couple, gradient = couples(inner), _gradient(rest.position, loaded.angle - rest.angle, inner, width)
-        share = -float((couple * gradient).sum() / (gradient**2).sum())
-        squares = float((couple**2).sum())
-        left = float(((couple + share * gradient) ** 2).sum()) / squares if squares else float("nan")
-        shear = np.sqrt(3.0) / 4.0 * (1.0 + contact.stiffness_ratio)
-        bend = share / contact.normal_stiffness
-        length = float(np.sqrt(max(bend, 0.0) / (4.0 * shear)))
-        largest = np.linalg.norm(couples(lines), axis=-1).max(axis=1), np.abs(stress[..., 1, 1]).max(axis=1)
-        lack = moment_error(path.problem, loaded, top[0] + measures.x[1:-1])
-        found.append((response, half_maximum_width(measures.x, response), *largest, bend, left, length, lack))
-    return Slab(measures.x, *events, *map(np.array, zip(*found, strict=True)))
+def fit(problem: Problem, rest: State, loaded: State, points: FloatArray, width: float) -> tuple[float, float, float]:
+    """Modulus, part of the squares that is left, and length of :class:`Fit`, by the stress at ``points`` (..., 2)."""
+    contact = problem.scene.contact
+    couple = _couple_stress(problem, rest, loaded, points, width)
+    gradient = _gradient(rest.position, loaded.angle - rest.angle, points, width)
+    share = -float((couple * gradient).sum() / (gradient**2).sum())
+    squares = float((couple**2).sum())
+    left = float(((couple + share * gradient) ** 2).sum()) / squares if squares else float("nan")
+    shear = np.sqrt(3.0) / 4.0 * (1.0 + contact.stiffness_ratio)
+    bend = share / contact.normal_stiffness
+    return bend, left, float(np.sqrt(max(bend, 0.0) / (4.0 * shear)))
+
+
+def decay(scene: Scene, depth: FloatArray, couple: FloatArray) -> tuple[FloatArray, float, float]:
+    """Couples (k,) at depths (k,) in a Cosserat solid; the part of the squares of ``couple`` (k,) left, and the length.
+
+    Its equations summed along horizontal lines make the couple below a unit torque ``exp(-depth / l)`` with
+    ``l = sqrt(B (1 / G + 1 / G_c) / 4)``, where ``2 G_c`` is the antisymmetric stress per turn of its points against
+    their surroundings. Where the contacts of a lattice stick, ``G_c = sqrt(3)/2 k_T``. The couples are those with the
+    lattice's moduli; ``l`` is fitted from a tenth of a radius on, and stands for ``sqrt(B / 4 G)`` with its ratio of
+    moduli. Part and length are nan without couples.
+    """
+    contact = scene.contact
+    ratio = np.sqrt(1.0 + (1.0 + contact.stiffness_ratio) / (2.0 * contact.stiffness_ratio))
+    lattice = 0.5 * ratio * np.sqrt(contact.rolling_stiffness_ratio / (1.0 + contact.stiffness_ratio))
+    solid, squares = np.exp(-depth / lattice), float((couple**2).sum())
+    if not squares:
+        return solid, float("nan"), float("nan")
+
+    def left(size: float) -> float:
+        return float(((couple - np.exp(-depth / size)) ** 2).sum()) / squares
+
+    found = minimize_scalar(left, bounds=(0.1, float(depth.max())), method="bounded", options={"xatol": 1e-9})
+    return solid, float(found.fun), float(found.x / ratio)
+
+
+def _couple_stress(problem: Problem, rest: State, loaded: State, points: FloatArray, width: float) -> FloatArray:
+    """(..., 2) couple stress that the load adds at ``points`` (..., 2)."""
+    after, before = (coarse.couple_stress(state, problem.packing.radius, points, width) for state in (loaded, rest))
+    return after - before
+
+
+def _turning(packing: Packing, state: State) -> FloatArray:
+    """(n,) moment of the tangential forces between disks that their partners leave to each, clockwise."""
+    pairs = state.pairs
+    ends = np.concatenate([pairs.first, pairs.second])
+    return np.asarray(np.bincount(ends, packing.radius[ends] * np.tile(pairs.tangential_force, 2), packing.n), float)
 
 
 def _gradient(position: FloatArray, angle: FloatArray, points: FloatArray, width: float) -> FloatArray:
@@ -208,12 +309,12 @@ def _gradient(position: FloatArray, angle: FloatArray, points: FloatArray, width
     return np.asarray(slope.sum(axis=-2) / weight.sum(axis=-1)[..., None])
 
 
-def moment_error(problem: Problem, state: State, lines: FloatArray) -> float:
-    """Largest lack of the couples across vertical lines (k,), per largest couple; nan where none are handed on.
+def moments(problem: Problem, state: State, parts: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
+    """(k,) couples on parts of the packing, (k, n), by the contacts across their borders; and what balance needs.
 
-    The disks left of a line are at rest, so the couples of the contacts that cross it equal the moments of all other
-    forces on these disks: their weights and loads, walls, contact forces across the line, where the tangential ones act
-    at the rim of the disk; a contact among them leaves what its overlap takes from the arms of its tangential force.
+    The disks of a part are at rest, so these couples equal the opposite moments of all other forces on them: their
+    weights and loads, walls, contact forces across the border, where the tangential ones act at the rim of the disk;
+    a contact among them leaves what its overlap takes from the arms of its tangential force.
     """
     at, pairs, walls, radius = state.position, state.pairs, state.walls, problem.packing.radius
     pair, wall = state.pair_force(), state.wall_force()
@@ -227,13 +328,11 @@ def moment_error(problem: Problem, state: State, lines: FloatArray) -> float:
     on_second = -_cross(at[j], pair) - radius[j] * pairs.tangential_force
     couple = problem.pair_arms(i, j) * pairs.rolling_force
     across, needed = [], []
-    for line in lines:
-        left = at[:, 0] < line
-        one, other = left[i], left[j]
-        needed.append(-disk[left].sum() - on_first[one].sum() - on_second[other].sum())
+    for part in parts:
+        one, other = part[i], part[j]
+        needed.append(-disk[part].sum() - on_first[one].sum() - on_second[other].sum())
         across.append(couple[one & ~other].sum() - couple[other & ~one].sum())
-    largest = float(np.abs(across).max())
-    return float(np.abs(np.subtract(across, needed)).max()) / largest if largest else float("nan")
+    return np.array(across), np.array(needed)
 
 
 def _cross(arm: FloatArray, force: FloatArray) -> FloatArray:
@@ -241,7 +340,7 @@ def _cross(arm: FloatArray, force: FloatArray) -> FloatArray:
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``thresholds``, ``piles`` and ``slabs``."""
+    """Datasets ``thresholds``, ``piles``, ``slabs`` and ``torques``."""
     p, pile, rolling = parameters, parameters.pile, parameters.rolling_frictions
     tries: dict[tuple[int, ...], partial[Threshold]] = {}
     piles: dict[tuple[int, ...], partial[Pile]] = {}
@@ -256,7 +355,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     for n, slab in enumerate(p.slabs):
         for k, mu in enumerate(p.slab_rolling_frictions):
             scene = p.base.updated({"contact.friction": slab.friction, "contact.rolling_friction": mu})
-            slabs[n, k] = partial(respond, scene, slab.forces, p.shown_forces, p.stress_width, p.heights)
+            slabs[n, k] = partial(respond, p, scene, slab.forces)
     sizes = axes(layers=(p.layers, "number of layers"))
     of_rolling = axes(rolling_friction=(rolling, "coefficient of rolling friction"))
     of_ramps = axes(ramp=(p.ramps, "time over which gravity grows, in sqrt(R/g); 0: at once"))
@@ -264,6 +363,9 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     of_slabs = axes(
         friction=([slab.friction for slab in p.slabs], "coefficient of friction between disks"),
         rolling_friction=(p.slab_rolling_frictions, "coefficient of rolling friction between disks"),
+    )
+    of_torques = axes(torque=(p.torques, "torque in mean disk weights times mean radius, counter-clockwise"))
+    of_loads = axes(
         load=(p.shown_forces, f"force {WEIGHTS}"),
         z=(np.linspace(0.0, 1.0, p.heights), "height above the floor per that of the loaded disk"),
     )
@@ -273,5 +375,13 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "thresholds": held.merge(least).assign_coords(sizes | of_rolling | of_ramps),
         "piles": table(computed(piles, "piles"), "layers", "case").assign_coords(sizes | cases),
     }
-    responses = table(computed(slabs, "slabs"), "friction", "rolling_friction").assign_coords(of_slabs)
-    return labelled(found, pile) | labelled({"slabs": responses}, p.base)
+    responses = computed(slabs, "slabs")
+    along = "friction", "rolling_friction"
+    loaded = {(*at, k): one for at, (_, shown, _) in responses.items() for k, one in enumerate(shown)}
+    turned = {(*at, k): one for at, (*_, shown) in responses.items() for k, one in enumerate(shown)}
+    of_slab = table({at: slab for at, (slab, *_) in responses.items()}, *along)
+    found_slabs = {
+        "slabs": of_slab.merge(table(loaded, *along, "load")).assign_coords(of_slabs | of_loads),
+        "torques": table(turned, *along, "torque").assign_coords(of_slabs | of_torques),
+    }
+    return labelled(found, pile) | labelled(found_slabs, p.base)
