@@ -13,6 +13,7 @@ SERIES = {"name": "one", "friction": 0.0, "layers": [5, 7]}
 WIDTH = {"polydispersity": 0.1, "friction": 0.2, "layers": [4], "realizations": 2}
 LOOP = {"polydispersity": 0.1, "friction": 0.2, "forces": [0.3, 1.0], "increments": 2}
 WAY = {"name": "x", "changes": {}}
+TAPS = {"number": 1, "amplitudes": [0.5], "durations": [3.0]}
 
 #: For each group: changes to its section of the notebooks' parameters (None: left out), and what is said.
 MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
@@ -71,6 +72,7 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"ways": [WAY, WAY]}, "must have different names"),
         ({"parts": [{"friction": 0.2, "ways": ["none"], "to": 4.0}]}, "must be one of the names in ways"),
         ({"parts": [{"friction": 0.2, "to": 0.01}]}, "must not be below the first of forces"),
+        ({"parts": [{"friction": 0.2, "to": 4.0, "taps": TAPS}]}, r"parts\[0\]\.taps = .*: must be left out"),
         ({"ways": [WAY | {"changes": {"contact.damping_ratio": -1.0}}]}, "damping_ratio"),
     ],
     "slab_comparison": [

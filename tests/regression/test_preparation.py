@@ -4,6 +4,10 @@ import numpy as np
 import pytest
 import reduced
 
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
+from granular_response.solvers.timestep import resolve_time_step
+from granular_response.state import State
 from granular_response_paper.groups.preparation import draw as figures
 from granular_response_paper.groups.preparation import simulate as study
 from granular_response_paper.groups.preparation.numbers import numbers
@@ -56,6 +60,10 @@ def test_an_event_is_between_the_forces_that_show_it(datasets):
 
 def test_mobilized_contacts_of_every_slab_stand_beside_its_events(datasets):
     mobilized, events = datasets["mobilized"], datasets["events"]
+    tapped = mobilized["taps"].values > 0
+    np.testing.assert_array_equal(mobilized["way"][tapped], ["slow", "slow"])
+    np.testing.assert_array_equal(mobilized["tap_amplitude"][tapped], [0.5, 2.0])
+    mobilized = mobilized.isel(case=~tapped)
     ordered = mobilized.isel(case=mobilized["polydispersity"].values == 0.0)
     part = ordered["mobilized_part"].values
     assert (part[:, 0] <= part[:, 1]).all() and part[2, 0] > 0.0 == part[3, 0]
@@ -70,10 +78,33 @@ def test_mobilized_contacts_of_every_slab_stand_beside_its_events(datasets):
 
 def test_a_case_is_what_its_scene_says():
     task = next(t for t in study.tasks(Parameters(**PARAMETERS)).values() if t.args[0] == "slow")
-    _, scene, forces, _ = task.args
+    _, scene, _, forces, _ = task.args
     path = LoadPath.of(scene)
     assert (scene.contact.friction, scene.wall.friction, scene.preparation.ramp_time) == (0.2, 0.0, 10.0)
     assert task().measured["response_at_centre"][0] == Measures(path).centre(path.at(forces[0]))
+
+
+def tapped(friction: float, amplitude: float, parts: int = 1) -> tuple[State, State]:
+    """The small slab at rest and after a tap, with the usual time step divided by ``parts``."""
+    scene = Parameters(**PARAMETERS).base.updated({"contact.friction": friction, "wall.friction": 0.0})
+    usual = resolve_time_step(Problem.from_scene(scene))
+    problem = Problem.from_scene(scene.updated({"protocol.time_step": usual / parts}))
+    rest = rest_state(problem)
+    return rest, study.tapped(problem, rest, 1, amplitude, 3.0)
+
+
+@pytest.mark.parametrize("amplitude", [0.5, 2.0])
+def test_a_tapped_slab_without_friction_comes_back_to_the_minimum_of_its_energy(amplitude):
+    rest, after = tapped(0.0, amplitude)
+    assert after.reached.steps > 0
+    np.testing.assert_allclose(after.walls.normal_force, rest.walls.normal_force, atol=1e-10)
+
+
+def test_a_tapped_slab_with_friction_is_the_same_with_half_the_time_step():
+    rest, after = tapped(0.2, 0.5)
+    force = after.walls.normal_force
+    assert np.abs(force - rest.walls.normal_force).max() > 0.1
+    np.testing.assert_allclose(tapped(0.2, 0.5, parts=2)[1].walls.normal_force, force, atol=1e-3)
 
 
 def test_the_figure_and_the_numbers_show_what_is_stored(datasets, looks_as_stored):

@@ -34,8 +34,11 @@ WAYS = {
 }
 #: Of those whose dashpots are weaker or stronger than those of the first way.
 WEAKER, STRONGER = "P", "X"
-#: Below so many per cent of the contacts the axis is linear, so that it shows none.
-LEAST_PART = 0.05
+#: Of those tapped, the gentlest first.
+TAPPED = "v*X"
+#: Below so many per cent of the contacts, less than one of all, the axis is linear: those without stand there, side by
+#: side by their preparation.
+LEAST_PART = 0.03
 
 
 @style.context()
@@ -71,20 +74,32 @@ def _against_mobilized(data: xr.Dataset) -> Figure:
     names = data["name"].values.tolist()
     figure, (panels,) = style.figure(1, len(names), width="double", height=3.2, sharex=True, sharey=True)
     titles(panels, [PANELS[name] for name in names])
-    part, delta = 100.0 * data["mobilized_part"].isel(margin=0), data["polydispersity"].values
+    part, delta = 100.0 * data["mobilized_part"].isel(margin=0).values, data["polydispersity"].values
+    taps, gravity = data["tap_amplitude"].values, data["gravity"].values
+    ways = [
+        (text.removesuffix(" over"), markers[0], (taps == 0.0) & (gravity == name))
+        for name, (text, _, markers) in WAYS.items()
+    ]
+    ways += [
+        (rf"tapped by ${most:g}\,g$", TAPPED[k % len(TAPPED)], taps == most)
+        for k, most in enumerate(np.unique(taps[taps > 0.0]))
+    ]
     for axes, name in zip(panels, names, strict=True):
         force = data["force"].sel(name=name).values
+        axes.axvspan(-LEAST_PART, LEAST_PART, color=style.FAINT, alpha=0.4, linewidth=0.0)
         for friction, look in family(np.unique(data["friction"].values), of="friction", marked=False):
-            for gravity, (_, _, markers) in WAYS.items():
-                alike = (data["friction"].values == friction) & (data["gravity"].values == gravity)
+            for place, (_, marker, prepared) in zip(np.linspace(-0.8, 0.8, len(ways)), ways, strict=True):
+                beside = np.where(part == 0.0, place * LEAST_PART, part)
+                alike = prepared & (data["friction"].values == friction)
                 for chosen, face in ((alike & (delta == 0.0), look["color"]), (alike & (delta > 0.0), "none")):
                     axes.plot(
-                        part[chosen], force[chosen], marker=markers[0], color=look["color"], markerfacecolor=face,
+                        beside[chosen], force[chosen], marker=marker, color=look["color"], markerfacecolor=face,
                         markersize=4.5, linestyle="none",
                     )  # fmt: skip
         axes.set_xscale("symlog", linthresh=LEAST_PART)
-        axes.set(yscale="log", xlabel="fully mobilized contacts [%]", xlim=(-0.4 * LEAST_PART, 100.0))
+        axes.set(yscale="log", xlabel="fully mobilized contacts [%]", xlim=(-LEAST_PART, 100.0))
         axes.set_xticks([0.0, 0.1, 1.0, 10.0, 100.0])
+        axes.tick_params(axis="x", which="minor", top=False, bottom=False)
         axes.xaxis.set_major_formatter("{x:g}")
         axes.yaxis.set_major_formatter("{x:g}")
     panels[0].set_ylabel(style.FORCE)
@@ -92,9 +107,7 @@ def _against_mobilized(data: xr.Dataset) -> Figure:
         (style.equals(style.FRICTION, mu), {"marker": "s", **look})
         for mu, look in family(np.unique(data["friction"].values), of="friction", marked=False)
     ]
-    shown += [
-        (text.removesuffix(" over"), {"marker": markers[0], "color": style.BLACK}) for text, _, markers in WAYS.values()
-    ]
+    shown += [(text, {"marker": marker, "color": style.BLACK}) for text, marker, _ in ways]
     shown += [("disorder", {"marker": "o", "color": style.BLACK, "markerfacecolor": "none"})]
     handles = [Line2D([], [], linestyle="none", markersize=4.5, label=text, **look) for text, look in shown]
     figure.legend(handles=handles, loc="outside lower center", ncols=5)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
@@ -29,6 +30,14 @@ class Way(Description):
         return self
 
 
+class Taps(Description):
+    """Taps of a slab at rest: the box moves by one period of a triangular wave of vertical acceleration, up first."""
+
+    number: Count
+    amplitudes: tuple[Positive, ...] = Field(min_length=1, description="Largest accelerations, in g.")
+    durations: tuple[Positive, ...] = Field(min_length=1, description="Of the period, in sqrt(R/g).")
+
+
 class Part(Description):
     """Slabs of one friction between disks, ordered or with one polydispersity."""
 
@@ -38,6 +47,14 @@ class Part(Description):
     to: Positive = Field(description="Largest force, in mean disk weights.")
     polydispersity: Fraction = Field(default=0.0, description="delta; the largest disks touch in the initial lattice.")
     realizations: Count = Field(default=1, description="Of the disorder.")
+    taps: Taps | None = Field(default=None, description="Before the load, in each combination; none: untapped.")
+
+    @property
+    def tapped(self) -> list[tuple[int, float, float]]:
+        """Number, amplitude and duration of the taps of each slab; zeros: untapped."""
+        if self.taps is None:
+            return [(0, 0.0, 0.0)]
+        return [(self.taps.number, *one) for one in product(self.taps.amplitudes, self.taps.durations)]
 
 
 class Parameters(SceneGroup):
@@ -48,7 +65,7 @@ class Parameters(SceneGroup):
     ] = UNIT_LOAD
     ways: tuple[Way, ...] = Field(min_length=1, description="The first one is what the others are compared with.")
     forces: Growing = Field(description="In mean disk weights.")
-    parts: tuple[Part, ...] = Field(min_length=1, description="The first one is ordered.")
+    parts: tuple[Part, ...] = Field(min_length=1, description="The first one is ordered and untapped.")
     asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
 
     @model_validator(mode="after")
@@ -63,6 +80,8 @@ class Parameters(SceneGroup):
                 raise Problem(str(error), key=("ways", str(k))) from None
         if self.parts[0].polydispersity:
             raise Problem("must be 0", key=("parts", "0", "polydispersity"), value=self.parts[0].polydispersity)
+        if self.parts[0].taps:
+            raise Problem("must be left out", key=("parts", "0", "taps"), value=self.parts[0].taps.model_dump())
         for k, part in enumerate(self.parts):
             for name in part.ways:
                 if name not in names:

@@ -3,7 +3,7 @@
 In the paper the packing relaxes under gravity, which acts at once (Sec. III.C); with friction the slab at rest
 remembers how it came. Each way to prepare it is loaded by the same forces, on one path. Without friction rest is one
 minimum of the energy, and one way stands for all. How many contacts are fully mobilized at rest, and where the linear
-range ends, is measured on disordered slabs too.
+range ends, is measured on disordered and on tapped slabs too.
 """
 
 from __future__ import annotations
@@ -19,8 +19,13 @@ import xarray as xr
 from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.scene.lattice import TOUCHING_LARGEST
-from granular_response.state import FloatArray
+from granular_response.solvers.dynamics import Dynamics, Stop
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.settle import PROTOCOL, settle
+from granular_response.solvers.timestep import resolve_time_step
+from granular_response.state import FloatArray, State
 from granular_response.store.variables import WEIGHTS
+from granular_response.sweeps.rest import rest_state
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.preparation.parameters import Parameters, Part
@@ -65,6 +70,9 @@ class Mobilized:
 
     polydispersity: float = column("polydispersity")
     realization: int = column("realization of the disorder")
+    taps: int = column("how often the slab was tapped")
+    tap_amplitude: float = column("largest acceleration of the box in a tap in g; 0 untapped")
+    tap_duration: float = column("duration of a tap in sqrt(radius/g); 0 untapped")
     mobilized_part: FloatArray = column(
         "part of the contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit",
         "margin",
@@ -83,17 +91,47 @@ class Outcome:
     measured: xr.Dataset
     events: list[slab.Event]
 
-    def mobilized(self, polydispersity: float, realization: int) -> Mobilized:
+    def mobilized(self, polydispersity: float, realization: int, taps: tuple[int, float, float]) -> Mobilized:
         high = {event.name: event.high for event in self.events}
         if polydispersity:
             high["crossover"] = np.nan
         part = self.rest.rest_mobilised / self.rest.contacts
-        return Mobilized(polydispersity, realization, part, np.array([high[name] for name in AGAINST]))
+        at = np.array([high[name] for name in AGAINST])
+        return Mobilized(polydispersity, realization, *taps, part, at)
 
 
-def compute(way: str, scene: Scene, forces: tuple[float, ...], asymmetry: float) -> Outcome:
-    """A slab settled as its ``scene`` says and loaded by each of the forces."""
-    path = slab.LoadPath.of(scene)
+def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration: float) -> State:
+    """The equilibrium after a number of taps, each of which begins when the slab is at rest again.
+
+    In the frame of the box, which moves as :class:`~.parameters.Taps` says, gravity goes from 1 to 1 + ``amplitude``,
+    to 1 - ``amplitude`` and back to 1. ``duration`` of it all in sqrt(R/g), rounded to four times whole steps.
+
+    Raises
+    ------
+    NotSettled, DynamicsError
+        As of ``solvers.settle.settle``.
+    """
+    protocol = problem.scene.protocol
+    stop = Stop(problem.plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
+    most, least = 1.0 + amplitude, 1.0 - amplitude
+    for _ in range(taps):
+        dynamics = Dynamics(problem, rest, protocol.integrator, resolve_time_step(problem))
+        steps = round(0.25 * duration / dynamics.time_step)
+        quarter = steps * dynamics.time_step
+        dynamics.set_ramps(gravity=(1.0, most, quarter))
+        dynamics.advance(steps)
+        dynamics.set_ramps(gravity=(most, least, 2.0 * quarter))
+        dynamics.advance(2 * steps)
+        rest = settle(problem, dynamics.state(), PROTOCOL, stop, what="taps", gravity=(least, 1.0, quarter))
+    return rest
+
+
+def compute(
+    way: str, scene: Scene, taps: tuple[int, float, float], forces: tuple[float, ...], asymmetry: float
+) -> Outcome:
+    """A slab settled as its ``scene`` says, tapped (number, amplitude, duration) and loaded by each of the forces."""
+    problem = Problem.from_scene(scene)
+    path = slab.LoadPath.of(scene, tapped(problem, rest_state(problem), *taps))
     states = path.through(forces)
     measures = slab.Measures(path)
     pairs = path.rest.pairs
@@ -107,17 +145,19 @@ def compute(way: str, scene: Scene, forces: tuple[float, ...], asymmetry: float)
     )
 
 
-#: Of a slab: polydispersity, friction of its walls and disks, way and part by their numbers, and realization.
-Place = tuple[float, float, float, int, int, int]
+#: Of a slab: polydispersity, friction of its walls and disks, way and part by their numbers, realization, and the
+#: number, amplitude and duration of taps.
+Place = tuple[float, float, float, int, int, int, tuple[int, float, float]]
 
 
 def tasks(parameters: Parameters) -> dict[Place, partial[Outcome]]:
-    """A task for each part, way and realization."""
+    """A task for each part, way and realization, and for the taps of each."""
     return {
-        (part.polydispersity, scene.wall.friction, scene.contact.friction, k, p, realization): partial(
+        (part.polydispersity, scene.wall.friction, scene.contact.friction, k, p, realization, taps): partial(
             compute,
             way.name,
             scene,
+            taps,
             tuple(force for force in parameters.forces if force <= part.to),
             parameters.asymmetry,
         )
@@ -126,6 +166,7 @@ def tasks(parameters: Parameters) -> dict[Place, partial[Outcome]]:
         if not part.ways or way.name in part.ways
         for realization in range(part.realizations)
         for scene in [_scene(parameters.base, part, realization).updated(way.changes)]
+        for taps in part.tapped
     }
 
 
@@ -146,14 +187,14 @@ def _scene(base: Scene, part: Part, realization: int) -> Scene:
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``response`` (case, force), nan above the last force of a case, ``events``, and ``mobilized``.
 
-    The last one has the disordered slabs too.
+    The last one has the disordered and the tapped slabs too.
     """
     asked = tasks(parameters)
     # the longest ramps of gravity take longest
     found = computed(asked, "prepared slabs", work=lambda place: asked[place].args[1].preparation.ramp_time)
     places = sorted(found)
-    outcomes = [found[place] for place in places if not place[0]]
-    mobilized = table([found[place].mobilized(place[0], place[-1]) for place in places], "case")
+    outcomes = [found[place] for place in places if not place[0] and not place[-1][0]]
+    mobilized = table([found[place].mobilized(place[0], *place[-2:]) for place in places], "case")
     mobilized = mobilized.assign(table([found[place].prepared for place in places], "case").variables).assign_coords(
         axes(name=(AGAINST, "event"), margin=(slab.MARGINS, "fraction below the Coulomb limit"))
     )
