@@ -99,7 +99,7 @@ def test_slots_of_no_listed_pair_have_no_reach():
     """Runs are lengthened for vector instructions, over pairs that may be listed elsewhere: these must never touch."""
     problem = Problem.from_scene(scene(7, 30))
     c = problem.list_candidates(problem.packing.position)
-    empty = np.setdiff1d(np.arange(c.slots), c.slot)
+    empty = np.setdiff1d(np.arange(len(c.reach)), c.slot)
     assert len(empty) and not c.reach[empty].any()
     assert np.array_equal(c.reach[c.slot], problem.packing.radius[c.first] + problem.packing.radius[c.second])
 

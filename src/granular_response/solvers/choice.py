@@ -44,30 +44,31 @@ def plan(problem: Problem) -> Plan:
     SceneError
         When the scene asks for a method that it does not have.
     """
-    protocol = problem.scene.protocol
+    protocol, loads = problem.scene.protocol, problem.scene.loads
+    asked = protocol.method
     only_motion = getattr(problem.pair_law, "only_motion", "")
     if problem.rotations and problem.rule != CUT:
         only_motion = f"protocol.friction_law {protocol.friction_law} is a law of motion that statics does not have"
+    if asked in ("path", "minimise") and only_motion and loads:
+        raise SceneError(f"protocol.method = {asked}: must be dynamics or auto, {only_motion}")
+    if asked == "minimise" and problem.rotations:
+        raise SceneError(
+            "protocol.method = minimise: must be path, dynamics or auto in a scene with friction (contact or wall)"
+        )
     static = protocol.static_finish and not only_motion
-    load = _load(problem, only_motion) if problem.scene.loads else Choice("none", "loads is empty")
-    return Plan(_rest(problem, only_motion), load, static, _stop_energy(problem, static))
+    if why := "protocol.method is dynamics" if asked == "dynamics" else only_motion:
+        rest = load = Choice("dynamics", why)
+    else:
+        rest, load = _rest(problem), _load(problem)
+    return Plan(rest, load if loads else Choice("none", "loads is empty"), static, _stop_energy(problem, static))
 
 
-def _rest(problem: Problem, only_motion: str) -> Choice:
+def _rest(problem: Problem) -> Choice:
     """The state at rest under gravity.
 
     Friction and disorder make it depend on the fall into it, so it is reached as the paper does, by dynamics. The
     ordered frictionless packing has its minimum from wherever one starts.
     """
-    asked = problem.scene.protocol.method
-    if asked == "minimise" and problem.rotations:
-        raise SceneError(
-            "protocol.method = minimise: must be path, dynamics or auto in a scene with friction (contact or wall)"
-        )
-    if asked == "dynamics":
-        return Choice("dynamics", "protocol.method is dynamics")
-    if only_motion:
-        return Choice("dynamics", only_motion)
     smooth = not problem.rotations or problem.scene.preparation.gravity == "frictionless"
     if not smooth:
         return Choice("dynamics", "with friction the rest state depends on how gravity was applied")
@@ -77,16 +78,9 @@ def _rest(problem: Problem, only_motion: str) -> Choice:
     return Choice("minimise", f"{how}: rest is the minimum of the energy")
 
 
-def _load(problem: Problem, only_motion: str) -> Choice:
+def _load(problem: Problem) -> Choice:
     """The states under load."""
-    asked = problem.scene.protocol.method
-    if asked == "dynamics":
-        return Choice("dynamics", "protocol.method is dynamics")
-    if only_motion:
-        if asked in ("path", "minimise"):
-            raise SceneError(f"protocol.method = {asked}: must be dynamics or auto, {only_motion}")
-        return Choice("dynamics", only_motion)
-    if asked == "path":
+    if problem.scene.protocol.method == "path":
         return Choice("path", "protocol.method is path")
     if problem.rotations:
         return Choice("path", "friction: a path of equilibria through every load between")

@@ -126,7 +126,7 @@ class Dynamics:
         c = self.candidates
         self.spring = self.wall_spring = None
         if problem.pair_friction:
-            self.spring = aligned_zeros(c.slots)
+            self.spring = aligned_zeros(len(c.reach))
             self.spring[c.slot], roll = carry_springs(problem.n, state.pairs, c.first, c.second)
         if problem.wall_friction:
             self.wall_spring, wall_roll = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
@@ -153,12 +153,9 @@ class Dynamics:
 
     def _fill_history(self) -> None:
         self.history[:] = 0.0
-        self._accelerations(self.history[0, : self.q.size])
+        gravity, load = self._now(self.gravity), self._now(self.load)
+        accelerations(self.q, self.v, self.history[0, : self.q.size], gravity, load, 0.0, self.model)
         self.integrator.scheme.begin(self.history)
-
-    def _accelerations(self, out: FloatArray) -> None:
-        """Accelerations now; springs do not advance."""
-        accelerations(self.q, self.v, out, self._now(self.gravity), self._now(self.load), 0.0, self.model)
 
     def _now(self, ramp: Ramp) -> float:
         """Where a ramp is now."""
@@ -247,10 +244,6 @@ class Dynamics:
         n = self.problem.n
         return self.candidates.reference + self.q[: 2 * n].reshape(2, n).T
 
-    def height(self, disk: int) -> float:
-        """Of the centre of a disk now."""
-        return float(self.candidates.reference[disk, 1] + self.q[self.problem.n + disk])
-
     @property
     def angle(self) -> FloatArray:
         """(n,) rotations now."""
@@ -297,12 +290,11 @@ class Dynamics:
         count_closed(self.touching() if touching is None else touching, c.first, c.second, c.wall_disk, count)
         return count
 
-    def kinetic_energy(self, *, bearing_only: bool = False, count: NDArray[np.int64] | None = None) -> float:
-        """Kinetic energy per disk; optionally of the disks with two contacts or more (``count``, if it is known)."""
+    def kinetic_energy(self, *, bearing_only: bool = False) -> float:
+        """Kinetic energy per disk; optionally of the disks with two contacts or more."""
         energies = 0.5 * self.v**2 / self.problem.inverse_mass
         if bearing_only:
-            count = self.contact_count() if count is None else count
-            energies = energies.reshape(self.problem.freedoms, -1)[:, count >= 2]
+            energies = energies.reshape(self.problem.freedoms, -1)[:, self.contact_count() >= 2]
         return float(energies.sum()) / self.problem.n
 
     def rolling(self, touching: NDArray[np.bool_], count: NDArray[np.int64]) -> tuple[int, float]:
@@ -311,9 +303,7 @@ class Dynamics:
         They bear no load and may roll for ever. ``touching``, ``count`` : closed contacts, and how many each disk has.
         """
         c = self.candidates
-        rollers, energy = rolling(
-            touching, len(c.first), count, c.wall_disk, c.wall, self.v, self.problem.inverse_mass
-        )  # fmt: skip
+        rollers, energy = rolling(touching, len(c.first), count, c.wall_disk, c.wall, self.v, self.problem.inverse_mass)
         return rollers, energy / self.problem.n
 
     def in_flight(self, touching: NDArray[np.bool_]) -> bool:
@@ -362,13 +352,12 @@ class Relaxation:
     """Ramps of gravity and load that start now, and the relaxation to rest after them.
 
     It advances step by step under its owner's control: after each ``RelaxationOptions.check_every`` time steps of
-    ``dynamics``,
-    :meth:`look` says whether it has ended. :meth:`run` does both.
+    ``dynamics``, :meth:`look` says whether it has ended. :func:`relax` does both.
 
     Parameters
     ----------
     dynamics : the packing; ``stop`` : when it ends; ``gravity``, ``load`` : linear ramps ``(from, to, duration)``.
-    progress : called with the steps done and the kinetic energy per disk.
+    progress : called with the dynamics and the kinetic energy per disk.
     """
 
     def __init__(
@@ -378,7 +367,7 @@ class Relaxation:
         *,
         gravity: Ramp = (1.0, 1.0, 0.0),
         load: Ramp = (0.0, 0.0, 0.0),
-        progress: Callable[[int, float], None] | None = None,
+        progress: Callable[[Dynamics, float], None] | None = None,
     ):
         dynamics.set_ramps(gravity, load)
         self.dynamics = dynamics
@@ -414,7 +403,7 @@ class Relaxation:
         self.largest = max(self.largest, energy)
         fallen = energy <= stop.fallen * self.largest or energy < OPTIONS.motionless
         if self.progress is not None:
-            self.progress(dynamics.steps - self.started, energy)
+            self.progress(dynamics, energy)
         if dynamics.time < self.ramp_time:
             return
         if dynamics.load[1] and (lifted := dynamics.lifted_disk()) is not None:
@@ -441,13 +430,6 @@ class Relaxation:
         quiet = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
         self.settled = quiet and fallen and dynamics.time >= stop.least_time and not dynamics.in_flight(touching)
 
-    def run(self) -> State:
-        """Advance until it has ended; returns :meth:`state`."""
-        while not self.ended:
-            self.dynamics.advance(OPTIONS.check_every)
-            self.look()
-        return self.state()
-
     def state(self) -> State:
         """The state reached, with all that :class:`Reached` says of dynamics."""
         dynamics = self.dynamics
@@ -471,7 +453,7 @@ def relax(
     *,
     gravity: Ramp = (1.0, 1.0, 0.0),
     load: Ramp = (0.0, 0.0, 0.0),
-    progress: Callable[[int, float], None] | None = None,
+    progress: Callable[[Dynamics, float], None] | None = None,
 ) -> State:
     """Run ramps of gravity and load, then relax to rest; arguments and result as of :class:`Relaxation`.
 
@@ -480,4 +462,8 @@ def relax(
     DynamicsError
         When the motion blows up, or a load carries a disk off.
     """
-    return Relaxation(dynamics, stop, gravity=gravity, load=load, progress=progress).run()
+    relaxation = Relaxation(dynamics, stop, gravity=gravity, load=load, progress=progress)
+    while not relaxation.ended:
+        dynamics.advance(OPTIONS.check_every)
+        relaxation.look()
+    return relaxation.state()

@@ -173,7 +173,21 @@ class _Descent:
             self.damping = 1e-4 * self.stiffness
 
     def _go_down_from_saddle(self) -> None:
-        self._move(*_down_from_saddle(self.system, self.known, self.external, self.q, self.trial))
+        """Go from near a saddle along its unstable direction, in doubled lengths as long as energy falls."""
+        direction = unstable_direction(self.system, self.trial)
+        best = (self.q, self.trial)
+        for sense in (1.0, -1.0):
+            length = OPTIONS.shortest_escape / self.stiffness * sense
+            while abs(length) < OPTIONS.longest_step:
+                q = self.q + length * direction
+                there = self.system.trial(self.known, q)
+                if sense * float((there.contact_force + self.external) @ direction) <= 0.0:
+                    break
+                best = (q, there)
+                length *= 2.0
+            if best[1] is not self.trial:
+                break
+        self._move(*best)
         self.damping = OPTIONS.little_damped * self.stiffness
 
     def _damp(self, factor: float) -> None:
@@ -214,20 +228,3 @@ class _Descent:
             self.damping = OPTIONS.less * self.damping if self.damping > 1e-9 * self.stiffness else 0.0
         elif ratio < OPTIONS.poor:
             self._damp(OPTIONS.more)
-
-
-def _down_from_saddle(system: StaticSystem, known, external, q, trial: Trial) -> tuple[FloatArray, Trial]:
-    """Go from near a saddle along its unstable direction, in doubled lengths as long as energy falls."""
-    direction = unstable_direction(system, trial)
-    best = (q, trial)
-    for sense in (1.0, -1.0):
-        length = OPTIONS.shortest_escape / system.problem.stiffness * sense
-        while abs(length) < OPTIONS.longest_step:
-            there = system.trial(known, q + length * direction)
-            if sense * float((there.contact_force + external) @ direction) <= 0.0:
-                break
-            best = (q + length * direction, there)
-            length *= 2.0
-        if best[1] is not trial:
-            break
-    return best

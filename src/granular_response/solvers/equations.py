@@ -98,16 +98,16 @@ class Equations:
         box = problem.packing.box
         d = box.separation(self.reference[self.first], self.reference[self.second])
         self.dx0, self.dz0 = np.ascontiguousarray(d[:, 0]), np.ascontiguousarray(d[:, 1])
-        self.gap0 = np.hypot(d[:, 0], d[:, 1]) - (radius[self.first] + radius[self.second])
-        self.wall_gap0 = box.wall_gap(self.reference[self.wall_disk], radius[self.wall_disk], self.wall)
+        gap = np.hypot(d[:, 0], d[:, 1]) - (radius[self.first] + radius[self.second])
+        wall_gap = box.wall_gap(self.reference[self.wall_disk], radius[self.wall_disk], self.wall)
         self.wall_normals = wall_normals(self.wall)
         distance = np.sqrt(self.dx0 * self.dx0 + self.dz0 * self.dz0)  # rounded as that of a trial where nothing moves
         self.pairs = statics.Pairs(
-            self.first, self.second, self.dx0, self.dz0, distance, self.gap0,
+            self.first, self.second, self.dx0, self.dz0, distance, gap,
             problem.pair_shapes(self.first, self.second), problem.pair_law,
         )  # fmt: skip
         self.walls = statics.Walls(
-            self.wall_disk, self.wall_normals, self.wall_gap0, problem.wall_shapes(self.wall_disk), problem.wall_law
+            self.wall_disk, self.wall_normals, wall_gap, problem.wall_shapes(self.wall_disk), problem.wall_law
         )
         self.rolls = self._rolls() if problem.rolls else None
         self.held = problem.held.unknowns(problem.n)
@@ -124,11 +124,6 @@ class Equations:
         arm = np.concatenate([problem.pair_arms(self.first, self.second), problem.wall_arms(self.wall_disk)])
         friction = np.repeat([0.0 if one is None else one.friction for one in kinds], sizes)
         return statics.Rolls(arm, friction, np.repeat([0.0 if one is None else one.stiffness for one in kinds], sizes))
-
-    @property
-    def dissected(self) -> bool:
-        """Whether the packing is too large for a banded factorisation."""
-        return self.pattern.dissected
 
     @property
     def dof(self) -> int:
@@ -195,14 +190,6 @@ class Equations:
         q[self.held] = self.problem.held.shift(self.reference, load_factor)
         return q
 
-    def held_as_in(self, other: FloatArray, q: FloatArray) -> FloatArray:
-        """``q`` (dof,) with held coordinates as in ``other``; ``q`` itself where nothing is held."""
-        if self.held.size == 0:
-            return q
-        q = q.copy()
-        q[self.held] = other[self.held]
-        return q
-
     def trial(
         self,
         known: Configuration,
@@ -261,10 +248,10 @@ class Equations:
             )
         return data
 
-    def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
+    def tangent(self, trial: Trial, shift: float = 0.0) -> sp.csc_array:
         """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`), those that are held for themselves.
 
-        ``shift`` (scalar or (dof,)) is added to the diagonal.
+        ``shift`` is added to the diagonal.
         """
         places, data = self.pattern, self._stiffness(trial)
         if self.held.size:

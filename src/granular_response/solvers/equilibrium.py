@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import SolveError
-from ..state import OPEN, Certificate, FloatArray, State
+from ..state import Certificate, FloatArray, State
 from .problem import Problem
 from .stability import negative_modes
 from .system import Configuration, StaticSystem, Trial
@@ -150,17 +150,15 @@ def unbalanced(problem: Problem, state: State) -> tuple[FloatArray, FloatArray]:
     np.add.at(force, problem.load_disk, state.load_factor * problem.load[:, :2])
     np.add.at(torque, problem.load_disk, state.load_factor * problem.load[:, 2])
     pair_force, wall_force = state.pair_force(), state.wall_force()
-    np.add.at(force, state.pairs.first, pair_force)
-    np.add.at(force, state.pairs.second, -pair_force)
-    np.add.at(force, state.walls.first, wall_force)
-    for index, tangential in (
-        (state.pairs.first, state.pairs.tangential_force),
-        (state.pairs.second, state.pairs.tangential_force),
-        (state.walls.first, state.walls.tangential_force),
+    pairs, walls = state.pairs, state.walls
+    for index, push, tangential in (
+        (pairs.first, pair_force, pairs.tangential_force),
+        (pairs.second, -pair_force, pairs.tangential_force),
+        (walls.first, wall_force, walls.tangential_force),
     ):
+        np.add.at(force, index, push)
         np.add.at(torque, index, -radius[index] * tangential)
     if problem.rolls:
-        pairs, walls = state.pairs, state.walls
         couple = problem.pair_arms(pairs.first, pairs.second) * pairs.rolling_force
         np.add.at(torque, pairs.first, couple)
         np.add.at(torque, pairs.second, -couple)
@@ -186,19 +184,16 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
     n, held = problem.n, problem.held
     force, torque = unbalanced(problem, state)
     force[held.disk, held.axis] = problem.stiffness * held.shift(state.position, state.load_factor)
-    normal = np.concatenate([state.pairs.normal_force, state.walls.normal_force])
-    excess = np.concatenate(
-        [
-            np.abs(state.pairs.tangential_force) - problem.pair_law.friction * np.abs(state.pairs.normal_force),
-            np.abs(state.walls.tangential_force) - problem.wall_law.friction * np.abs(state.walls.normal_force),
-        ]
-    )
-    beyond = 0.0
-    for contacts, rolling in ((state.pairs, problem.pair_rolling), (state.walls, problem.wall_rolling)):
+    excess = beyond = 0.0
+    smallest = np.inf
+    for contacts, law, _, rolling in problem.kinds(state):
+        closed, normal = contacts.touching, contacts.normal_force
+        over = np.abs(contacts.tangential_force) - law.friction * np.abs(normal)
+        excess = max(excess, float(over[closed].max(initial=0.0)))
+        smallest = min(smallest, float(normal[closed].min(initial=np.inf)))
         if rolling is not None:
-            over = np.abs(contacts.rolling_force) - rolling.friction * np.abs(contacts.normal_force)
-            beyond = max(beyond, float(over[contacts.touching].max(initial=0.0)))
-    closed = np.concatenate([state.pairs.status, state.walls.status]) != OPEN
+            over = np.abs(contacts.rolling_force) - rolling.friction * np.abs(normal)
+            beyond = max(beyond, float(over[closed].max(initial=0.0)))
     bears = problem.weight.copy()
     for disks, forces in (
         (state.pairs.first, state.pairs.normal_force),
@@ -211,8 +206,8 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
     return Certificate(
         force_residual=float(np.abs(force).max()),
         torque_residual=float(np.abs(torque).max()) if problem.rotations else 0.0,
-        coulomb_excess=max(0.0, float(excess[closed].max(initial=0.0))),
-        smallest_normal_force=float(normal[closed].min(initial=np.inf)),
+        coulomb_excess=excess,
+        smallest_normal_force=smallest,
         kinetic_energy=float(energy) / n,
         negative_modes=modes,
         loose_disks=int((state.contact_count() < 2).sum()),

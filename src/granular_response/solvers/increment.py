@@ -67,15 +67,19 @@ def solve_increment(
 
     ``guess`` (dof,) is a prediction of the displacements.
     """
-    trial, report = newton(system, known, external, guess, maximum_iterations=OPTIONS.direct)
-    work.factorisations += report.iterations
-    if report.converged:
-        work.increments += 1
-        return trial
-    if not system.problem.rotations:
-        return None
+
+    def on_true_law(q: FloatArray) -> Trial | None:
+        trial, report = newton(system, known, external, q, maximum_iterations=OPTIONS.direct)
+        work.factorisations += report.iterations
+        work.increments += report.converged
+        return trial if report.converged else None
+
+    found = on_true_law(guess)
+    if found is not None or not system.problem.rotations:
+        return found
     limits = system.limits(system.trial(known, known.q))
-    q = system.held_as_in(guess, known.q)
+    q = known.q.copy()
+    q[system.held] = guess[system.held]
     before_rounds = work.factorisations
     for done in range(1, OPTIONS.rounds + 1):
         if work.factorisations - before_rounds > OPTIONS.most:
@@ -88,12 +92,8 @@ def solve_increment(
         change = float(np.abs(limits - before).max(initial=0.0))
         if done >= OPTIONS.settled_by and change > OPTIONS.slow:
             return None
-        if done > OPTIONS.first_try:
-            true, report = newton(system, known, external, q, maximum_iterations=OPTIONS.direct)
-            work.factorisations += report.iterations
-            if report.converged:
-                work.increments += 1
-                return true
+        if done > OPTIONS.first_try and (found := on_true_law(q)) is not None:
+            return found
     return None
 
 
@@ -119,12 +119,11 @@ def minimise_with_limits(
             return trial
         if left == 0:
             break
+        work.factorisations += 1
         try:
             step = system.step(trial, r, shift)
         except RuntimeError:  # exactly singular
             return trial
-        finally:
-            work.factorisations += 1
         length = float(np.abs(step).max())
         if not np.isfinite(length):
             return trial

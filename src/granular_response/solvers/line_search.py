@@ -37,7 +37,6 @@ def shortened(
     high, at_high = 1.0, float((trial.contact_force + external) @ step)
     if at_high >= -beyond * slope:
         return step, trial
-    part = 1.0
     for k in range(TRIALS):
         secant = low + (high - low) * at_low / (at_low - at_high)
         part = secant if k % 2 == 0 else 0.5 * (low + high)

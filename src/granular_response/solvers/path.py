@@ -34,7 +34,7 @@ from ..errors import SolveError
 from ..kernels import events
 from ..linalg.updated import Updated
 from ..state import OPEN, ROLLING_EVENTS, SLIDING, STICKING, Event, FloatArray, Reached, State
-from .dynamics import Dynamics, Stop
+from .dynamics import Stop
 from .equilibrium import OPTIONS as NEWTON
 from .equilibrium import attainable, certify, external_force
 from .increment import Work, solve_increment
@@ -139,7 +139,6 @@ def follow(
     *,
     together: float | None = None,
     lowest: float = -np.inf,
-    options: PathOptions = OPTIONS,
     progress: Callable[[float], None] | None = None,
     record: PathRecord | None = None,
 ) -> list[State]:
@@ -162,7 +161,7 @@ def follow(
     PathError
         When the motion does not settle either: the packing collapses or cycles under this load.
     """
-    path = _Path(problem, together, lowest, options, PathRecord() if record is None else record, progress)
+    path = _Path(problem, together, lowest, PathRecord() if record is None else record, progress)
     states: list[State] = []
     for factor in factors:
         states.append(path.to(states[-1] if states else start, float(factor)))
@@ -172,16 +171,14 @@ def follow(
 class _Path:
     """One load path; nothing is remembered from one kept state to the next but what it has cost."""
 
-    def __init__(self, problem, together, lowest, options, record, progress):
+    def __init__(self, problem, together, lowest, record, progress):
         self.problem: Problem = problem
-        self.options: PathOptions = options
         self.record: PathRecord = record
         self.progress: Callable[[float], None] | None = progress
         self.asked, self.lowest = together, lowest
         self.unit = problem.load_size
         self.weight = external_force(problem, 0.0)
         self.load = external_force(problem, 1.0) - self.weight
-        self.jump = options.jump / self.unit
         laws = problem.pair_law, problem.wall_law
         self.stiffest = max(law.tangential_stiffness for law in laws)
         #: whether the stiffness of contacts varies with their overlap
@@ -193,11 +190,11 @@ class _Path:
             return replace(start, reached=replace(start.reached, events=()))
         self.begun, self.start = len(self.record.events), start
         self.target, self.direction = target, 1.0 if target >= start.load_factor else -1.0
-        self.jump = self.options.jump / self.unit
+        self.jump = OPTIONS.jump / self.unit
         self.together = self.asked or None
         point = self._at(start)
-        if self.asked is None and self.system.dissected:
-            self.together = min(self.options.together * self.problem.n**0.5, self.options.longest)
+        if self.asked is None and self.system.pattern.dissected:
+            self.together = min(OPTIONS.together * self.problem.n**0.5, OPTIONS.longest)
         self.guide = {}
         state = self._followed(point, start)
         if self.together is None or point.factor == target:
@@ -226,17 +223,18 @@ class _Path:
         self.passed: dict[float, FloatArray] = {}
         self.singly_until = start.load_factor
         point = self._balanced(point)
+        n = self.problem.n
         returned = 0  #: times that the equilibrium at the target was unstable
         while True:
             still = 0  #: points in turn at one load
             while point.factor != self.target:
                 before, system, known = point, self.system, len(self.record.events)
-                point = self._advance(point, still > self.options.still)
+                point = self._advance(point, still > OPTIONS.still)
                 lost = any(event.lost for event in self.record.events[known:])
                 if watched and self.system is system and not lost:
                     point = self._first_unstable(before, point)
-                still = still + 1 if abs(point.factor - before.factor) * self.unit < self.event else 0
-                self._look_down(point)
+                still = still + 1 if abs(point.factor - before.factor) * self.unit < self.rates.force else 0
+                self._look_down(point.factor, self.system.reference[:, 1] + point.known.q[n : 2 * n])
                 if self.progress is not None:
                     self.progress(point.factor)
             state = self._state(point)
@@ -245,7 +243,7 @@ class _Path:
             if not watched:
                 return self._followed(self._at(start), start, watched=True)
             returned += 1
-            if returned > self.options.still:
+            if returned > OPTIONS.still:
                 raise PathError(f"the equilibrium at load factor {self.target:g} is unstable, and motion returns to it")
             try:
                 point = self._by_motion(point, "bifurcation", "unstable", None)
@@ -265,7 +263,7 @@ class _Path:
             return point
         rates = self.rates.solve(before.trial, before.due) if self.together is None else None
         stable, length, last = 0.0, abs(point.factor - before.factor), before
-        while (length - stable) * self.unit > self.options.stability:
+        while (length - stable) * self.unit > OPTIONS.stability:
             middle = 0.5 * (stable + length)
             factor = before.factor + self.direction * middle
             if rates is not None:
@@ -300,9 +298,8 @@ class _Path:
         """A point of a new system around the positions and candidates of a state."""
         self.system = StaticSystem(self.problem, state)
         trial = self.system.at(state)
-        force = max(self.options.event, 10.0 * attainable(self.system, trial.configuration.q))
-        self.rates = RateProblem(self.system, self.direction, force=force, negligible=self.options.negligible)
-        self.event = force
+        force = max(OPTIONS.event, 10.0 * attainable(self.system, trial.configuration.q))
+        self.rates = RateProblem(self.system, self.direction, force=force, negligible=OPTIONS.negligible)
         self.velocity: FloatArray | None = None
         turned, moved = state.angle - self.start.angle, state.position - self.start.position
         self.origin = np.concatenate([moved.T.ravel(), turned])[: self.system.dof]
@@ -312,7 +309,7 @@ class _Path:
     def _balanced(self, point: Point) -> Point:
         """A start that dynamics alone has left nearly at rest: the equilibrium beside it."""
         external = self._external(point.factor)
-        if float(np.abs(point.trial.contact_force + external).max(initial=0.0)) < 10.0 * self.event:
+        if float(np.abs(point.trial.contact_force + external).max(initial=0.0)) < 10.0 * self.rates.force:
             return point
         found = solve_increment(self.system, point.known, external, point.known.q, self.record.work)
         if found is None:
@@ -342,19 +339,19 @@ class _Path:
             return self._relisted(self._lost(point, "no statuses of the contacts go on"))
         self._record(point, rates.sense)
         self.velocity = rates.velocity
-        direction = self._unstable(point, rates)
-        if direction is not None:
-            return self._by_motion(point, "bifurcation", "unstable", direction)
+        negative, before = rates.factor.negative_pivots, self.suspect
+        self.suspect = negative
+        if negative not in (0, before):  # real eigenvalues have passed zero
+            direction = self._direction(point.trial, rates.sense)
+            if direction is not None:
+                return self._by_motion(point, "bifurcation", "unstable", direction)
         landed = self._landed(point, rates)
         return self._relisted(self._lost(point, "no equilibrium with these statuses") if landed is None else landed)
 
-    def _look_down(self, point: Point) -> None:
-        """Raise where the first loaded disk has sunk too far."""
-        if self.lowest > -np.inf:
-            disk = int(self.problem.load_disk[0])
-            height = float(self.system.reference[disk, 1] + point.known.q[self.problem.n + disk])
-            if height < self.lowest:
-                raise Collapsed(point.factor, height)
+    def _look_down(self, load: float, heights: FloatArray) -> None:
+        """Raise where the first loaded disk has sunk too far, of disks at ``heights`` (n,)."""
+        if self.lowest > -np.inf and (height := float(heights[self.problem.load_disk[0]])) < self.lowest:
+            raise Collapsed(load, height)
 
     def _towards(self, factor: float, step: float) -> float:
         """A load factor one ``step`` on, or the target where that is no more than a tenth of a step away."""
@@ -364,22 +361,22 @@ class _Path:
         """Where the next contact changes, or the target or the end of the longest increment if that comes first."""
         changes, fastest = rates.changes, float(np.abs(rates.velocity[: 2 * self.problem.n]).max(initial=0.0))
         left = abs(self.target - point.factor)
-        if fastest * left > self.options.listed_again:
-            left = self.options.listed_again / fastest
+        if fastest * left > OPTIONS.listed_again:
+            left = OPTIONS.listed_again / fastest
         contact, length = changes.first()
         what = int(changes.what[contact])
         passed_at = np.inf  #: length of an increment within which a contact is known to change
-        for _ in range(self.options.landings):
+        for _ in range(OPTIONS.landings):
             event = (contact, what) if length < left else None
             found = self._smooth(point, rates, min(length, left), event)
             if found is None:
                 left = 0.5 * min(length, left)
-                if left * self.unit < self.options.beyond:
+                if left * self.unit < OPTIONS.beyond:
                     return None
                 continue
             factor, trial = found
             ahead = self.direction * (factor - point.factor)
-            if event is not None and ahead * self.unit < -self.event:
+            if event is not None and ahead * self.unit < -self.rates.force:
                 left, length = 0.5 * min(length, left), np.inf  # another branch: the load would go back
                 continue
             if event is not None and ahead > left:
@@ -387,10 +384,10 @@ class _Path:
                 left, length = (0.5 * left if left == passed_at else left), np.inf
                 continue
             far = np.abs(trial.configuration.q - point.known.q)[: 2 * self.problem.n].max(initial=0.0)
-            again = self.varying or far > self.options.straight  # whether rates are found at the end too
+            again = self.varying or far > OPTIONS.straight  # whether rates are found at the end too
             velocity = self._velocity(trial, rates.sense) if again else rates.velocity
             then = self.rates.changes(trial, velocity, rates.sense)
-            passed = np.flatnonzero((then.rate > 0.0) & (then.left < -self.event))
+            passed = np.flatnonzero((then.rate > 0.0) & (then.left < -self.rates.force))
             if len(passed):  # another contact came first
                 back = -then.left[passed] / then.rate[passed]
                 contact = int(passed[np.argmax(back)])
@@ -402,13 +399,13 @@ class _Path:
                 left, length = turn, np.inf
                 continue
             bent = self.stiffest * trial.bend
-            if bent > self.options.bent:
-                part = min(0.5, 0.8 * (self.options.bent / bent) ** (1 / 3))
+            if bent > OPTIONS.bent:
+                part = min(0.5, 0.8 * (OPTIONS.bent / bent) ** (1 / 3))
                 left, length = part * abs(factor - point.factor), np.inf
                 continue
             self.record.work.increments += 1
-            self.jump = self.options.jump / self.unit
-            due = then.due(self.event)
+            self.jump = OPTIONS.jump / self.unit
+            due = then.due(self.rates.force)
             if not again:  # what the rates of the start say of contacts that bear nothing is the turn on the way
                 due = due[(changes.rate[due] > 0.0) | (due == contact)]
             return Point(factor, trial, rates.sense, self.system.coupled(changed(rates.sense, due, then.what)))
@@ -434,7 +431,7 @@ class _Path:
         falls = zip(back.tolist(), way.tolist(), strict=True)
         ahead = np.array([max(self.rates.fall(point.known.q, c, w, rates.velocity), 0.0) for c, w in falls])
         turns = length * ahead / (ahead + then.rate[back])  # were the rate of slip linear
-        late = 0.5 * then.rate[back] * (length - turns) > self.event
+        late = 0.5 * then.rate[back] * (length - turns) > self.rates.force
         for k in np.flatnonzero(late)[np.argsort(turns[late], kind="stable")]:
             c, w = int(back[k]), int(way[k])
 
@@ -447,7 +444,7 @@ class _Path:
                 return self.rates.fall(trial.configuration.q, c, w, self._velocity(trial, rates.sense))
 
             # slip beyond its turn grows as the square of the length
-            beyond = float(np.sqrt(self.event * length / (ahead[k] + then.rate[c])))
+            beyond = float(np.sqrt(self.rates.force * length / (ahead[k] + then.rate[c])))
             if slip(0.0) > 0.0 and slip(length) >= 0.0:
                 return 0.5 * length  # the event that was found lies on another branch, beyond a limit point
             turn = float(brentq(slip, 0.0, length, xtol=0.25 * beyond)) if slip(0.0) > 0.0 else 0.0
@@ -463,13 +460,13 @@ class _Path:
         With an ``event``, a contact and what it does, the load factor is an unknown too: that at which the contact does
         it. Newton's method by the tangent at ``point``, or by that of an iterate where it does not lead there soon.
         """
-        options, known = self.options, point.known
+        known = point.known
         at_end = event is None and length >= abs(self.target - point.factor)
         factor = self.target if at_end else point.factor + self.direction * length
         by, velocity, system = rates.factor, rates.velocity, self.system
         q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
-        before, enough, stalled = np.inf, NEWTON.enough if event is None else options.passing, False
-        for done in range(options.newton):
+        before, enough, stalled = np.inf, NEWTON.enough if event is None else OPTIONS.passing, False
+        for done in range(OPTIONS.newton):
             ahead = abs(factor - point.factor) * rates.velocity
             trial = system.trial(known, q, fixed=rates.sense, ahead=ahead, tangent=False)
             force = trial.contact_force + self._external(factor)
@@ -479,12 +476,12 @@ class _Path:
                 return None
             rounding = size > 0.5 * before and size <= attainable(system, q)
             # a contact that began to slide a little early leaves a torque on a disk of which all contacts slide
-            left_over = stalled and size > options.slow * before and size <= self.event
+            left_over = stalled and size > OPTIONS.slow * before and size <= self.rates.force
             balanced = size <= enough or rounding or left_over
-            if balanced and abs(left) <= 0.5 * self.event:
+            if balanced and abs(left) <= 0.5 * self.rates.force:
                 return factor, trial
-            stalled = size > options.slow * before
-            if stalled or done % options.same_tangent == options.same_tangent - 1:
+            stalled = size > OPTIONS.slow * before
+            if stalled or done % OPTIONS.same_tangent == OPTIONS.same_tangent - 1:
                 renewed = self._renewed(trial, rates.sense)
                 if renewed is None:
                     return None
@@ -505,25 +502,14 @@ class _Path:
             q = system.displaced(q + step, factor)
         return None
 
-    def _unstable(self, point: Point, rates: Rates) -> FloatArray | None:
-        """(dof,) direction in which the equilibrium diverges with these statuses, or None.
-
-        Looked for where the number of negative pivots of the tangent has changed: real eigenvalues pass zero there.
-        """
-        negative = rates.factor.negative_pivots
-        before, self.suspect = self.suspect, negative
-        if negative in (0, before):
-            return None
-        return self._direction(point.trial, rates.sense)
-
     def _relisted(self, point: Point) -> Point:
         """Where disks have moved so far that others may be near: candidates listed anew."""
         moved = np.abs(point.known.q[: 2 * self.problem.n]).max(initial=0.0)
-        if moved <= self.options.listed_again and point.factor != self.target:
+        if moved <= OPTIONS.listed_again and point.factor != self.target:
             return point
         if self.system.meets_unlisted(point.known.q):
             return self._by_motion(point, "jump", "disks meet that were not neighbours", None)
-        if moved <= self.options.listed_again:
+        if moved <= OPTIONS.listed_again:
             return point
         self._count()
         keys = self.system.status_keys()
@@ -538,13 +524,12 @@ class _Path:
         Motion alone would shake contacts off their limit where slow loading passes: in a slab of 32 disks at friction 1
         it leaves twice the distance from slow dynamics.
         """
-        new = self._towards(point.factor, self.options.beyond / self.unit)
+        new = self._towards(point.factor, OPTIONS.beyond / self.unit)
         found = self._increased(point, new)
         if found is not None:
-            n = 2 * self.problem.n
-            moved = found.configuration.q - point.known.q
-            far = float(np.abs(moved[:n]).max(initial=0.0))
-            if far <= self.options.nearby:
+            n = self.problem.n
+            moved = (found.configuration.q - point.known.q)[: 2 * n].reshape(2, n).T
+            if np.abs(moved).max(initial=0.0) <= OPTIONS.nearby:
                 self._record_lost("stepped over", point, new, moved, reason)
                 self._record(point, found.sense, until=new)
                 return Point(new, found, found.sense, found.sense)
@@ -565,22 +550,16 @@ class _Path:
             return state.certificate.stable is True or divergence(self.system, found[0].trial) is None
 
         protocol = self.problem.scene.protocol
-
-        def watch(dynamics: Dynamics) -> None:
-            if self.lowest > -np.inf and (height := dynamics.height(int(self.problem.load_disk[0]))) < self.lowest:
-                raise Collapsed(new, height)
-
         try:
             settled = settle(
                 self.problem, start, CROSSING, Stop(CROSSING_STOP, maximum_steps=protocol.maximum_steps),
                 what=f"load factor {new:g}", accept=accept,
                 load=(point.factor, new, protocol.ramp_time * abs(new - point.factor)),
-                watch=watch,
+                progress=lambda dynamics, _: self._look_down(new, dynamics.position[:, 1]),
             )  # fmt: skip
         except NotSettled as error:
             raise PathError(f"no equilibrium beyond load factor {point.factor:g}: {error}") from error
-        moved = (settled.position - here.position).T.ravel()
-        self._record_lost(kind, point, new, moved, reason)
+        self._record_lost(kind, point, new, settled.position - here.position, reason)
         self.jump *= 2.0
         return replace(found[0], factor=new)
 
@@ -641,14 +620,16 @@ class _Path:
             ]
 
     def _record_lost(self, kind: str, point: Point, until: float, moved: FloatArray, reason: str) -> None:
-        """The loss of the equilibrium ``point``, from which disks have moved by ``moved`` ([x | z]) to the next one."""
-        n = self.problem.n
-        far = np.hypot(moved[:n], moved[n : 2 * n])
-        i = int(np.argmax(far))
-        x, z = self.system.reference[i]
-        self.record.events.append(
-            Event(point.factor, kind, i, -1, False, float(x), float(z), until, float(far[i]), reason)
-        )
+        """The loss of the equilibrium ``point``, from which disks have moved by ``moved`` (n, 2) to the next one."""
+        self.record.events.append(lost(kind, point.factor, until, self.system.reference, moved, reason))
+
+
+def lost(kind: str, factor: float, until: float, position: FloatArray, moved: FloatArray, reason: str) -> Event:
+    """The loss of an equilibrium, after which disks at ``position`` (n, 2) have moved by ``moved`` (n, 2)."""
+    far = np.hypot(*moved.T)
+    i = int(np.argmax(far))
+    x, z = position[i]
+    return Event(factor, kind, i, x=float(x), z=float(z), until=until, displacement=float(far[i]), reason=reason)
 
 
 def carried(before: NDArray[np.int64], after: NDArray[np.int64], sense: np.ndarray) -> np.ndarray:

@@ -78,8 +78,8 @@ class Pattern:
         """(K + K^T) / 2 of a tangent."""
         return self.matrix(0.5 * (matrix.data + matrix.data[self.storage.across(matrix)]))
 
-    def with_shift(self, matrix: sp.csc_array, shift: float | FloatArray) -> sp.csc_array:
-        """A tangent with ``shift`` (scalar or (n d,)) added to its diagonal."""
+    def with_shift(self, matrix: sp.csc_array, shift: float) -> sp.csc_array:
+        """A tangent with ``shift`` added to its diagonal."""
         data = matrix.data.copy()
         data[self.diagonal] += shift
         return self.matrix(data)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,10 +57,6 @@ class Candidates:
     shape: FloatArray | None  #: (slots,) what the law needs of the radii; None for a law that needs nothing
     wall_shape: FloatArray | None  #: (w,)
     limit: float
-
-    @property
-    def slots(self) -> int:
-        return len(self.reach)
 
     def __repr__(self) -> str:
         return f"Candidates({len(self.first)} pairs, {len(self.wall_disk)} at walls, limit={self.limit:g})"
@@ -122,6 +119,15 @@ def _rolling(contact: Contact) -> Rolling | None:
     if not contact.rolls:
         return None
     return Rolling(contact.rolling_stiffness, contact.rolling_damping, contact.rolling_friction)
+
+
+class Kind(NamedTuple):
+    """Contacts of one kind, and their laws."""
+
+    contacts: Contacts
+    law: Law
+    shape: FloatArray | None  #: (m,) what the law needs of the radii
+    rolling: Rolling | None
 
 
 @dataclass(frozen=True, repr=False)
@@ -336,13 +342,9 @@ class Problem:
 
     def bare_state(self) -> State:
         """The unloaded initial packing: no displacement, no motion, no springs."""
+        n, none = self.n, spring_contacts((), ())
         position = np.array(self.packing.position, float)
-        candidates = self.list_candidates(position)
-        n = self.n
-        pairs = spring_contacts(candidates.first, candidates.second)
-        walls = spring_contacts(candidates.wall_disk, candidates.wall)
-        state = State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), pairs, walls, self.packing.box)
-        return self.with_static_forces(state)
+        return self.relisted(State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), none, none, self.packing.box))
 
     def relisted(self, state: State) -> State:
         """The same state on candidates listed anew around its positions.
@@ -359,22 +361,23 @@ class Problem:
 
     def with_static_forces(self, state: State) -> State:
         """The state with overlaps, spring forces and statuses made from its positions and springs."""
-        position, radius = state.position, self.packing.radius
-        i, j = state.pairs.first, state.pairs.second
+        radius, k = self.packing.radius, state.walls.first
         distance = np.linalg.norm(state.pair_separation(), axis=1)
-        k = state.walls.first
-        gap = self.packing.box.wall_gap(position[k], radius[k], state.walls.second)
-        return replace(
-            state,
-            pairs=static_contacts(
-                i, j, radius[i] + radius[j] - distance, state.pairs.spring, self.pair_shapes(i, j), self.pair_law,
-                self.pair_rolling, state.pairs.rolling_spring,
-            ),
-            walls=static_contacts(
-                k, state.walls.second, -gap, state.walls.spring, self.wall_shapes(k), self.wall_law,
-                self.wall_rolling, state.walls.rolling_spring,
-            ),
-        )  # fmt: skip
+        gap = self.packing.box.wall_gap(state.position[k], radius[k], state.walls.second)
+        overlaps = radius[state.pairs.first] + radius[state.pairs.second] - distance, -gap
+        pairs, walls = (
+            static_contacts(one.first, one.second, overlap, one.spring, shape, law, rolling, one.rolling_spring)
+            for (one, law, shape, rolling), overlap in zip(self.kinds(state), overlaps, strict=True)
+        )
+        return replace(state, pairs=pairs, walls=walls)
+
+    def kinds(self, state: State) -> tuple[Kind, Kind]:
+        """The contacts of a state between disks, then those at walls, each with its laws."""
+        pairs, walls = state.pairs, state.walls
+        return (
+            Kind(pairs, self.pair_law, self.pair_shapes(pairs.first, pairs.second), self.pair_rolling),
+            Kind(walls, self.wall_law, self.wall_shapes(walls.first), self.wall_rolling),
+        )
 
 
 def carry_springs(n: int, contacts: Contacts, first, second) -> tuple[FloatArray, FloatArray]:

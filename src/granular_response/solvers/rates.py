@@ -80,15 +80,9 @@ def next_changes(
 
 def changed(sense: np.ndarray, contacts: np.ndarray, what: np.ndarray) -> np.ndarray:
     """Signed statuses (m + w,) after ``contacts`` have done what they do next."""
-    new = sense.copy()
-    for c in contacts:
-        does = what[c]
-        if does == events.OPENS:
-            new[c] = OPEN
-        elif abs(does) == events.SLIDES:
-            new[c] = SLIDING if does > 0 else -SLIDING
-        else:
-            new[c] = STICKING
+    new, does = sense.copy(), what[contacts]
+    slides = np.abs(does) == events.SLIDES
+    new[contacts] = np.where(slides, SLIDING * np.sign(does), np.where(does == events.OPENS, OPEN, STICKING))
     return new
 
 

@@ -56,8 +56,7 @@ def settle(
     gravity: Ramp = (1.0, 1.0, 0.0),
     load: Ramp = (0.0, 0.0, 0.0),
     accept: Callable[[State], bool | None] = lambda state: state.certificate.stable,
-    progress: Callable[[int, float], None] | None = None,
-    watch: Callable[[Dynamics], None] | None = None,
+    progress: Callable[[Dynamics, float], None] | None = None,
 ) -> State:
     """The certified equilibrium in which the motion from ``start`` ends.
 
@@ -69,8 +68,7 @@ def settle(
     what : that the packing comes to rest under, for messages.
     gravity, load : linear ramps ``(from, to, duration)``.
     accept : whether an equilibrium will do; by default, when it is stable.
-    progress : called with the steps done and the kinetic energy per disk.
-    watch : called with the dynamics as often, and may end it by raising.
+    progress : called with the dynamics and the kinetic energy per disk; may end the motion by raising.
 
     Raises
     ------
@@ -83,18 +81,12 @@ def settle(
     dynamics = Dynamics(problem, start, integrator, time_step)
     held = (load[1], load[1], 0.0)
 
-    def look(steps: int, energy: float) -> None:
-        if progress is not None:
-            progress(steps, energy)
-        if watch is not None:
-            watch(dynamics)
-
     def left() -> Stop:
         """The stop with what is left of the steps."""
         return replace(stop, maximum_steps=max(stop.maximum_steps - spent - dynamics.steps, 0))
 
     spent = 0  #: steps of motions that have been started again
-    settled = relax(dynamics, replace(stop, fallen=how.fallen), gravity=gravity, load=load, progress=look)
+    settled = relax(dynamics, replace(stop, fallen=how.fallen), gravity=gravity, load=load, progress=progress)
     why = ""
     for attempt in range(1, how.tries + 1):
         kinetic = settled.reached.kinetic_energy or 0.0
@@ -110,7 +102,9 @@ def settle(
             why = ": the equilibrium found is unstable"
             if how.nudged and attempt > 2:
                 spent += dynamics.steps
-                dynamics = Dynamics(problem, _displaced(problem, found), integrator, time_step)
+                system = StaticSystem(problem, found)
+                displaced = nudged(problem, found, unstable_direction(system, system.at(found)))
+                dynamics = Dynamics(problem, displaced, integrator, time_step)
         except EquilibriumError as error:
             why = f": {error}"
         if not settled.reached.settled or attempt == how.tries or left().maximum_steps == 0:
@@ -143,8 +137,3 @@ def nudged(problem: Problem, state: State, direction: FloatArray) -> State:
     n = problem.n
     shift = NUDGE * direction[: 2 * n].reshape(2, n).T
     return problem.with_static_forces(replace(state, position=state.position + shift))
-
-
-def _displaced(problem: Problem, state: State) -> State:
-    system = StaticSystem(problem, state)
-    return nudged(problem, state, unstable_direction(system, system.at(state)))

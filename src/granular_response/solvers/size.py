@@ -9,15 +9,10 @@ from ..scene import Scene, SceneError
 DYNAMICS, STATICS = 700, 5000
 
 
-def least_memory(scene: Scene, disks: int) -> int:
-    """Bytes that solving the scene with so many disks takes at least."""
-    static = scene.protocol.static_finish or scene.protocol.method != "dynamics"
-    return disks * (STATICS if static else DYNAMICS)
-
-
 def check_memory(scene: Scene, disks: int) -> None:
     """Raise SceneError if the scene with so many disks needs more memory than there is."""
-    needed, available = least_memory(scene, disks), memory.available()
+    static = scene.protocol.static_finish or scene.protocol.method != "dynamics"
+    needed, available = disks * (STATICS if static else DYNAMICS), memory.available()
     if available is not None and needed > available:
         raise SceneError(
             f"packing: {disks} disks need at least {needed / 2**30:.3g} GiB of memory, "

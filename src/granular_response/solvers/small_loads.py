@@ -22,14 +22,13 @@ AT_LIMIT = 1e-9
 
 def at_limit(problem: Problem, state: State) -> int:
     """How many closed contacts are at a limit of friction: what they answer depends on the direction of a load."""
-    pairs = state.pairs.near_limit(problem.pair_law.friction if problem.pair_friction else 0.0, AT_LIMIT)
-    walls = state.walls.near_limit(problem.wall_law.friction if problem.wall_friction else 0.0, AT_LIMIT)
-    rolling = 0
-    for contacts, one in ((state.pairs, problem.pair_rolling), (state.walls, problem.wall_rolling)):
-        if one is not None:
-            limit = (1.0 - AT_LIMIT) * one.friction * contacts.normal_force
-            rolling += int((contacts.touching & (np.abs(contacts.rolling_force) >= limit)).sum())
-    return int(pairs.sum() + walls.sum()) + rolling
+    count = 0
+    for contacts, law, _, rolling in problem.kinds(state):
+        count += int(contacts.near_limit(law.friction, AT_LIMIT).sum())
+        if rolling is not None:
+            limit = (1.0 - AT_LIMIT) * rolling.friction * contacts.normal_force
+            count += int((contacts.touching & (np.abs(contacts.rolling_force) >= limit)).sum())
+    return count
 
 
 def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str = "refuse") -> FloatArray:

@@ -13,13 +13,13 @@ import numpy as np
 
 from ..contact import Linear
 from ..scene import Scene, SceneError
-from ..state import Event, FloatArray, State
+from ..state import FloatArray, State
 from .choice import Choice, idle_settings
-from .dynamics import Dynamics, DynamicsError, Stop, relax
+from .dynamics import Dynamics, Stop, relax
 from .energy import minimise
 from .equilibrium import EquilibriumError, certify, check_overlaps, finish, reaction
 from .nested import rest_start
-from .path import follow
+from .path import follow, lost
 from .problem import Problem
 from .settle import PROTOCOL, NotSettled, not_settled, settle
 from .size import check_memory
@@ -84,16 +84,12 @@ class Solution:
         return max(residual, digit) / min(loads)
 
     @property
-    def rounded_off(self) -> str:
-        """How much of the response may be rounding, in one line; empty where that is little."""
-        if self.rounding <= ROUNDED:
-            return ""
-        return f"up to {self.rounding:.1g} of the response to the smallest load may be rounding; take larger loads"
-
-    @property
     def remarks(self) -> list[str]:
         """What whoever asked must know: settings without effect, states that still move, digits that are lost."""
-        return [line for line in (*idle_settings(self.problem), self.unsettled or self.rounded_off) if line]
+        part, rounded = self.rounding, ""
+        if part > ROUNDED:
+            rounded = f"up to {part:.1g} of the response to the smallest load may be rounding; take larger loads"
+        return [line for line in (*idle_settings(self.problem), self.unsettled or rounded) if line]
 
     @property
     def unsettled(self) -> str:
@@ -282,13 +278,8 @@ def _by_minimisation(problem: Problem, before: State, factor: float, progress: P
     except EquilibriumError:
         # the packing collapses or rearranges here: its motion decides where it comes to rest
         state = _by_dynamics(problem, before, factor, progress)
-        moved = np.hypot(*(state.position - before.position).T)
-        disk = int(np.argmax(moved))
-        x, z = before.position[disk]
-        jump = Event(
-            before.load_factor, "jump", disk, x=float(x), z=float(z), until=factor, displacement=float(moved[disk]),
-            reason="no minimum of the energy nearby",
-        )  # fmt: skip
+        moved, reason = state.position - before.position, "no minimum of the energy nearby"
+        jump = lost("jump", before.load_factor, factor, before.position, moved, reason)
         return replace(state, reached=replace(state.reached, events=(jump,)))
 
 
@@ -320,7 +311,7 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
     if progress is not None:
         highest = [stop.kinetic_energy * 10.0, 0.0]
 
-        def report(_: int, energy: float) -> None:
+        def report(_: Dynamics, energy: float) -> None:
             highest[0] = max(highest[0], energy)
             span = np.log(highest[0] / stop.kinetic_energy)
             done = np.log(highest[0] / max(energy, stop.kinetic_energy)) / span
@@ -334,14 +325,3 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
     if protocol.static_finish and not settled.reached.settled:
         raise NotSettled(not_settled(problem, settled, stage))
     return replace(settled, reached=replace(settled.reached, certificate=certify(problem, settled)))
-
-
-__all__ = [
-    "DynamicsError",
-    "NotSettled",
-    "Solution",
-    "continue_solution",
-    "loaded_states",
-    "rest_state",
-    "solve_scene",
-]

@@ -112,7 +112,6 @@ def unstable_direction(system: StaticSystem, trial: Trial) -> FloatArray:
     """
     matrix, scale = _scaled(system, trial)
     symmetric = system.pattern.symmetric_part(matrix)
-    start = np.random.default_rng(0).standard_normal(system.dof)
     if system.dof <= OPTIONS.dense:
         values, every = np.linalg.eig((matrix if _slides(trial) else symmetric).toarray())
         vector = every[:, np.argmin(values.real)].real
@@ -128,7 +127,7 @@ def unstable_direction(system: StaticSystem, trial: Trial) -> FloatArray:
         else:
             factor = system.storage.factor(system.pattern.with_shift(symmetric, origin))
         _, vectors = eigsh(
-            symmetric, k=1, sigma=-origin, which="LM", v0=start,
+            symmetric, k=1, sigma=-origin, which="LM", v0=np.random.default_rng(0).standard_normal(system.dof),
             OPinv=LinearOperator((system.dof, system.dof), factor.solve, dtype=float),
         )  # fmt: skip
         vector = vectors[:, 0]
@@ -146,48 +145,35 @@ def divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
     An unstable direction of the tangent counts only if the contacts that slide do go on sliding along it: those that
     would slip back stick, which makes another tangent with another lowest direction, and so on until they agree.
     """
-    try:
-        return _divergence(system, trial)
-    except Clustered:
-        return None
-
-
-def _divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
     if not negative_modes(system, trial):
         return None
-    lowest = unstable_direction(system, trial)
     sliding = np.flatnonzero(np.abs(trial.sense) == SLIDING)
-    if not len(sliding):
-        return lowest
     slides = trial.sense[sliding]
-    for side in (1.0, -1.0):
-        direction, here = side * lowest, trial
-        for _ in range(OPTIONS.rounds):
-            what = next_changes(system, here, direction, here.sense, 0.0, 0.0).what[sliding]
-            now = here.sense[sliding]
-            after = np.where(what == STICKS, STICKING, np.where(what == np.sign(slides) * SLIDES, slides, now))
-            if np.array_equal(after, now):
+    with suppress(Clustered):
+        lowest = unstable_direction(system, trial)
+        for side in (1.0, -1.0):
+            direction, here = side * lowest, trial
+            for _ in range(OPTIONS.rounds):
+                what = next_changes(system, here, direction, here.sense, 0.0, 0.0).what[sliding]
+                now = here.sense[sliding]
+                after = np.where(what == STICKS, STICKING, np.where(what == np.sign(slides) * SLIDES, slides, now))
+                if np.array_equal(after, now):
+                    return direction
+                sense = here.sense.copy()
+                sense[sliding] = after
+                here = system.trial(trial.configuration, trial.configuration.q, fixed=sense)
+                if not negative_modes(system, here):
+                    break
+                turned = unstable_direction(system, here)
+                direction = turned if float(turned @ direction) >= 0.0 else -turned
+            else:
                 return direction
-            sense = here.sense.copy()
-            sense[sliding] = after
-            here = system.trial(trial.configuration, trial.configuration.q, fixed=sense)
-            if not negative_modes(system, here):
-                break
-            turned = unstable_direction(system, here)
-            direction = turned if float(turned @ direction) >= 0.0 else -turned
-        else:
-            return direction
     return None
 
 
 def _slides(trial: Trial) -> bool:
     """Whether a contact is at a limit, along the tangent or the rolling."""
     return bool((np.abs(trial.sense) == SLIDING).any())
-
-
-def _masses(system: StaticSystem) -> FloatArray:
-    """(dof,) masses and moments of inertia."""
-    return 1.0 / system.problem.inverse_mass[: system.dof]
 
 
 def _too_light(system: StaticSystem, trial: Trial) -> bool:
@@ -212,7 +198,7 @@ def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArra
     matrix = system.tangent(trial)
     idle = np.add.reduceat(np.abs(matrix.data), matrix.indptr[:-1]) == 0.0
     matrix.data[idle[matrix.indices]] = 0.0
-    mass = system.interleave(_masses(system))
+    mass = system.interleave(1.0 / system.problem.inverse_mass)
     scale = 1.0 / np.sqrt(mass)
     columns = np.repeat(np.arange(system.dof), np.diff(matrix.indptr))
     matrix.data *= scale[matrix.indices] * scale[columns]

@@ -1,7 +1,7 @@
 """Solutions with the tangent stiffness of a packing: factorisations made, kept, updated and let go.
 
 The tangent at an equilibrium is K = -dF/dq (:mod:`.equations`); contacts that have changed since a factorisation are a
-matrix of low rank (:mod:`.linear.updated`), in large packings Newton steps are iterations (:mod:`.linear.nearby`).
+matrix of low rank (``linalg.updated``), in large packings Newton steps are iterations (``linalg.nearby``).
 """
 
 from __future__ import annotations
@@ -51,28 +51,26 @@ class StaticSystem(Equations):
         self.renewals = 0  #: factorisations made by :meth:`renewed_factor`
         self._steps = Sequence(self.storage, same=OPTIONS.same_shift * problem.stiffness)
 
-    def factorise(self, trial: Trial, shift: float | FloatArray = 0.0) -> Eliminated:
-        """LU of the tangent, a tiny regularisation included."""
-        return self._factorise(trial, shift, self._regularised(trial, shift))
-
-    def _regularised(self, trial: Trial, shift: float | FloatArray) -> sp.csc_array:
-        """The tangent with ``shift`` and a tiny regularisation."""
-        return self.tangent(trial, np.asarray(shift) + OPTIONS.regularisation * self.problem.stiffness)
-
-    def _factorise(self, trial: Trial, shift: float | FloatArray, matrix: sp.csc_array) -> Eliminated:
+    def factorise(self, trial: Trial, shift: float = 0.0, matrix: sp.csc_array | None = None) -> Eliminated:
+        """LU of the tangent, a tiny regularisation included; ``matrix`` : that, if it is known."""
+        matrix = self._regularised(trial, shift) if matrix is None else matrix
         self.forget()
         factor = self.storage.factor(matrix)
         self._keep(trial, factor, shift)
         return factor
+
+    def _regularised(self, trial: Trial, shift: float = 0.0) -> sp.csc_array:
+        """The tangent with ``shift`` and a tiny regularisation."""
+        return self.tangent(trial, shift + OPTIONS.regularisation * self.problem.stiffness)
 
     def forget(self) -> None:
         """Let all factorisations go before one is made: two need not be in memory."""
         self._kept = None
         self._steps.forget()
 
-    def _keep(self, trial: Trial, factor: Factor, shift: float | FloatArray) -> None:
+    def _keep(self, trial: Trial, factor: Factor, shift: float) -> None:
         """Keep the factorisation of a tangent for trials with the same statuses, unless it has a shift."""
-        self._kept = (trial.sense, factor) if np.ndim(shift) == 0 and shift == 0.0 else None
+        self._kept = (trial.sense, factor) if shift == 0.0 else None
 
     def step(self, trial: Trial, force: FloatArray, shift: float = 0.0) -> FloatArray:
         """(dof,) displacements that take ``force`` up, by the tangent with ``shift`` on its diagonal.
@@ -85,7 +83,7 @@ class StaticSystem(Equations):
         self._kept = None
         found = self._steps.solve(matrix, right, OPTIONS.left_over, shift)
         if found is None:
-            return self.deinterleave(self._factorise(trial, shift, matrix).solve(right))
+            return self.deinterleave(self.factorise(trial, shift, matrix).solve(right))
         if self._steps.factor is not None:
             self._keep(trial, self._steps.factor, shift)
         return self.deinterleave(found)
@@ -130,7 +128,7 @@ class StaticSystem(Equations):
 
         Nothing pushes what is held. Or, ``transposed``, the influence of every unknown on what a row (dof,) measures.
         """
-        tangent, regularised = self.tangent(trial), self._regularised(trial, 0.0)
+        tangent, regularised = self.tangent(trial), self._regularised(trial)
         if transposed:
             tangent, regularised = self.pattern.transposed(tangent), self.pattern.transposed(regularised)
         factor = self.storage.factor(regularised)

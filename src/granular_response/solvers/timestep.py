@@ -174,12 +174,22 @@ def stability_limit(problem: Problem, integrator: str | None = None, *, smallest
     return min(oscillator_limit(name, direct, damping, spring) for direct, spring, damping in motions)
 
 
-def _papers_is_stable(problem: Problem) -> bool:
-    """Whether the paper's step is stable. Among poured disks small ones gather: there all count as the smallest.
+def _chosen(problem: Problem) -> tuple[float, str]:
+    """The time step of a scene's dynamics, and where it comes from.
 
-    Three small disks that touch in a poured packing of two sizes bear 0.92 of the estimate, and above it never rest.
+    The paper's counts as stable among poured disks, of which small ones gather, where it is so if all were the
+    smallest: three small disks that touch in a poured packing of two sizes bear 0.92 of the estimate, and above it
+    never rest.
     """
-    return stability_limit(problem, smallest=problem.scene.small_disks_gather) >= PAPERS_TIME_STEP
+    step = problem.scene.protocol.time_step
+    if not (step is None or step == "auto"):
+        return float(step), "protocol.time_step"
+    reason = f"auto: {SAFETY:g} of the stability limit"
+    if step is None:
+        if stability_limit(problem, smallest=problem.scene.small_disks_gather) >= PAPERS_TIME_STEP:
+            return PAPERS_TIME_STEP, "the paper's"
+        reason += f", as the paper's {PAPERS_TIME_STEP:g} is unstable for this scene"
+    return SAFETY * stability_limit(problem, smallest=True), reason
 
 
 def resolve_time_step(problem: Problem) -> float:
@@ -190,27 +200,15 @@ def resolve_time_step(problem: Problem) -> float:
     UnstableTimeStep
         When the given step exceeds the limit.
     """
-    step = problem.scene.protocol.time_step
-    if step is None and _papers_is_stable(problem):
-        return PAPERS_TIME_STEP
-    if step is None or step == "auto":
-        return SAFETY * stability_limit(problem, smallest=True)
-    limit = stability_limit(problem)
+    step, limit = _chosen(problem)[0], stability_limit(problem)
     if step > limit:
         raise UnstableTimeStep(
             f"protocol.time_step: {step:g} is unstable with {problem.scene.protocol.integrator}, "
             f"must be at most {limit:.3g} for this scene, or auto"
         )
-    return float(step)
+    return step
 
 
 def time_step_reason(problem: Problem) -> str:
     """Where the time step of a scene's dynamics comes from."""
-    step = problem.scene.protocol.time_step
-    if step == "auto":
-        return f"auto: {SAFETY:g} of the stability limit"
-    if step is not None:
-        return "protocol.time_step"
-    if _papers_is_stable(problem):
-        return "the paper's"
-    return f"auto: {SAFETY:g} of the stability limit, as the paper's {PAPERS_TIME_STEP:g} is unstable for this scene"
+    return _chosen(problem)[1]

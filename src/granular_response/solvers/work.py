@@ -20,13 +20,8 @@ from .problem import Problem
 
 def stored(problem: Problem, state: State) -> float:
     """Energy of all springs, normal and tangential, and of the weights."""
-    pairs, walls = state.pairs, state.walls
     total = float(problem.weight @ state.position[:, 1])
-    shapes = problem.pair_shapes(pairs.first.astype(np.int64), pairs.second.astype(np.int64))
-    for contacts, law, shape, rolling in (
-        (pairs, problem.pair_law, shapes, problem.pair_rolling),
-        (walls, problem.wall_law, problem.wall_shapes(walls.first.astype(np.int64)), problem.wall_rolling),
-    ):
+    for contacts, law, shape, rolling in problem.kinds(state):
         energies = np.zeros(len(contacts.overlap))
         statics.elastic_energies(contacts.overlap, shape, law, energies)
         total += float(energies.sum())

@@ -35,11 +35,7 @@ def mechanical_energy(dynamics: Dynamics, gravity: float = 1.0) -> float:
     """Kinetic energy, elastic energy of normal and tangential springs, and that of the weight."""
     problem, state = dynamics.problem, dynamics.state()
     total = dynamics.kinetic_energy() * problem.n + gravity * float(problem.weight @ state.position[:, 1])
-    pairs, walls = state.pairs, state.walls
-    for contacts, law, shape in (
-        (pairs, problem.pair_law, problem.pair_shapes(pairs.first, pairs.second)),
-        (walls, problem.wall_law, problem.wall_shapes(walls.first)),
-    ):
+    for contacts, law, shape, _ in problem.kinds(state):
         energies = np.zeros(len(contacts.overlap))
         elastic_energies(contacts.overlap, shape, law, energies)
         total += float(energies.sum())
