@@ -345,10 +345,10 @@ def region_and_friction(data: Data, words: Bounds) -> Finding:
     inside = (response["opened_contacts"].values[0] > 0.0) & (response["reaches_floor"].values[0] == 0.0)
     CLAIMS.needs(inside.any(), "response holds no open region without friction that has not reached the floor")
     last = float(response["force"].values[inside].max())
-    studies = {f"up to {last:g} mg": response.isel(force=inside), "15 mg": axis.expand_dims("force", axis=-1)}
+    studies = {f"up to {last:g} mg": response.isel(force=inside), "15 mg": axis}
     readings = []
     for (force, study), (what, name) in product(studies.items(), sizes.items()):
-        size = study[name].transpose("friction", "force").values
+        size = study[name].transpose("friction", ...).values
         CLAIMS.needs((size[0] > 0.0).all(), "friction_axis holds no open region without friction")
         growth = float((np.diff(size, axis=0) / size[0]).max())
         condition = asked.at_most("largest growth with friction, per size without", growth, words, "visible", "%")
