@@ -220,7 +220,7 @@ def difference(one: State, other: State) -> float:
 def outcome(run: dict[str, Any]) -> str:
     """What happened: to the path, else to the increments."""
     if "failed" in run:
-        reason = "no equilibrium" if run["failed"].startswith("no equilibrium") else run["failed"]
+        reason = "no equilibrium" if run["failed"].startswith("no equilibrium") else "no rest under gravity"
         return f"increments: {reason}" if "lost" in run else reason
     for who, key in (("", "lost"), ("increments: ", "lost_by_increments")):
         if run[key]:
