@@ -157,12 +157,13 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
     ),
     "preparation": (
         {"scene": SMALL, "parts": [{"friction": 0.2, "to": 0.05}]},
-        {"ways": [{"name": "at once", "changes": {}}], "parts": [{"friction": 0.0, "to": 0.05}], "forces": [0.05]},
         {
+            "ways": [{"name": "at once", "changes": {}}],
             "parts": [
-                {"friction": 0.0, "ways": ["at once"], "to": 0.05},
+                {"friction": 0.0, "to": 0.05},
                 {"friction": 0.2, "taps": {"number": 1, "amplitudes": [1.0], "durations": [1e-9]}, "to": 0.05},
-            ]
+            ],
+            "forces": [0.05],
         },
         {"asymmetry": 1e-12, "forces": [200.0], "parts": [{"friction": 0.2, "to": 200.0}]},
     ),

@@ -72,7 +72,7 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"ways": [WAY, WAY]}, "must have different names"),
         ({"parts": [{"friction": 0.2, "ways": ["none"], "to": 4.0}]}, "must be one of the names in ways"),
         ({"parts": [{"friction": 0.2, "to": 0.01}]}, "must not be below the first of forces"),
-        ({"parts": [{"friction": 0.2, "to": 4.0, "taps": TAPS}]}, r"parts\[0\]\.taps = .*: must be left out"),
+        ({"parts": [{"friction": 0.2, "to": 4.0, "taps": TAPS}]}, r"parts\.0\.taps = .*: must be left out"),
         ({"ways": [WAY | {"changes": {"contact.damping_ratio": -1.0}}]}, "damping_ratio"),
     ],
     "slab_comparison": [
