@@ -220,7 +220,8 @@ def difference(one: State, other: State) -> float:
 def outcome(run: dict[str, Any]) -> str:
     """What happened: to the path, else to the increments."""
     if "failed" in run:
-        reason = "no equilibrium" if run["failed"].startswith("no equilibrium") else "no rest under gravity"
+        known = ("no equilibrium", "the packing did not come to rest under gravity")
+        reason = next((one for one in known if run["failed"].startswith(one)), run["failed"])
         return f"increments: {reason}" if "lost" in run else reason
     for who, key in (("", "lost"), ("increments: ", "lost_by_increments")):
         if run[key]:

@@ -157,7 +157,7 @@ def test_motion_that_a_small_load_begins_has_fallen_to_a_part_of_its_largest_ene
         energies = []
         state = relax(
             Dynamics(problem, rest), Stop(1e-6, fallen=part), load=(0.0, 0.01, 0.1),
-            progress=lambda steps, energy, energies=energies: energies.append(energy),
+            progress=lambda _, energy, energies=energies: energies.append(energy),
         )  # fmt: skip
         assert state.reached.settled and max(energies) < 1e-6
         assert energies[-1] <= part * max(energies)

@@ -287,7 +287,7 @@ def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
     monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
     kept = follow(problem, rest, [1.0])[0]
-    assert 0 < len(roughly) < 0.7 * kept.reached.factorisations  # the others are by a renewed factor
+    assert 0 < len(roughly) < 0.5 * kept.reached.increments
     # what increments leave out of events
     assert kept.walls.normal_force == pytest.approx(alone.walls.normal_force, abs=12.0 * 1e-5)
     assert kept.reached.certificate.force_residual < 1e-10

@@ -565,11 +565,13 @@ class _Path:
 
     def _increased(self, point: Point, new: float) -> Trial | None:
         """Equilibrium with the return map, one increment on, whatever changes within it."""
+        external = self._external(new)
         guess = point.known.q if self.velocity is None else point.known.q + abs(new - point.factor) * self.velocity
-        if new in self.guide:
-            guess = self.guide[new] - self.origin
-        guess = self.system.displaced(guess, new)
-        return solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
+        guesses = [guess, self.guide[new] - self.origin] if new in self.guide else [guess]
+        guesses = [self.system.displaced(one, new) for one in guesses]
+        if len(guesses) > 1:  # a short increment is nearer by its rates, a long one by what was found before
+            guesses.sort(key=lambda q: np.abs(self.system.trial(point.known, q).contact_force + external).max())
+        return solve_increment(self.system, point.known, external, guesses[0], self.record.work)
 
     def _state(self, point: Point) -> State:
         """The certified state of a point."""

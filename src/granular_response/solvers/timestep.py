@@ -200,8 +200,8 @@ def resolve_time_step(problem: Problem) -> float:
     UnstableTimeStep
         When the given step exceeds the limit.
     """
-    step, limit = _chosen(problem)[0], stability_limit(problem)
-    if step > limit:
+    step = _chosen(problem)[0]
+    if step == problem.scene.protocol.time_step and step > (limit := stability_limit(problem)):
         raise UnstableTimeStep(
             f"protocol.time_step: {step:g} is unstable with {problem.scene.protocol.integrator}, "
             f"must be at most {limit:.3g} for this scene, or auto"
