@@ -49,8 +49,8 @@ from .system import Configuration, StaticSystem, Trial
 class PathOptions:
     """Numbers that a path goes by. Forces and loads in mean weights, lengths in mean radii."""
 
-    #: Force by which a contact may be away from its event when it changes its status: what a path of a thousand events
-    #: leaves of them is 1e-8 of a load of some weights.
+    #: Force by which a contact may be away from its event when it changes its status, and that may be out of balance
+    #: there: what a path of a thousand events leaves of them is 1e-8 of a load of some weights.
     event: float = 1e-9
     #: Rate of a contact force, per load, below which the contact has no part in the load: rattlers, whose contacts open
     #: and close at the rounding of a force, make no events.
@@ -61,8 +61,6 @@ class PathOptions:
     #: Force of a spring from the bend of its contact's way within an increment, above which that is shortened; what is
     #: left of it is smaller, and falls as the third power of the length.
     bent: float = 1e-8
-    #: Unbalanced force that is left at an event: the next increment takes it up.
-    passing: float = 1e-10
     #: Newton steps of an increment; with the 3/2 law, whose stiffness changes on the way, up to 12 were needed.
     newton: int = 40
     #: Times that an increment is shortened: to an event that came before the one expected, or to half of its length
@@ -465,7 +463,7 @@ class _Path:
         factor = self.target if at_end else point.factor + self.direction * length
         by, velocity, system = rates.factor, rates.velocity, self.system
         q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
-        before, enough, stalled = np.inf, NEWTON.enough if event is None else OPTIONS.passing, False
+        before, enough, stalled = np.inf, NEWTON.enough if at_end else self.rates.force, False
         for done in range(OPTIONS.newton):
             ahead = abs(factor - point.factor) * rates.velocity
             trial = system.trial(known, q, fixed=rates.sense, ahead=ahead, tangent=False)

@@ -17,15 +17,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
 from ..errors import SolveError
 from ..kernels.events import SLIDES, STICKS
+from ..linalg.lowest import lowest_real
 from ..state import SLIDING, STICKING, FloatArray
 from .rates import next_changes
 from .system import StaticSystem, Trial
@@ -40,24 +38,9 @@ class StabilityOptions:
     neutral: float = 1e-6
     #: Part of the normal stiffness that rounding makes of a stiffness of 0; softer disks than that cannot be judged.
     rounding: float = 1e-14
-    #: Eigenvalues that are looked for where one is negative, vectors among which they are, and among which one is that
-    #: is known roughly.
-    sought: int = 4
-    among: int = 14
-    among_few: int = 6
-    #: How many times as many vectors are tried in turn, and the restarts with these, after which there is no answer.
-    wider: tuple[tuple[int, int], ...] = ((1, 300), (3, 30))
-    #: Relative accuracies with which the distance of the lowest from a point is found, until its sign is certain: it
-    #: is where it is so many times as far from zero as the accuracy of this distance.
-    accuracies: tuple[float, ...] = (1e-3, 1e-4, 1e-5, 1e-6)
-    certain: float = 10.0
-    #: Accuracy at last, in parts of ``neutral``.
-    sign: float = 0.1
-    #: How far to the left of zero they are looked for, in units of the normal stiffness: the first that the symmetric
-    #: part allows. The nearer, the farther apart eigenvalues near zero are from there.
-    left_of_all: tuple[float, ...] = (1e-4, 1e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0)
-    #: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
-    dense: int = 12
+    #: How far to the left of zero the search begins, in units of the normal stiffness: the first that the symmetric
+    #: part allows, so that there are few points on the way.
+    left_of_all: tuple[float, ...] = (1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0)
     #: Sum of displacements along x below which a direction leads to neither side, its largest component being 1.
     least_sideways: float = 1e-6
     #: Times that a direction may change the contacts that slide along it before it counts as one that grows.
@@ -77,10 +60,9 @@ class Clustered(SolveError, ArithmeticError):
 def negative_modes(system: StaticSystem, trial: Trial) -> int | None:
     """Number of real negative eigenvalues with the statuses of a trial; None where it cannot be determined.
 
-    With sliding contacts no eigenvalue has a smaller real part than the lowest of the symmetric part (Bendixson). Is
-    that negative, the eigenvalue nearest to a point still further to the left is computed, as accurately as its sign
-    asks: from there a real negative one is nearer than all that are not. Is it negative, the ``sought`` nearest are,
-    and those with a negative real part counted.
+    Where contacts slide it is 1 if there are any. No eigenvalue has a smaller real part than the lowest of the
+    symmetric part (Bendixson): if that is not negative there are none, else they are looked for
+    (:func:`..linalg.lowest.lowest_real`).
     """
     matrix, _ = _scaled(system, trial)
     modes = system.storage.negative_eigenvalues(system.pattern.symmetric_part(matrix))
@@ -88,49 +70,25 @@ def negative_modes(system: StaticSystem, trial: Trial) -> int | None:
         return None if _too_light(system, trial) else 0
     if not _slides(trial):
         return modes
-    if system.dof <= OPTIONS.dense:
-        return int((np.linalg.eigvals(matrix.toarray()).real < 0).sum())
-    left = _left_of_all(system, matrix)
-    nearest = _nearest_to(system, left, matrix)
-    known: dict[str, Any] = {}
     try:
-        for accuracy in (*OPTIONS.accuracies, OPTIONS.sign * (OPTIONS.neutral / -left)):
-            values, vectors = nearest(1, tol=accuracy, **known)
-            lowest = float(values[0].real)
-            if abs(lowest) > OPTIONS.certain * accuracy * (lowest - left):
-                break
-            known = {"v0": vectors[:, 0].real, "ncv": OPTIONS.among_few}
-        return int((nearest(OPTIONS.sought)[0].real < 0).sum()) if lowest < 0 else 0
+        return int(_lowest(system, matrix)[0] < 0.0)
     except Clustered:
         return None
 
 
 def unstable_direction(system: StaticSystem, trial: Trial) -> FloatArray:
-    """(dof,) direction of the lowest eigenvalue with the statuses of a trial, of largest component 1 or -1.
+    """(dof,) direction of the lowest real eigenvalue with the statuses of a trial, of largest component 1 or -1.
 
-    It leads to the right as far as it leads to a side, so that of two mirror images one is chosen by rule.
+    Where none is negative, that of one near zero. It leads to the right as far as it leads to a side, so that of two
+    mirror images one is chosen by rule.
+
+    Raises
+    ------
+    Clustered
+        If none is found.
     """
     matrix, scale = _scaled(system, trial)
-    symmetric = system.pattern.symmetric_part(matrix)
-    if system.dof <= OPTIONS.dense:
-        values, every = np.linalg.eig((matrix if _slides(trial) else symmetric).toarray())
-        vector = every[:, np.argmin(values.real)].real
-    elif _slides(trial):
-        vector = _nearest_to(system, _left_of_all(system, matrix), matrix)(1)[1][:, 0].real
-    else:
-        k = system.problem.stiffness
-        # the nearer the origin of the search to the eigenvalue, the fewer solves; from below it finds the lowest
-        for origin in (1e-6 * k, 1e-5 * k, 1e-4 * k, 1e-3 * k, 1e-2 * k):
-            factor = system.storage.definite_factor(system.pattern.with_shift(symmetric, origin))
-            if factor is not None:
-                break
-        else:
-            factor = system.storage.factor(system.pattern.with_shift(symmetric, origin))
-        _, vectors = eigsh(
-            symmetric, k=1, sigma=-origin, which="LM", v0=np.random.default_rng(0).standard_normal(system.dof),
-            OPinv=LinearOperator((system.dof, system.dof), factor.solve, dtype=float),
-        )  # fmt: skip
-        vector = vectors[:, 0]
+    _, vector = _lowest(system, matrix if _slides(trial) else system.pattern.symmetric_part(matrix))
     direction = system.deinterleave(scale * vector)
     direction /= np.abs(direction).max()
     sideways = float(direction[: system.problem.n].sum())
@@ -207,36 +165,25 @@ def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArra
     return matrix, scale
 
 
-def _left_of_all(system: StaticSystem, matrix: sp.csc_array) -> float:
-    """A number below the lowest eigenvalue of the symmetric part of a matrix, not far below."""
+def _lowest(system: StaticSystem, matrix: sp.csc_array) -> tuple[float, FloatArray]:
+    """The lowest real eigenvalue of a matrix if it is negative, else one near zero; and its vector (dof,).
+
+    Raises
+    ------
+    Clustered
+        If none is found.
+    """
     system.forget()
     symmetric = system.pattern.symmetric_part(matrix)
-    for left in OPTIONS.left_of_all[:-1]:
-        shifted = system.pattern.with_shift(symmetric, left * system.problem.stiffness)
-        if system.storage.definite_factor(shifted) is not None:
-            return -left * system.problem.stiffness
-    return -OPTIONS.left_of_all[-1] * system.problem.stiffness
+    k = system.problem.stiffness
+    for left in OPTIONS.left_of_all:
+        if system.storage.definite_factor(system.pattern.with_shift(symmetric, left * k)) is not None:
+            break
 
+    def inverse(point: float) -> Callable[[FloatArray], FloatArray]:
+        return system.storage.factor(system.pattern.with_shift(matrix, -point)).solve
 
-def _nearest_to(
-    system: StaticSystem, left: float, matrix: sp.csc_array
-) -> Callable[..., tuple[NDArray[Any], NDArray[Any]]]:
-    """What finds so many eigenvalues (m,) of a matrix, the nearest to a number, and their vectors (dof, m).
-
-    Where the nearest are a cluster they are looked for among more vectors.
-    """
-    factor = system.storage.factor(system.pattern.with_shift(matrix, -left))
-    inverse = LinearOperator((system.dof, system.dof), factor.solve, dtype=float)
-    start = np.random.default_rng(0).standard_normal(system.dof)
-    last = OPTIONS.sign * (OPTIONS.neutral / -left)
-
-    def nearest(
-        count: int, *, tol: float = last, v0: FloatArray = start, ncv: int = OPTIONS.among
-    ) -> tuple[NDArray[Any], NDArray[Any]]:
-        for more, restarts in OPTIONS.wider:
-            among = min(more * ncv, system.dof - 1)
-            with suppress(ArpackNoConvergence):
-                return eigs(matrix, k=count, sigma=left, OPinv=inverse, v0=v0, tol=tol, ncv=among, maxiter=restarts)
+    found = lowest_real(inverse, system.dof, -left * k)
+    if found is None:
         raise Clustered
-
-    return nearest
+    return found
