@@ -26,6 +26,8 @@ class LowestOptions:
     #: Residual to which the eigenvector is found at last, from this part of the eigenvalue off it.
     vector: float = 1e-9
     beside: float = 1e-3
+    #: By how many times a Krylov space grows between two looks at its eigenvalues, which cost as much as a solution.
+    look: float = 1.2
     #: Most vectors of a Krylov space: without restarts, since a space of some dozens does.
     most: int = 120
     #: Most points in turn; each of the usual ones comes a hundred times nearer to zero.
@@ -77,6 +79,7 @@ def nearest(
     most = min(OPTIONS.most, n)
     basis, hessenberg = np.empty((most + 1, n)), np.zeros((most + 1, most))
     basis[0] = start / np.linalg.norm(start)
+    looked = 0
     for k in range(most):
         new = inverse(basis[k])
         for _ in range(2):  # once leaves parts along the basis that rounding makes
@@ -84,10 +87,12 @@ def nearest(
             new -= along @ basis[: k + 1]
             hessenberg[: k + 1, k] += along
         rest = hessenberg[k + 1, k] = np.linalg.norm(new)
-        values, vectors = np.linalg.eig(hessenberg[: k + 1, : k + 1])
-        largest = int(np.argmax(np.abs(values)))
-        residual = float(rest * abs(vectors[k, largest]) / abs(values[largest]))
-        if residual <= enough or k + 1 == most:
-            break
+        if k + 1 >= OPTIONS.look * looked or k + 1 == most or rest == 0.0:
+            looked = k + 1
+            values, vectors = np.linalg.eig(hessenberg[: k + 1, : k + 1])
+            largest = int(np.argmax(np.abs(values)))
+            residual = float(rest * abs(vectors[k, largest]) / abs(values[largest]))
+            if residual <= enough or k + 1 == most or rest == 0.0:
+                break
         basis[k + 1] = new / rest
     return complex(point + 1.0 / values[largest]), vectors[:, largest].real @ basis[: k + 1], residual

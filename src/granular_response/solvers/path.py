@@ -49,8 +49,8 @@ from .system import Configuration, StaticSystem, Trial
 class PathOptions:
     """Numbers that a path goes by. Forces and loads in mean weights, lengths in mean radii."""
 
-    #: Force by which a contact may be away from its event when it changes its status, and that may be out of balance
-    #: there: what a path of a thousand events leaves of them is 1e-8 of a load of some weights.
+    #: Force by which a contact may be away from its event when it changes its status: what a path of a thousand events
+    #: leaves of them is 1e-8 of a load of some weights.
     event: float = 1e-9
     #: Rate of a contact force, per load, below which the contact has no part in the load: rattlers, whose contacts open
     #: and close at the rounding of a force, make no events.
@@ -61,6 +61,8 @@ class PathOptions:
     #: Force of a spring from the bend of its contact's way within an increment, above which that is shortened; what is
     #: left of it is smaller, and falls as the third power of the length.
     bent: float = 1e-8
+    #: Unbalanced force that is left at an event: the next increment takes it up. More of it makes more points.
+    passing: float = 1e-10
     #: Newton steps of an increment; with the 3/2 law, whose stiffness changes on the way, up to 12 were needed.
     newton: int = 40
     #: Times that an increment is shortened: to an event that came before the one expected, or to half of its length
@@ -301,7 +303,7 @@ class _Path:
         self.velocity: FloatArray | None = None
         turned, moved = state.angle - self.start.angle, state.position - self.start.position
         self.origin = np.concatenate([moved.T.ravel(), turned])[: self.system.dof]
-        self.suspect = 0  #: negative pivots at the last stability check
+        self.suspect = 0  #: negative pivots at the last point
         return Point(state.load_factor, trial, trial.sense, trial.sense)
 
     def _balanced(self, point: Point) -> Point:
@@ -339,7 +341,8 @@ class _Path:
         self.velocity = rates.velocity
         negative, before = rates.factor.negative_pivots, self.suspect
         self.suspect = negative
-        if negative not in (0, before):  # real eigenvalues have passed zero
+        # one real eigenvalue is negative, or real ones have passed zero; where contacts slide these may not go along
+        if negative % 2 or negative not in (0, before):
             direction = self._direction(point.trial, rates.sense)
             if direction is not None:
                 return self._by_motion(point, "bifurcation", "unstable", direction)
@@ -463,7 +466,7 @@ class _Path:
         factor = self.target if at_end else point.factor + self.direction * length
         by, velocity, system = rates.factor, rates.velocity, self.system
         q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
-        before, enough, stalled = np.inf, NEWTON.enough if at_end else self.rates.force, False
+        before, enough, stalled = np.inf, NEWTON.enough if event is None else OPTIONS.passing, False
         for done in range(OPTIONS.newton):
             ahead = abs(factor - point.factor) * rates.velocity
             trial = system.trial(known, q, fixed=rates.sense, ahead=ahead, tangent=False)

@@ -40,7 +40,7 @@ class StabilityOptions:
     rounding: float = 1e-14
     #: How far to the left of zero the search begins, in units of the normal stiffness: the first that the symmetric
     #: part allows, so that there are few points on the way.
-    left_of_all: tuple[float, ...] = (1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0)
+    left_of_all: tuple[float, ...] = (1e-2, 1e-1, 1.0, 10.0)
     #: Sum of displacements along x below which a direction leads to neither side, its largest component being 1.
     least_sideways: float = 1e-6
     #: Times that a direction may change the contacts that slide along it before it counts as one that grows.
