@@ -19,7 +19,7 @@ from ..state import FloatArray
 from ..store import atomic
 from . import chains, style
 from .chains import draw_chains, draw_key, draw_response
-from .pictures import HasDataset, PictureError, Shown, _has_response, _new_figure, _why_no_response
+from .pictures import HasDataset, PictureError, Shown, _has_response, _new_figure, _why_no_response, check_positive
 
 Results = HasDataset | xr.Dataset | Mapping[str, HasDataset | xr.Dataset]
 
@@ -73,9 +73,7 @@ def animate(
     >>> growing = gr.solve(result.scene, load_factors=np.linspace(0.1, 2.0, 20))
     >>> animation = gr.plot.animate(growing, output="growing.gif")  # in a notebook: HTML(animation.to_jshtml())
     """
-    for name, value in {"fps": fps, "dpi": dpi}.items():
-        if not (np.isfinite(value) and value > 0.0):
-            raise PictureError(f"{name} = {value}: must be a number greater than 0")
+    check_positive(fps=fps, dpi=dpi)
     ending = Path(output).suffix if output is not None else ""
     if output is not None and ending not in FORMATS:
         raise PictureError(f"{output}: format {ending!r} is unknown, must be {', '.join(FORMATS)}")
@@ -115,9 +113,7 @@ class Frames:
         figure: Figure | None = None,
     ) -> None:
         """Parameters and errors are those of :func:`animate`."""
-        for name, value in {"half_width": half_width, "width": width}.items():
-            if value is not None and not (np.isfinite(value) and value > 0.0):
-                raise PictureError(f"{name} = {value}: must be a number greater than 0")
+        check_positive(half_width=half_width, width=width)
         given = results if isinstance(results, Mapping) and not isinstance(results, xr.Dataset) else {"": results}
         self.columns = {title: Shown.of(one) for title, one in given.items()}
         shown = [*self.columns.values()]

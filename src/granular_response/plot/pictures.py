@@ -36,6 +36,13 @@ class PictureError(GranularError, ValueError):
     """A picture that cannot be drawn as asked. The message is one line."""
 
 
+def check_positive(**given: float | None) -> None:
+    """PictureError, with its name, for the first of ``given`` that is no number greater than 0; None is left out."""
+    for name, value in given.items():
+        if value is not None and not (np.isfinite(value) and value > 0.0):
+            raise PictureError(f"{name} = {value}: must be a number greater than 0")
+
+
 class HasDataset(Protocol):
     """A result."""
 
@@ -259,8 +266,7 @@ def forces(
             if added and (np.linalg.norm(drawn[mask], axis=1) > 0.02).any()
         ]
         if reference > 0.0 and scale != "percentile":
-            sizes = [reference, 0.1 * reference]
-            for size in sizes:
+            for size in (reference, 0.1 * reference):
                 part = float(network.SCALES[scale](np.array([size / reference]))[0])
                 name = f"${size:.2g}\\,\\bar m g$"
                 handles.append(Line2D([], [], color=style.BLACK, linewidth=widest * part, label=name))
@@ -330,8 +336,7 @@ def stress(
     added = shown.index > 0 if added is None else added
     if component not in ("xx", "xz", "zx", "zz"):
         raise PictureError(f"component = {component!r}: must be one of xx, xz, zx, zz")
-    if vmax is not None and not (np.isfinite(vmax) and vmax > 0.0):
-        raise PictureError(f"vmax = {vmax}: must be a number greater than 0")
+    check_positive(vmax=vmax)
     first, second = shown.pairs
     at_wall, wall = shown.position[shown.values("wall_disk")], shown.values("wall_index")
     separation = shown.box.separation(shown.position[first], shown.position[second])
@@ -360,9 +365,8 @@ def stress(
         _loads(axes, shown, origin=shown.origin)
         axes.set(ylim=(-0.03 * shown.top, None), xlabel=style.POSITION, ylabel=style.HEIGHT)
         axes.tick_params(top=False, right=False)
-        what = "added " if added else ""
         bar = axes.figure.colorbar(image, ax=axes, shrink=0.9, aspect=14, pad=0.02)
-        bar.set_label(f"{what}$\\sigma_{{{component}}}\\bar R/\\bar m g$")
+        bar.set_label(f"{'added ' if added else ''}$\\sigma_{{{component}}}\\bar R/\\bar m g$")
         ticks = [end * part for part in (-1.0, -0.25, 0.0, 0.25, 1.0)]
         bar.set_ticks(ticks, labels=[f"${tick:.2g}$" for tick in ticks])
         bar.ax.minorticks_off()
@@ -513,13 +517,11 @@ def save(
 
 
 def _title(what: str, shown: Shown) -> str:
-    load = "at rest"
-    if shown.index:
-        total = sum(float(np.hypot(*force)) for _, force, _ in shown.loads)
-        turning = sum(abs(torque) for *_, torque in shown.loads)
-        load = f"$F_{{\\mathrm{{ext}}}} = {total:.4g}\\,\\bar m g$"
-        if turning and not total:
-            load = f"torque ${turning:.4g}\\,{style.TORQUE_UNIT}$"
+    total = sum(float(np.hypot(*force)) for _, force, _ in shown.loads)
+    turning = sum(abs(torque) for *_, torque in shown.loads)
+    load = f"$F_{{\\mathrm{{ext}}}} = {total:.4g}\\,\\bar m g$" if shown.index else "at rest"
+    if turning and not total:
+        load = f"torque ${turning:.4g}\\,{style.TORQUE_UNIT}$"
     return "floor response" if what == "response" else f"{'floor forces' if what == 'floor' else what}, {load}"
 
 
@@ -585,11 +587,9 @@ def _loads(axes: Axes, shown: Shown, *, origin: float | None = None) -> None:
         if origin is not None:
             centre = shown.box.separation(centre, np.array([origin, 0.0]))
         network.draw_loaded_disk(axes, centre, radius)
-        size = float(np.hypot(*force))
-        if size > 0.0:
-            tip = centre - radius * force / size
+        if size := float(np.hypot(*force)):
             length = max(3.0, 0.16 * shown.top) * size / largest
-            network.draw_load(axes, tip, force, length=length)
+            network.draw_load(axes, centre - radius * force / size, force, length=length)
         network.draw_torque(axes, centre, torque, radius=1.7 * radius)
         if torque and not largest:  # no arrow of a force makes room for the arc
             axes.update_datalim([(centre[0], centre[1] + 2.2 * radius)])

@@ -135,11 +135,8 @@ def resolve_disk(
     equally near (within 1e-6) the one with the lower index. In a lattice with a long row at the top this is
     the middle disk of that row. A ``TopSelector`` means the disk on top nearest to its ``x`` from the middle.
 
-    Raises
-    ------
-    SceneError
-        For a disk or a row that the packing does not have, and an ``x`` beyond its sides; ``key`` is what the message
-        calls the selector.
+    Raises SceneError for a disk or a row that the packing does not have, and an ``x`` beyond its sides; ``key`` is what
+    the message calls the selector.
     """
     if selector == TOP_CENTRE:
         return _nearest_on_top(packing.radius, packing.middle, np.asarray(position))

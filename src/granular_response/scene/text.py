@@ -92,13 +92,7 @@ def _mistake(node: yaml.Node, problem: str) -> yaml.MarkedYAMLError:
 
 
 def read(text: str) -> Any:
-    """The content of one YAML document.
-
-    Raises
-    ------
-    SceneError
-        With line and column, for anything that is not one YAML document of plain data.
-    """
+    """The content of one YAML document; SceneError, with line and column, for what is not one of plain data."""
     try:
         reader = _Reader(text)
         try:

@@ -22,19 +22,9 @@ from pathlib import Path
 def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[bytes], None] | None = None) -> None:
     """Write ``data`` to ``path``: afterwards the file is whole and on the disk, or as it was before.
 
-    Parameters
-    ----------
-    path
-        The file to make or to replace; its folder must exist. Of a link, what it leads to.
-    data
-        Its content.
-    check
-        Called with the bytes read back from the temporary file; what it raises prevents the replacement.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written, or reads back differently.
+    The folder must exist; of a link, what it leads to is replaced. ``check`` is called with the bytes read back from
+    the temporary file; what it raises prevents the replacement. Raises OSError if the file cannot be written, or reads
+    back differently.
     """
     target = _regular(path)
     with _temporary(target) as (descriptor, temporary):

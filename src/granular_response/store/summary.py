@@ -91,12 +91,7 @@ def _json(value: Any) -> Any:
 def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     """Parts of the summary of a file, in order.
 
-    Raises
-    ------
-    granular_response.store.files.StoreError
-        If the file cannot be read.
-    granular_response.store.result.ResultError
-        If it is a result that is not whole.
+    Raises StoreError if the file cannot be read, ResultError if it is a result that is not whole.
     """
     datasets, attributes, result = _opened(path)
     yield _text(path, style="bold")

@@ -77,12 +77,8 @@ def export(
     state : index of the only state to write, 0 for the initial equilibrium, -1 the last one; if None all, or the
         last one in a file of one state.
 
-    Raises
-    ------
-    ExportError
-        For another ending, a state that does not exist or of a series of all, or a missing library.
-    granular_response.store.files.StoreError, granular_response.store.result.ResultError
-        If the result cannot be read, or is none.
+    Raises ExportError for another ending, a state that does not exist or of a series of all, or a missing library,
+    StoreError if the result cannot be read, ResultError if it is none.
 
     Warns (UserWarning) of what a format that can be read again as a packing does not carry: masses, and the tangential
     springs of contacts, from which friction goes on.
