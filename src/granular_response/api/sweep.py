@@ -236,7 +236,7 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
         )
     inside = [name for name in side_by_side.coords if name in variables]
     first, *others = (one.attrs for _, one in good)
-    shared = {key: value for key, value in first.items() if all(_alike(value, one.get(key)) for one in others)}
+    shared = {key: value for key, value in first.items() if all(np.array_equal(value, one.get(key)) for one in others)}
     gridded = xr.Dataset(variables, attrs=shared)
     gridded = gridded.set_coords([*names.values(), *inside, *(name for name in coordinates if name in variables)])
     # as for a single result, sel() takes the factor, or the step where factors repeat or differ
@@ -259,26 +259,21 @@ def _labelled_alike(results: Sequence[xr.Dataset]) -> list[xr.Dataset]:
         if all(one is not None and one.equals(labels[0]) for one in labels):
             continue
         if dim == "load":
-            plain = [_without_load_labels(one) for one in plain]
+            plain = [_without_labels(one, "load", "load_factor") for one in plain]
         elif dim == "floor_disk":  # in order along x, which indices of disks are not
-            plain = [_without_floor_labels(one) for one in plain]
+            plain = [_without_labels(one, "floor_disk", "floor_disk_index") for one in plain]
         elif not all(one is None or one.is_unique for one in labels):
             raise SweepError(f"measure: {dim} has a label twice, must have different ones or the same in each result")
     return plain
 
 
-def _without_floor_labels(one: xr.Dataset) -> xr.Dataset:
-    if "floor_disk" not in one.coords:
+def _without_labels(one: xr.Dataset, dim: str, kept: str) -> xr.Dataset:
+    """Without labels along ``dim``, which the coordinate ``kept`` has in place of them."""
+    if dim not in one.coords:
         return one
-    return one.assign_coords(floor_disk_index=one["floor_disk"].variable.to_base_variable()).drop_vars("floor_disk")
-
-
-def _without_load_labels(one: xr.Dataset) -> xr.Dataset:
-    if "load" not in one.coords:
-        return one
-    if "load_factor" not in one.variables:
-        one = one.assign_coords(load_factor=one["load"].variable.to_base_variable())
-    return one.drop_vars("load")
+    if kept not in one.variables:
+        one = one.assign_coords({kept: one[dim].variable.to_base_variable()})
+    return one.drop_vars(dim)
 
 
 def _side_by_side(results: Sequence[xr.Dataset]) -> tuple[xr.Dataset, set[Any]]:
@@ -321,10 +316,6 @@ def _spread(measured: np.ndarray, place: np.ndarray, count: int) -> np.ndarray:
     whole = np.full((count, *measured.shape[1:]), "" if kind.kind in "SU" else np.nan, kind)
     whole[place] = measured
     return whole
-
-
-def _alike(one: Any, other: Any) -> bool:
-    return np.array_equal(np.asarray(one), np.asarray(other))
 
 
 def _same(measured: np.ndarray) -> bool:

@@ -61,11 +61,8 @@ def animate(
     dpi, width : pixels per inch, and inches from side to side.
     figure : drawn into, or a new one of pyplot's.
 
-    Raises
-    ------
-    PictureError
-        For results without a response or whose forces differ, another ending, a number that is not positive, and a
-        file that cannot be written.
+    Raises PictureError for results without a response or whose forces differ, another ending, a number that is not
+    positive, and a file that cannot be written.
 
     Examples
     --------

@@ -46,10 +46,7 @@ def photoelastic(
     pixels : of the picture, from side to side.
     image : goes to ``Axes.imshow``.
 
-    Raises
-    ------
-    PictureError
-        For a state that there is not, and unless ``fringe``, ``half_width`` and ``pixels`` are positive.
+    Raises PictureError for a state that there is not, unless ``fringe``, ``half_width`` and ``pixels`` are positive.
 
     Examples
     --------
