@@ -106,11 +106,7 @@ def rattlers(state: State, minimum_contacts: int = 2) -> BoolArray:
 
 
 def coordination_number(
-    state: State,
-    disks: BoolArray | None = None,
-    *,
-    walls: bool = False,
-    without_rattlers: bool = False,
+    state: State, disks: BoolArray | None = None, *, walls: bool = False, without_rattlers: bool = False
 ) -> float:
     """Mean number of contacts of a disk (Sec. VII), over ``disks`` ((n,) mask; all of them by default).
 

@@ -40,12 +40,7 @@ class OpenRegion:
         return int(np.count_nonzero(self.contacts))
 
 
-def teardrop(
-    rest: State,
-    loaded: State,
-    loaded_disk: int,
-    **region: Any,
-) -> OpenRegion:
+def teardrop(rest: State, loaded: State, loaded_disk: int, **region: Any) -> OpenRegion:
     """Region of the pairs that touch at rest and are open under load, nearest to ``loaded_disk`` (Fig. 5).
 
     ``region``: ``start``, ``lattice_constant``, ``reach`` and ``start_distance`` of :func:`open_region`.

@@ -170,12 +170,7 @@ def _load_branches(shown: Shown) -> list[str]:
 
 
 def floor(
-    result: HasDataset | xr.Dataset,
-    *,
-    ax: Axes | None = None,
-    state: int = -1,
-    added: bool | None = None,
-    **line: Any,
+    result: HasDataset | xr.Dataset, *, ax: Axes | None = None, state: int = -1, added: bool | None = None, **line: Any
 ) -> Axes:
     """The vertical force on each floor disk in mean disk weights, by default the part that the load adds.
 

@@ -34,8 +34,7 @@ class LatticePacking(PackingDescription):
     kind: str
     layers: Rows
     polydispersity: Fraction = Field(
-        default=0.0,
-        description="delta: radii are drawn uniformly from [(1 - delta) R, R] and rescaled to a mean of 1.",
+        default=0.0, description="delta: radii are drawn uniformly from [(1 - delta) R, R] and rescaled to a mean of 1."
     )
     lattice_constant: LatticeConstant = Field(
         default=2.0,
@@ -112,8 +111,7 @@ class SlabPacking(LatticePacking):
     """
 
     kind: Literal["slab"] = Field(
-        default="slab",
-        description="Rows on a triangular lattice between side walls, or with periodic sides.",
+        default="slab", description="Rows on a triangular lattice between side walls, or with periodic sides."
     )
     layers: Rows = Field(default=15, description="Number of rows.")
     disks_per_row: RowLength = Field(

@@ -22,16 +22,7 @@ from .result import events_from
 from .variables import EVENT_KINDS, NOT_DETERMINED
 
 #: Attributes that a summary shows elsewhere or not at all.
-_HIDDEN = {
-    "format",
-    "scene",
-    "scene_folder_note",
-    "parameters",
-    "method",
-    "method_reason",
-    "stable",
-    "settled",
-}
+_HIDDEN = {"format", "scene", "scene_folder_note", "parameters", "method", "method_reason", "stable", "settled"}
 
 #: What is shown of the work that each state took.
 _WORK = ("steps", "increments", "factorisations", "newton_iterations")
