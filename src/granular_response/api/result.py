@@ -5,11 +5,10 @@ Units are the reduced ones (mean disk radius, mean disk mass, g), as everywhere 
 
 from __future__ import annotations
 
-import contextlib
 import html
 import os
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -34,7 +33,7 @@ from ..store.contact_table import contact_table
 from ..store.result import scene_of, solution_from, state_from, to_dataset
 from . import compiling
 from .event_table import Events
-from .terminal import TerminalProgress
+from .terminal import shown
 
 
 class Result:
@@ -385,7 +384,7 @@ class Result:
         (1.0, 0.5)
         """
         solution = self._solution or solution_from(self._data, folder=self._folder)
-        with compiling.logged(), _shown(progress) as report:
+        with compiling.logged(), shown(progress) as report:
             further = continue_solution(solution, load_factors, progress=report)
         return _vouched(further)
 
@@ -459,16 +458,9 @@ def solve(
     asked = described(scene)
     if method is not None:
         asked = asked.updated({"protocol.method": method})
-    with compiling.logged(), _shown(progress) as report:
+    with compiling.logged(), shown(progress) as report:
         solution = solve_scene(asked, load_factors=load_factors, progress=report)
     return _vouched(solution)
-
-
-@contextlib.contextmanager
-def _shown(progress: Progress | bool) -> Iterator[Progress | None]:
-    """What is called with the progress: a bar, a function of the user's, or nothing."""
-    with TerminalProgress() if progress is True else contextlib.nullcontext(progress or None) as report:
-        yield report
 
 
 def _vouched(solution: Solution) -> Result:
@@ -495,8 +487,8 @@ def _places(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:
     except (TypeError, ValueError):  # text, or rows of different lengths
         places = np.array(np.nan)
     if places.ndim != 1 or not np.isfinite(places).all():
-        shown = " ".join(show(given).split())  # an array is several lines
-        raise ValueError(f"{name} = {shown}: must be a list of finite numbers")
+        said = " ".join(show(given).split())  # an array is several lines
+        raise ValueError(f"{name} = {said}: must be a list of finite numbers")
     return places
 
 

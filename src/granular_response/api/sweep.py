@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import itertools
 import numbers
@@ -24,7 +23,7 @@ from ..sweeps.memory import Memory
 from ..sweeps.resources import current, using
 from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described
-from .terminal import TerminalProgress
+from .terminal import shown
 
 #: What a measure may return.
 Measured = Any
@@ -105,11 +104,8 @@ def sweep(
         checked_problem(each)
     folder = checkpoint or current().checkpoint
     task = functools.partial(_measured, measure=measure, memory=Memory(folder) if folder else None)
-    with contextlib.ExitStack() as stack:
-        stack.enter_context(using(checkpoint=None))
-        if progress is True:
-            progress = stack.enter_context(TerminalProgress())
-        found = map_tasks(task, scenes, workers=workers, scheduler=scheduler, progress=progress or None, what="scenes")
+    with using(checkpoint=None), shown(progress) as report:
+        found = map_tasks(task, scenes, workers=workers, scheduler=scheduler, progress=report, what="scenes")
     remarks = Counter(remark for _, remarks in found for remark in remarks)
     for remark, count in remarks.items():
         warnings.warn(f"{count} of {len(found)} combinations: {remark}", stacklevel=2)
@@ -119,8 +115,8 @@ def sweep(
 def _values(axes: Any) -> dict[str, list[Any]]:
     """The values of each key; raises ValueError for what is no axis."""
     if not isinstance(axes, Mapping):
-        shown = " ".join(show(axes).split())  # an array is several lines
-        raise ValueError(f"axes = {shown}: must be a mapping of keys to lists of values")
+        said = " ".join(show(axes).split())  # an array is several lines
+        raise ValueError(f"axes = {said}: must be a mapping of keys to lists of values")
     values = {}
     for key, given in axes.items():
         # text and mappings can be iterated over too, but by letters and by names
@@ -236,7 +232,7 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
         )
     inside = [name for name in side_by_side.coords if name in variables]
     first, *others = (one.attrs for _, one in good)
-    shared = {key: value for key, value in first.items() if all(np.array_equal(value, one.get(key)) for one in others)}
+    shared = {k: v for k, v in first.items() if all(np.array_equal(v, np.asarray(one.get(k))) for one in others)}
     gridded = xr.Dataset(variables, attrs=shared)
     gridded = gridded.set_coords([*names.values(), *inside, *(name for name in coordinates if name in variables)])
     # as for a single result, sel() takes the factor, or the step where factors repeat or differ

@@ -51,10 +51,9 @@ class Audit:
     ``force_residual``, ``torque_residual``: largest on any disk. ``coulomb_excess``: largest ``|f_t| - mu f_n`` of a
     closed contact. ``relative_residual``: largest unbalanced force beyond ``rounding``, as a part of what the disk
     bears: its weight, its load and the contact forces on it. ``force_mismatch``: largest difference between a recorded
-    contact force and the one found here.
-    ``unlisted``: closed contacts that the state does not list. ``stale_springs``: open contacts that kept a spring.
-    ``escaped``: disks with their centre outside of the box. ``in_flight``: disks out of balance that no chain of
-    contacts joins to a wall.
+    contact force and the one found here. ``unlisted``: closed contacts that the state does not list. ``stale_springs``:
+    open contacts that kept a spring. ``escaped``: disks with their centre outside of the box. ``in_flight``: disks out
+    of balance that no chain of contacts joins to a wall.
     """
 
     force_residual: float

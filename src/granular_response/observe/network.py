@@ -130,10 +130,9 @@ def contact_angle_histogram(
 ) -> tuple[FloatArray, FloatArray]:
     """Distribution of the angles of the touching pairs: bin centres (b,) from 0 and density (b,) per radian.
 
-    The density integrates to 1 over pi. The first bin is centred on the horizontal, so contacts that are
-    horizontal up to rounding are not split; with ``bins`` a multiple of 3 so are the oblique lattice
-    directions. ``contacts`` restricts the pairs. An empty network gives zeros. Raises ``ValueError`` for
-    fewer than one bin.
+    The density integrates to 1 over pi. The first bin is centred on the horizontal, so contacts that are horizontal up
+    to rounding are not split; with ``bins`` a multiple of 3 so are the oblique lattice directions. ``contacts``
+    restricts the pairs. An empty network gives zeros. Raises ``ValueError`` for fewer than one bin.
     """
     if bins < 1:
         raise ValueError(f"bins: {bins} given; it must be at least 1")

@@ -27,12 +27,11 @@ def force_profile(
 ) -> tuple[FloatArray, FloatArray]:
     """``x`` (c,) and |added force| (c,) of the touching pairs centred ``depth`` below the loaded disk.
 
-    ``x`` is measured from the loaded disk, and positions are those of the rest state, so the contacts at a
-    depth are the same for every load. Gravity is subtracted as a vector. A contact is taken if it touches in
-    either state and its centre is less than ``half_band`` off the depth; the default, a quarter of the
-    row spacing, parts the horizontal contacts of row k (at k row spacings) from the oblique ones between rows
-    (half a spacing further). Ordered by x, then from the top. Raises ``ValueError`` if the states list
-    different candidates, or ``half_band`` is not positive.
+    ``x`` is measured from the loaded disk, and positions are those of the rest state, so the contacts at a depth are
+    the same for every load. Gravity is subtracted as a vector. A contact is taken if it touches in either state and its
+    centre is less than ``half_band`` off the depth; the default, a quarter of the row spacing, parts the horizontal
+    contacts of row k (at k row spacings) from the oblique ones between rows (half a spacing further). Ordered by x,
+    then from the top. Raises ``ValueError`` if the states list different candidates, or ``half_band`` is not positive.
     """
     if half_band is None:
         half_band = 0.25 * ROW_SPACING * lattice_constant

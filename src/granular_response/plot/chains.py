@@ -36,7 +36,10 @@ def draw_chains(axes: Axes, shown: Shown, *, largest: float, widest: float = 3.0
     along = np.sum(pair * shown.box.separation(shown.position[first], shown.position[second]), axis=1)
     foot = shown.box.on_wall(shown.position[at_wall], index)
     inward = np.sum(wall * (shown.position[at_wall] - foot), axis=1)
-    width, wall_width = (_widths(force, largest, widest) for force in (pair, wall))
+    width, wall_width = (
+        widest * np.sqrt(np.minimum(np.linalg.norm(force, axis=1) / (largest if largest > 0.0 else np.inf), 1.0))
+        for force in (pair, wall)
+    )
     for sign, colour, order in ((-1.0, LOST, 2), (1.0, CHAINS, 3)):
         look: dict[str, Any] = {"color": colour, "capstyle": "round", "zorder": order}
         drawn = kept & (sign * along > 0.0) & (width > THINNEST)
@@ -85,9 +88,3 @@ def draw_key(axes: Axes, reference: str) -> None:
     for k, (text, colour) in enumerate((("opened contacts", style.VERMILION), (reference, style.MUTED))):
         axes.annotate(text, (1.0, 1.0), (-1.0, -2.0 - 10.0 * k), xycoords="axes fraction", textcoords="offset points",
                       ha="right", va="top", fontsize=8, color=colour)  # fmt: skip
-
-
-def _widths(force: np.ndarray, largest: float, widest: float) -> np.ndarray:
-    """(m,) points."""
-    part = np.linalg.norm(force, axis=1) / largest if largest > 0.0 else np.zeros(len(force))
-    return widest * np.sqrt(np.minimum(part, 1.0))

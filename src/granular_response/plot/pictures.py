@@ -139,22 +139,18 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
     >>> gr.plot.response(result).figure.savefig("response.png")
     """
     shown = Shown.of(result)
-    values = np.atleast_2d(shown.data["floor_response"].values)
     if not _has_response(shown):
         raise PictureError(
             f"result: {_why_no_response(shown)}, so there is no response; floor draws the forces on the floor"
         )
     with style.context():
         axes = _axes(ax, 0.36)
-        forces = np.atleast_1d(shown.data["total_force"].values)
-        branch = _load_branches(shown)
-        for k, (curve, force) in enumerate(zip(values, forces, strict=True)):
-            if np.isnan(curve).all():  # unloaded: floor draws what is left
-                continue
-            colour = style.ordered_colours(len(values))[k]
-            label = f"{force:g}{branch[k]}"
-            look = {**style.marked_line(k, colour=colour), "markersize": 2.6, "label": label, **line}
-            axes.plot(shown.data["x"].values, curve, **look)
+        curves, forces = np.atleast_2d(shown.data["floor_response"].values), shown.data["total_force"].values
+        looks = zip(np.atleast_1d(forces), _load_branches(shown), style.ordered_colours(len(curves)), strict=True)
+        for k, (curve, (force, branch, colour)) in enumerate(zip(curves, looks, strict=True)):
+            if not np.isnan(curve).all():  # unloaded: floor draws what is left
+                look = {**style.marked_line(k, colour=colour), "markersize": 2.6, "label": f"{force:g}{branch}", **line}
+                axes.plot(shown.data["x"].values, curve, **look)
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
         axes.set(xlabel=style.POSITION, ylabel=style.RESPONSE)
         axes.margins(x=0.02)
@@ -473,9 +469,8 @@ def page(
             if k >= len(what):
                 axes.set_axis_off()
                 continue
-            options: dict[str, Any] = {} if what[k] == "response" else {"state": state}
-            options |= {"scale": scale} if what[k] == "forces" else {}
-            PICTURES[what[k]](shown.data, ax=axes, **options)
+            options = {} if what[k] == "response" else {"state": state}
+            PICTURES[what[k]](shown.data, ax=axes, **options, **({"scale": scale} if what[k] == "forces" else {}))
             if what[k] in _GRAPHS and columns > 1:
                 axes.set_box_aspect(0.75)
             style.letter(axes, chr(ord("a") + k), place="above", text=_title(what[k], shown))
@@ -594,11 +589,6 @@ def _loads(axes: Axes, shown: Shown, *, origin: float | None = None) -> None:
 def _legend(axes: Axes, handles: Sequence[Any], shown: Shown) -> None:
     """Below the picture, in two columns where that is narrow."""
     if handles:
-        axes.legend(
-            handles=handles,
-            loc="upper center",
-            bbox_to_anchor=(0.5, 0.0),
-            ncols=len(handles) if _aspect(shown) < 0.6 else 2,
-            columnspacing=1.4,
-            borderaxespad=0.2,
-        )
+        columns = len(handles) if _aspect(shown) < 0.6 else 2
+        below: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "borderaxespad": 0.2}
+        axes.legend(handles=handles, ncols=columns, columnspacing=1.4, **below)

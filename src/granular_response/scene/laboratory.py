@@ -54,8 +54,7 @@ class LaboratoryUnits:
     packing ``radius`` is the mean radius; the mean mass is then larger by the variance of the relative
     radius (0.7 % at polydispersity 0.25), which this leaves out.
 
-    A ``stress`` is two-dimensional, force per length (N/m); a ``pressure`` is a stress over the thickness
-    (Pa).
+    A ``stress`` is two-dimensional, force per length (N/m); a ``pressure`` is a stress over the thickness (Pa).
 
     Examples
     --------

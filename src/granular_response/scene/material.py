@@ -159,17 +159,5 @@ class Wall(Sparse):
 
     def resolved(self, contact: Contact) -> Contact:
         """The parameters of disk-wall contacts beside disk-disk contacts with ``contact``."""
-
-        def either(own: float | None, otherwise: float) -> float:
-            return otherwise if own is None else own
-
-        return Contact(
-            law=contact.law,
-            normal_stiffness=either(self.normal_stiffness, 2.0 * contact.normal_stiffness),
-            stiffness_ratio=either(self.stiffness_ratio, contact.stiffness_ratio),
-            friction=self.friction,
-            damping_ratio=either(self.damping_ratio, contact.damping_ratio),
-            rolling_friction=self.rolling_friction,
-            rolling_stiffness_ratio=either(self.rolling_stiffness_ratio, contact.rolling_stiffness_ratio),
-            parameters=contact.parameters,
-        )
+        own = {name: value for name, value in self if value is not None}
+        return Contact(**{**dict(contact), "normal_stiffness": 2.0 * contact.normal_stiffness, **own})

@@ -15,8 +15,6 @@ TimeStep = Annotated[
 ]
 #: The time step of Sec. III.
 PAPERS_TIME_STEP = 5e-4
-
-
 LoadFactors = Annotated[
     tuple[Annotated[float, Field(strict=True, allow_inf_nan=False)], ...],
     Field(min_length=1),
