@@ -145,24 +145,20 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
         )
     with style.context():
         axes = _axes(ax, 0.36)
-        curves, forces = np.atleast_2d(shown.data["floor_response"].values), shown.data["total_force"].values
-        looks = zip(np.atleast_1d(forces), _load_branches(shown), style.ordered_colours(len(curves)), strict=True)
-        for k, (curve, (force, branch, colour)) in enumerate(zip(curves, looks, strict=True)):
+        curves = np.atleast_2d(shown.data["floor_response"].values)
+        forces, colours = np.atleast_1d(shown.data["total_force"].values), style.ordered_colours(len(curves))
+        branches = shown.data["branch"].values if "branch" in shown.data.variables else ["loading"] * len(curves)
+        one_branch = all(branch == "loading" for branch in branches)
+        for k, (curve, force, branch) in enumerate(zip(curves, forces, branches, strict=True)):
             if not np.isnan(curve).all():  # unloaded: floor draws what is left
-                look = {**style.marked_line(k, colour=colour), "markersize": 2.6, "label": f"{force:g}{branch}", **line}
+                label = f"{force:g}" if one_branch else f"{force:g} ({branch})"
+                look = {**style.marked_line(k, colour=colours[k]), "markersize": 2.6, "label": label, **line}
                 axes.plot(shown.data["x"].values, curve, **look)
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
         axes.set(xlabel=style.POSITION, ylabel=style.RESPONSE)
         axes.margins(x=0.02)
         axes.legend(title=style.FORCE)
     return axes
-
-
-def _load_branches(shown: Shown) -> list[str]:
-    """What a legend adds to each load: its branch, where not all are on the first."""
-    branch = shown.data["branch"].values.tolist() if "branch" in shown.data.variables else []
-    told = any(one != "loading" for one in branch)
-    return [f" ({one})" if told else "" for one in branch] or [""] * shown.data["floor_response"].size
 
 
 def floor(
@@ -230,12 +226,9 @@ def forces(
     pair, wall = shown.forces(added)
     normal = shown.box.separation(*(shown.position[disks] for disks in shown.pairs))
     inward = wall_normals(shown.values("wall_index"))
-    point = np.concatenate(
-        [
-            network.pair_points(shown.position, shown.radius, *shown.pairs, box=shown.box),
-            network.wall_points(shown.position, shown.radius, shown.values("wall_disk"), shown.values("wall_index")),
-        ]
-    )
+    between = network.pair_points(shown.position, shown.radius, *shown.pairs, box=shown.box)
+    feet = network.wall_points(shown.position, shown.radius, shown.values("wall_disk"), shown.values("wall_index"))
+    point = np.concatenate([between, feet])
     force, direction = np.concatenate([pair, wall]), np.concatenate([normal, inward])
     pushes = np.sum(force * direction, axis=1) >= 0.0
     reference = float(np.linalg.norm(force, axis=1).max(initial=0.0)) if vmax is None else vmax

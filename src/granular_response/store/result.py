@@ -10,6 +10,7 @@ import json
 import os
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import fields, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -91,14 +92,12 @@ def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Data
 
 
 def _states(states: Sequence[State], along: str) -> dict[str, xr.Variable]:
-    data = {
-        name: described(name, np.stack([getattr(state, name) for state in states]), along=along) for name in _MOTION
-    }
+    data = {name: described(name, [getattr(state, name) for state in states], along=along) for name in _MOTION}
     for prefix, (first, second) in _CANDIDATES.items():
         contacts: list[Contacts] = [getattr(state, _LISTS[prefix]) for state in states]
         data |= {first: described(first, contacts[0].first), second: described(second, contacts[0].second)}
         for name in (*CONTACT, *(ROLLING if any(one.resists_rolling for one in contacts) else {})):
-            values = np.stack([getattr(one, name) for one in contacts])
+            values = [getattr(one, name) for one in contacts]
             data[f"{prefix}_{name}"] = described(f"{prefix}_{name}", values, along=along)
     data["load_factor"] = described("state_load_factor", [state.load_factor for state in states], along=along)
     return {**data, "axis": described("axis", ["x", "z"])}
@@ -244,27 +243,22 @@ def added_forces_dataset(
     """
     pairs, walls = rest[0].pairs, rest[0].walls
     both = list(zip(rest, loaded, strict=True))
+    statuses, statuses_rest = ([one.pairs.status for one in states] for states in (loaded, rest))
     text = f"contact force that the load adds, on the first disk {WEIGHTS}"
-
-    def stacked(like: str, values: Sequence[np.ndarray], text: str) -> xr.Variable:
-        return described(like, np.stack(values), along=dimension, text=text)
-
+    under_load = f"disk centre x, z under load {RADII}"
+    stacked = partial(described, along=dimension)
     return xr.Dataset(
         {
-            "position": stacked("position", [one.position for one in loaded], f"disk centre x, z under load {RADII}"),
+            "position": stacked("position", [one.position for one in loaded], text=under_load),
             "radius": described("radius", packing.radius),
             "contact_disk": described("contact_disk", pairs.first),
             "contact_partner": described("contact_partner", pairs.second),
-            "contact_added_force": stacked("contact_force", [pair_force_difference(*one) for one in both], text),
-            "contact_status_rest": stacked(
-                "contact_status", [one.pairs.status for one in rest], "contact status at rest"
-            ),
-            "contact_status": stacked(
-                "contact_status", [one.pairs.status for one in loaded], "contact status under load"
-            ),
+            "contact_added_force": stacked("contact_force", [pair_force_difference(*one) for one in both], text=text),
+            "contact_status_rest": stacked("contact_status", statuses_rest, text="contact status at rest"),
+            "contact_status": stacked("contact_status", statuses, text="contact status under load"),
             "wall_disk": described("wall_disk", walls.first, text="disk that the wall's force acts on"),
             "wall_index": described("wall_index", walls.second),
-            "wall_added_force": stacked("wall_force", [wall_force_difference(*one) for one in both], text),
+            "wall_added_force": stacked("wall_force", [wall_force_difference(*one) for one in both], text=text),
             "width": variable((), packing.width, f"distance of the side walls {RADII}"),
         },
         coords={"axis": described("axis", ["x", "z"])},
@@ -376,10 +370,8 @@ def _as_solved(dataset: xr.Dataset, index: int) -> State:
 
 def described_forces(states: Sequence[State]) -> dict[str, xr.Variable]:
     """Contact forces as vectors, on the disk named first."""
-    return {
-        "contact_force": described("contact_force", np.stack([state.pair_force() for state in states])),
-        "wall_force": described("wall_force", np.stack([state.wall_force() for state in states])),
-    }
+    found = {"contact_force": [s.pair_force() for s in states], "wall_force": [s.wall_force() for s in states]}
+    return {name: described(name, forces) for name, forces in found.items()}
 
 
 def _verdict(all_states: Sequence[bool | None]) -> str:

@@ -68,14 +68,10 @@ class ExportError(GranularError):
 def export(
     result: str | os.PathLike[str] | xr.Dataset, output: str | os.PathLike[str], *, state: int | None = None
 ) -> Path:
-    """Write a stored result as a file for another program; returns its path.
+    """Write a stored result, a file or its dataset, as a file for another program; returns its path.
 
-    Parameters
-    ----------
-    result : netCDF file that ``granular-response run`` made, or the dataset of a result.
-    output : file to make; what its name ends with (one of ``SUFFIXES``) is the format.
-    state : index of the only state to write, 0 for the initial equilibrium, -1 the last one; if None all, or the
-        last one in a file of one state.
+    What the name of ``output`` ends with (one of ``SUFFIXES``) is the format. ``state`` is the index of the only state
+    to write; if None all, or the last one in a file of one state.
 
     Raises ExportError for another ending, a state that does not exist or of a series of all, or a missing library,
     StoreError if the result cannot be read, ResultError if it is none.
