@@ -15,14 +15,14 @@ from .pictures import Shown
 
 #: Colours of disks, of the forces that press them together, and of those that the load takes away.
 DISKS, CHAINS, LOST = "#EFEDE8", "#12233F", "#8FA3BF"
-#: Points; a thinner line is left out.
-THINNEST = 0.3
+#: Points of the widest line; a thinner one than the other is left out.
+WIDEST, THINNEST = 3.0, 0.3
 
 
-def draw_chains(axes: Axes, shown: Shown, *, largest: float, widest: float = 3.0, half_width: float) -> None:
+def draw_chains(axes: Axes, shown: Shown, *, largest: float, half_width: float) -> None:
     """What the load adds at each contact as a line from centre to centre, the contacts that it opens, the load.
 
-    Widths go as the square root of the force and reach ``widest`` points at ``largest`` (mean disk weights); larger
+    Widths go as the square root of the force and reach :data:`WIDEST` points at ``largest`` (mean disk weights); larger
     forces have that width. Dark lines press disks together, pale ones take compression away. What is within
     ``half_width`` of the loaded disk is drawn, without axes.
     """
@@ -37,7 +37,7 @@ def draw_chains(axes: Axes, shown: Shown, *, largest: float, widest: float = 3.0
     foot = shown.box.on_wall(shown.position[at_wall], index)
     inward = np.sum(wall * (shown.position[at_wall] - foot), axis=1)
     width, wall_width = (
-        widest * np.sqrt(np.minimum(np.linalg.norm(force, axis=1) / (largest if largest > 0.0 else np.inf), 1.0))
+        WIDEST * np.sqrt(np.minimum(np.linalg.norm(force, axis=1) / (largest if largest > 0.0 else np.inf), 1.0))
         for force in (pair, wall)
     )
     for sign, colour, order in ((-1.0, LOST, 2), (1.0, CHAINS, 3)):
@@ -49,7 +49,7 @@ def draw_chains(axes: Axes, shown: Shown, *, largest: float, widest: float = 3.0
         ends = np.stack([shown.position[at_wall][drawn], foot[drawn]], axis=1)
         axes.add_collection(LineCollection(list(ends), linewidths=wall_width[drawn], **look), autolim=False)
     opened = kept & (shown.values("contact_status", 0) != OPEN) & (shown.values("contact_status") == OPEN)
-    look = {"color": style.VERMILION, "linewidth": 0.5 * widest, "capstyle": "butt", "zorder": 4}
+    look = {"color": style.VERMILION, "linewidth": 0.5 * WIDEST, "capstyle": "butt", "zorder": 4}
     network.draw_contacts(axes, shown.position, first[opened], second[opened], box=shown.box, **look)
     axes.axhline(0.0, color=style.MUTED, linewidth=1.0, linestyle="-", zorder=5)
     for disk, force, _ in shown.loads:
