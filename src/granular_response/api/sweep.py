@@ -212,13 +212,12 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
         variable = variable.transpose(_POINT, ...)
         if name in coordinates and _same(variable.values):
             variables[str(name)] = variable.isel({_POINT: 0})
-            continue
-        if name == "step" and name in coordinates and (steps := _shared(variable.values)) is not None:
+        elif name == "step" and name in coordinates and (steps := _shared(variable.values)) is not None:
             variables[name] = (variable.dims[1:], steps, variable.attrs)
-            continue
-        whole = _spread(variable.values, place, len(found))
-        dimensions = (*names.values(), *variable.dims[1:])
-        variables[str(name)] = (dimensions, whole.reshape((*shape, *whole.shape[1:])), variable.attrs)
+        else:
+            whole = _spread(variable.values, place, len(found))
+            dimensions = (*names.values(), *variable.dims[1:])
+            variables[str(name)] = (dimensions, whole.reshape((*shape, *whole.shape[1:])), variable.attrs)
     for key, name in names.items():
         variables[name] = (name, _coordinate(values[key]), {"key": key})
     if any(errors):
