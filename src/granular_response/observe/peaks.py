@@ -4,7 +4,7 @@ A peak is a local maximum, not at an end of the samples, whose prominence is at 
 times the largest magnitude of the response. Prominence is the height above the ground that must be crossed
 on the way to higher samples, or down to the end of the samples on a side that has no higher ones. Maxima
 separated by shallower dips are one peak, whose position is the middle of its highest samples; samples that
-differ by less than ``ROUNDING`` times that magnitude count as equally high. So a symmetric profile has
+differ by less than ``rounding`` times that magnitude count as equally high. So a symmetric profile has
 symmetric peaks, and rounding noise neither makes nor moves one.
 
 ``x`` is measured from the loaded disk and strictly increasing. ``interior`` (a mask over the samples, see
@@ -61,6 +61,7 @@ def find_peaks(
     *,
     interior: NDArray[np.bool_] | None = None,
     relative_prominence: float = RELATIVE_PROMINENCE,
+    rounding: float = ROUNDING,
 ) -> Peaks:
     """Peaks of a response sampled at ``x`` (both (k,)); the definition is in the module's docstring.
 
@@ -70,7 +71,7 @@ def find_peaks(
     x, r = _samples(x, response, interior)
     check_positive(relative_prominence=relative_prominence)
     scale = float(np.max(np.abs(r)))
-    threshold, tie = relative_prominence * scale, ROUNDING * scale
+    threshold, tie = relative_prominence * scale, rounding * scale
     last = r.size - 1
     found: list[tuple[float, float, float]] = []
 
@@ -117,9 +118,15 @@ def find_peaks(
     return Peaks(position=columns[:, 0], height=columns[:, 1], prominence=columns[:, 2])
 
 
-def peak_count(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_] | None = None) -> int:
+def peak_count(
+    x: ArrayLike,
+    response: ArrayLike,
+    *,
+    interior: NDArray[np.bool_] | None = None,
+    relative_prominence: float = RELATIVE_PROMINENCE,
+) -> int:
     """Number of peaks."""
-    return len(find_peaks(x, response, interior=interior))
+    return len(find_peaks(x, response, interior=interior, relative_prominence=relative_prominence))
 
 
 def central_dip(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_] | None = None) -> float:
