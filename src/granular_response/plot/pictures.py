@@ -238,7 +238,9 @@ def forces(
         _packing(axes, shown)
         # by percentile, half of all forces are large: shorter and thinner lines keep them apart
         crowded = 0.5 if scale == "percentile" else 1.0
-        widest = crowded * _width_per_radius(axes, shown)
+        # the largest force is as wide as the radius of a disk across the page, in points
+        inches = axes.figure.get_figure(root=True).get_size_inches()[0] * axes.get_position().width
+        widest = crowded * float(np.clip(72.0 * inches / shown.box.width, 0.8, 5.0))
         factors = {"length_per_force": 4.0 * crowded, "width_per_force": widest}
         kinds = {"force increased": (pushes, style.BLACK, 3), "force decreased": (~pushes, style.VERMILION, 4)}
         for mask, colour, order in kinds.values():
@@ -540,12 +542,6 @@ def _new_figure(height: float) -> Figure:
 def _aspect(shown: Shown) -> float:
     """Height over width of a picture of the packing, with room for the arrow of a load."""
     return 1.2 * shown.top / (shown.box.width + 2.0)
-
-
-def _width_per_radius(axes: Axes, shown: Shown) -> float:
-    """Points that one mean radius takes across the page: the largest force is as wide as a disk's radius."""
-    inches = axes.figure.get_figure(root=True).get_size_inches()[0] * axes.get_position().width
-    return float(np.clip(72.0 * inches / shown.box.width, 0.8, 5.0))
 
 
 def _packing(axes: Axes, shown: Shown, **disks: Any) -> Any:

@@ -40,7 +40,12 @@ def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[byte
         if check:
             check(written)
         os.replace(temporary, target)
-    _sync_folder(target.parent)
+    with contextlib.suppress(OSError):  # the new name goes to the disk too, where the file system can
+        folder = os.open(target.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
 
 
 def check_writable(path: str | os.PathLike[str], inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
@@ -101,13 +106,3 @@ def _is_open(descriptor: int, path: Path) -> bool:
         return os.path.samestat(os.fstat(descriptor), os.stat(path))
     except FileNotFoundError:
         return False
-
-
-def _sync_folder(folder: Path) -> None:
-    """Put the new name on the disk too, where the file system can."""
-    with contextlib.suppress(OSError):
-        descriptor = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)

@@ -242,7 +242,6 @@ def added_forces_dataset(
     Gravity is subtracted as a vector. With the geometry under load that pictures need, and the certificates.
     """
     pairs, walls = rest[0].pairs, rest[0].walls
-    both = list(zip(rest, loaded, strict=True))
     statuses, statuses_rest = ([one.pairs.status for one in states] for states in (loaded, rest))
     text = f"contact force that the load adds, on the first disk {WEIGHTS}"
     under_load = f"disk centre x, z under load {RADII}"
@@ -253,12 +252,12 @@ def added_forces_dataset(
             "radius": described("radius", packing.radius),
             "contact_disk": described("contact_disk", pairs.first),
             "contact_partner": described("contact_partner", pairs.second),
-            "contact_added_force": stacked("contact_force", [pair_force_difference(*one) for one in both], text=text),
+            "contact_added_force": stacked("contact_force", list(map(pair_force_difference, rest, loaded)), text=text),
             "contact_status_rest": stacked("contact_status", statuses_rest, text="contact status at rest"),
             "contact_status": stacked("contact_status", statuses, text="contact status under load"),
             "wall_disk": described("wall_disk", walls.first, text="disk that the wall's force acts on"),
             "wall_index": described("wall_index", walls.second),
-            "wall_added_force": stacked("wall_force", [wall_force_difference(*one) for one in both], text=text),
+            "wall_added_force": stacked("wall_force", list(map(wall_force_difference, rest, loaded)), text=text),
             "width": variable((), packing.width, f"distance of the side walls {RADII}"),
         },
         coords={"axis": described("axis", ["x", "z"])},
