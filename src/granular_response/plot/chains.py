@@ -15,7 +15,7 @@ from .pictures import Shown
 
 #: Colours of disks, of the forces that press them together, and of those that the load takes away.
 DISKS, CHAINS, LOST = "#EFEDE8", "#12233F", "#8FA3BF"
-#: Points of the widest line; a thinner one than the other is left out.
+#: Points: the widest line, and what a line is left out below.
 WIDEST, THINNEST = 3.0, 0.3
 
 
