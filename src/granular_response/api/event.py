@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import os
 from collections.abc import Callable, Iterable, Mapping
@@ -18,7 +17,7 @@ from ..state import Event
 from ..sweeps.tasks import Progress
 from .event_table import check_kind
 from .result import Result, described, solve
-from .terminal import TerminalProgress
+from .terminal import shown
 
 #: Load (mean disk weights) before and beyond an event at which its contact has its status before and after: a thousand
 #: times what a path leaves of the event.
@@ -103,8 +102,7 @@ def find_event(
         raise ValueError(f"low = {low}: must be {least}, a factor of the scene's loads")
     tolerance = 1e-3 * (high - low) if tolerance is None else tolerance
     check_positive(tolerance=tolerance)
-    with contextlib.ExitStack() as stack:
-        report = stack.enter_context(TerminalProgress()) if progress is True else progress or None
+    with shown(progress) as report:
         if kind is not None and key == "load":
             if report:
                 report(0, 1, "event")

@@ -5,11 +5,10 @@ Units are the reduced ones (mean disk radius, mean disk mass, g), as everywhere 
 
 from __future__ import annotations
 
-import contextlib
 import html
 import os
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -34,7 +33,7 @@ from ..store.contact_table import contact_table
 from ..store.result import scene_of, solution_from, state_from, to_dataset
 from . import compiling
 from .event_table import Events
-from .terminal import TerminalProgress
+from .terminal import shown
 
 
 class Result:
@@ -83,9 +82,13 @@ class Result:
         return tuple(state.load_factor for state in self.loaded)
 
     @property
+    def _states(self) -> tuple[State, ...]:
+        return self.rest, *self.loaded
+
+    @property
     def certificates(self) -> tuple[Certificate, ...]:
         """Unbalanced force and stability of each state, the initial equilibrium first."""
-        return tuple(state.certificate for state in (self.rest, *self.loaded))
+        return tuple(state.certificate for state in self._states)
 
     @property
     def certificate(self) -> Certificate:
@@ -102,7 +105,7 @@ class Result:
         state is the load within which they were (mg), and ``reached.events_error`` what that leaves out
         of a force of the floor or a wall, per load.
         """
-        found = [(k, event) for k, state in enumerate((self.rest, *self.loaded)) for event in state.reached.events]
+        found = [(k, event) for k, state in enumerate(self._states) for event in state.reached.events]
         return Events((event for _, event in found), (k for k, _ in found))
 
     @property
@@ -143,10 +146,7 @@ class Result:
         smooth : width in mean radii of a Gaussian average over floor disks (Sec. VI); then the stress per force at x,
             per mean radius.
 
-        Raises
-        ------
-        ValueError
-            For a place that is not finite, and a width that is not positive.
+        Raises ValueError for a place that is not finite, and a width that is not positive.
 
         Examples
         --------
@@ -156,8 +156,7 @@ class Result:
         (place,) = _places("x", [x])
         data = self._data
         if smooth is None:
-            found = data["floor_response"].isel(floor_disk=int(np.abs(data["x"].values - place).argmin()))
-            return found.copy()
+            return data["floor_response"].isel(floor_disk=int(np.abs(data["x"].values - place).argmin())).copy()
         smoothed = smoothed_response([place], data["x"].values, data["floor_response"].values, smooth)[:, 0]
         labels = {"long_name": "smoothed floor response", "units": f"1 / {LENGTH}"}
         along = {name: data[name] for name in ("load", "load_factor", "step", "branch")}
@@ -180,10 +179,8 @@ class Result:
 
         ``contact_status`` and ``wall_status`` are 0 open, 1 sticking, 2 sliding.
         """
-        data = self._data
-        return data[[name for name in map(str, data.data_vars) if name.startswith(("contact_", "wall_"))]].copy(
-            deep=True
-        )
+        names = [name for name in map(str, self._data.data_vars) if name.startswith(("contact_", "wall_"))]
+        return self._data[names].copy(deep=True)
 
     def contacts_table(self, *, state: int = -1) -> Any:
         """The closed contacts of one state, a row for each, as a ``pandas.DataFrame``.
@@ -198,20 +195,14 @@ class Result:
         ----------
         state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
 
-        Raises
-        ------
-        IndexError
-            For a state that there is not.
-        TypeError
-            For a ``state`` that is no integer.
+        Raises IndexError for a state that there is not, TypeError for a ``state`` that is no integer.
 
         Examples
         --------
         >>> table = result.contacts_table()
         >>> table[table.status == "sliding"].to_csv("sliding.csv")
         """
-        chosen = (self.rest, *self.loaded)[self._index(state)]
-        return contact_table(chosen, self._data["radius"].values)
+        return contact_table(self._states[self._index(state)], self._data["radius"].values)
 
     def stress(
         self,
@@ -238,10 +229,8 @@ class Result:
 
         Raises
         ------
-        IndexError
-            For a state that there is not.
-        TypeError
-            For a ``state`` that is no integer.
+        IndexError, TypeError
+            For a state that there is not, and for a ``state`` that is no integer.
         ValueError
             Unless ``x`` and ``z`` are lists of finite numbers and ``width`` is positive, and for the added part of the
             initial equilibrium.
@@ -266,16 +255,13 @@ class Result:
         forces = load_forces(rest, now) if added else contact_forces(now)
         tensor = coarse_grained_stress(forces, grid_points(across + origin, up), width)
         names = np.array(["x", "z"])
+        labels = {"long_name": "stress that the load adds" if added else "stress", "units": f"{FORCE} / {LENGTH}"}
         return xr.DataArray(
             tensor,
             {"z": up, "x": across, "force": names, "branch": names},
             ("z", "x", "force", "branch"),
             "stress",
-            {
-                "long_name": "stress that the load adds" if added else "stress",
-                "units": f"{FORCE} / {LENGTH}",
-                "gaussian_width": width,
-            },
+            {**labels, "gaussian_width": width},
         )
 
     def influence(self, *, state: int = -1, sliding: str = "refuse") -> xr.DataArray:
@@ -295,10 +281,8 @@ class Result:
 
         Raises
         ------
-        IndexError
-            For a state that there is not.
-        TypeError
-            For a ``state`` that is no integer.
+        IndexError, TypeError
+            For a state that there is not, and for a ``state`` that is no integer.
         ValueError
             For another ``sliding``.
         granular_response.SolveError
@@ -358,10 +342,7 @@ class Result:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Store as netCDF-4, atomically; :func:`open_result` and ``xarray.open_dataset`` read it.
 
-        Raises
-        ------
-        granular_response.StoreError
-            If the file cannot be written.
+        Raises StoreError if the file cannot be written.
 
         Examples
         --------
@@ -381,10 +362,8 @@ class Result:
         state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last
             in a file of one.
 
-        Raises
-        ------
-        granular_response.ExportError
-            For another ending, a state that does not exist, a missing library, or a place that cannot be written.
+        Raises ExportError for another ending, a state that does not exist, a missing library, or a place that cannot be
+        written.
 
         Examples
         --------
@@ -405,7 +384,7 @@ class Result:
         (1.0, 0.5)
         """
         solution = self._solution or solution_from(self._data, folder=self._folder)
-        with compiling.logged(), _shown(progress) as report:
+        with compiling.logged(), shown(progress) as report:
             further = continue_solution(solution, load_factors, progress=report)
         return _vouched(further)
 
@@ -419,25 +398,27 @@ class Result:
     def _rows(self) -> list[tuple[str, str]]:
         """A line for each state: which, and what its certificate says."""
         rows = []
-        for k, (state, certificate) in enumerate(zip((self.rest, *self.loaded), self.certificates, strict=True)):
+        for k, state in enumerate(self._states):
             touching = int(state.pairs.touching.sum())
             change = touching - int(self.rest.pairs.touching.sum())
             contacts = f"{touching} contacts between disks" + (f" ({change:+d})" if change else "")
             name = f"load factor {state.load_factor:g}" if k else "initial equilibrium"
-            stable = {True: "stable", False: "unstable", None: "stability not determined"}[certificate.stable]
-            rows.append((name, f"{stable}, max. unbalanced force {certificate.force_residual:.1e}, {contacts}"))
+            stable = {True: "stable", False: "unstable", None: "stability not determined"}[state.certificate.stable]
+            rows.append((name, f"{stable}, max. unbalanced force {state.certificate.force_residual:.1e}, {contacts}"))
         return rows
 
+    def _size(self) -> str:
+        return f"{len(self.rest.position)} disks in a box {self.rest.box.width:g} wide"
+
     def __repr__(self) -> str:
-        head = f"Result: {len(self.rest.position)} disks in a box {self.rest.box.width:g} wide"
-        return "\n".join([head, *(f"  {name}: {text}" for name, text in self._rows())])
+        return "\n".join([f"Result: {self._size()}", *(f"  {name}: {text}" for name, text in self._rows())])
 
     def _repr_html_(self) -> str:
         rows = "".join(f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in self._rows())
         scene = html.escape(scene_text.write(shortened(self.scene.to_dict())))
         return (
-            f"<b>Result</b>: {len(self.rest.position)} disks in a box {self.rest.box.width:g} wide"
-            f"<table>{rows}</table><details><summary>scene</summary><pre>{scene}</pre></details>"
+            f"<b>Result</b>: {self._size()}<table>{rows}</table>"
+            f"<details><summary>scene</summary><pre>{scene}</pre></details>"
         )
 
 
@@ -477,16 +458,9 @@ def solve(
     asked = described(scene)
     if method is not None:
         asked = asked.updated({"protocol.method": method})
-    with compiling.logged(), _shown(progress) as report:
+    with compiling.logged(), shown(progress) as report:
         solution = solve_scene(asked, load_factors=load_factors, progress=report)
     return _vouched(solution)
-
-
-@contextlib.contextmanager
-def _shown(progress: Progress | bool) -> Iterator[Progress | None]:
-    """What is called with the progress: a bar, a function of the user's, or nothing."""
-    with TerminalProgress() if progress is True else contextlib.nullcontext(progress or None) as report:
-        yield report
 
 
 def _vouched(solution: Solution) -> Result:
@@ -513,22 +487,16 @@ def _places(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:
     except (TypeError, ValueError):  # text, or rows of different lengths
         places = np.array(np.nan)
     if places.ndim != 1 or not np.isfinite(places).all():
-        shown = " ".join(show(given).split())  # an array is several lines
-        raise ValueError(f"{name} = {shown}: must be a list of finite numbers")
+        said = " ".join(show(given).split())  # an array is several lines
+        raise ValueError(f"{name} = {said}: must be a list of finite numbers")
     return places
 
 
 def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] | None = None) -> Result:
     """A stored result.
 
-    ``folder`` is that of the scene file, where a packing from a table is to be continued.
-
-    Raises
-    ------
-    granular_response.StoreError
-        If the file cannot be read.
-    granular_response.ResultError
-        If it holds something else than a whole result.
+    ``folder`` is that of the scene file, where a packing from a table is to be continued. Raises StoreError if the file
+    cannot be read, ResultError if it holds something else than a whole result.
 
     Examples
     --------

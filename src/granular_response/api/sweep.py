@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import itertools
 import numbers
@@ -24,7 +23,7 @@ from ..sweeps.memory import Memory
 from ..sweeps.resources import current, using
 from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described
-from .terminal import TerminalProgress
+from .terminal import shown
 
 #: What a measure may return.
 Measured = Any
@@ -105,11 +104,8 @@ def sweep(
         checked_problem(each)
     folder = checkpoint or current().checkpoint
     task = functools.partial(_measured, measure=measure, memory=Memory(folder) if folder else None)
-    with contextlib.ExitStack() as stack:
-        stack.enter_context(using(checkpoint=None))
-        if progress is True:
-            progress = stack.enter_context(TerminalProgress())
-        found = map_tasks(task, scenes, workers=workers, scheduler=scheduler, progress=progress or None, what="scenes")
+    with using(checkpoint=None), shown(progress) as report:
+        found = map_tasks(task, scenes, workers=workers, scheduler=scheduler, progress=report, what="scenes")
     remarks = Counter(remark for _, remarks in found for remark in remarks)
     for remark, count in remarks.items():
         warnings.warn(f"{count} of {len(found)} combinations: {remark}", stacklevel=2)
@@ -119,8 +115,8 @@ def sweep(
 def _values(axes: Any) -> dict[str, list[Any]]:
     """The values of each key; raises ValueError for what is no axis."""
     if not isinstance(axes, Mapping):
-        shown = " ".join(show(axes).split())  # an array is several lines
-        raise ValueError(f"axes = {shown}: must be a mapping of keys to lists of values")
+        said = " ".join(show(axes).split())  # an array is several lines
+        raise ValueError(f"axes = {said}: must be a mapping of keys to lists of values")
     values = {}
     for key, given in axes.items():
         # text and mappings can be iterated over too, but by letters and by names
@@ -216,13 +212,12 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
         variable = variable.transpose(_POINT, ...)
         if name in coordinates and _same(variable.values):
             variables[str(name)] = variable.isel({_POINT: 0})
-            continue
-        if name == "step" and name in coordinates and (steps := _shared(variable.values)) is not None:
+        elif name == "step" and name in coordinates and (steps := _shared(variable.values)) is not None:
             variables[name] = (variable.dims[1:], steps, variable.attrs)
-            continue
-        whole = _spread(variable.values, place, len(found))
-        dimensions = (*names.values(), *variable.dims[1:])
-        variables[str(name)] = (dimensions, whole.reshape((*shape, *whole.shape[1:])), variable.attrs)
+        else:
+            whole = _spread(variable.values, place, len(found))
+            dimensions = (*names.values(), *variable.dims[1:])
+            variables[str(name)] = (dimensions, whole.reshape((*shape, *whole.shape[1:])), variable.attrs)
     for key, name in names.items():
         variables[name] = (name, _coordinate(values[key]), {"key": key})
     if any(errors):
@@ -236,7 +231,7 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
         )
     inside = [name for name in side_by_side.coords if name in variables]
     first, *others = (one.attrs for _, one in good)
-    shared = {key: value for key, value in first.items() if all(_alike(value, one.get(key)) for one in others)}
+    shared = {k: v for k, v in first.items() if all(np.array_equal(v, np.asarray(one.get(k))) for one in others)}
     gridded = xr.Dataset(variables, attrs=shared)
     gridded = gridded.set_coords([*names.values(), *inside, *(name for name in coordinates if name in variables)])
     # as for a single result, sel() takes the factor, or the step where factors repeat or differ
@@ -259,26 +254,21 @@ def _labelled_alike(results: Sequence[xr.Dataset]) -> list[xr.Dataset]:
         if all(one is not None and one.equals(labels[0]) for one in labels):
             continue
         if dim == "load":
-            plain = [_without_load_labels(one) for one in plain]
+            plain = [_without_labels(one, "load", "load_factor") for one in plain]
         elif dim == "floor_disk":  # in order along x, which indices of disks are not
-            plain = [_without_floor_labels(one) for one in plain]
+            plain = [_without_labels(one, "floor_disk", "floor_disk_index") for one in plain]
         elif not all(one is None or one.is_unique for one in labels):
             raise SweepError(f"measure: {dim} has a label twice, must have different ones or the same in each result")
     return plain
 
 
-def _without_floor_labels(one: xr.Dataset) -> xr.Dataset:
-    if "floor_disk" not in one.coords:
+def _without_labels(one: xr.Dataset, dim: str, kept: str) -> xr.Dataset:
+    """Without labels along ``dim``, which the coordinate ``kept`` has in place of them."""
+    if dim not in one.coords:
         return one
-    return one.assign_coords(floor_disk_index=one["floor_disk"].variable.to_base_variable()).drop_vars("floor_disk")
-
-
-def _without_load_labels(one: xr.Dataset) -> xr.Dataset:
-    if "load" not in one.coords:
-        return one
-    if "load_factor" not in one.variables:
-        one = one.assign_coords(load_factor=one["load"].variable.to_base_variable())
-    return one.drop_vars("load")
+    if kept not in one.variables:
+        one = one.assign_coords({kept: one[dim].variable.to_base_variable()})
+    return one.drop_vars(dim)
 
 
 def _side_by_side(results: Sequence[xr.Dataset]) -> tuple[xr.Dataset, set[Any]]:
@@ -321,10 +311,6 @@ def _spread(measured: np.ndarray, place: np.ndarray, count: int) -> np.ndarray:
     whole = np.full((count, *measured.shape[1:]), "" if kind.kind in "SU" else np.nan, kind)
     whole[place] = measured
     return whole
-
-
-def _alike(one: Any, other: Any) -> bool:
-    return np.array_equal(np.asarray(one), np.asarray(other))
 
 
 def _same(measured: np.ndarray) -> bool:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import time
+from collections.abc import Callable, Iterator
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -15,6 +17,13 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 def columns() -> int | None:
     """Width of a terminal for ``rich``; None: as it finds out. Where ``COLUMNS`` is 0 it would show nothing."""
     return None if os.environ.get("COLUMNS", "1").strip("0 ") else shutil.get_terminal_size().columns
+
+
+@contextlib.contextmanager
+def shown(progress: Callable[..., Any] | bool) -> Iterator[Callable[..., Any] | None]:
+    """What is called with the progress: a bar, a function of the user's, or nothing."""
+    with TerminalProgress() if progress is True else contextlib.nullcontext(progress or None) as report:
+        yield report
 
 
 class TerminalProgress:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..state import OPEN, FloatArray, State
+from ..state import OPEN, Contacts, FloatArray, State
 
 #: Inward normals of floor, left and right wall.
 _NORMALS = np.array([[0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]])
@@ -51,10 +51,9 @@ class Audit:
     ``force_residual``, ``torque_residual``: largest on any disk. ``coulomb_excess``: largest ``|f_t| - mu f_n`` of a
     closed contact. ``relative_residual``: largest unbalanced force beyond ``rounding``, as a part of what the disk
     bears: its weight, its load and the contact forces on it. ``force_mismatch``: largest difference between a recorded
-    contact force and the one found here.
-    ``unlisted``: closed contacts that the state does not list. ``stale_springs``: open contacts that kept a spring.
-    ``escaped``: disks with their centre outside of the box. ``in_flight``: disks out of balance that no chain of
-    contacts joins to a wall.
+    contact force and the one found here. ``unlisted``: closed contacts that the state does not list. ``stale_springs``:
+    open contacts that kept a spring. ``escaped``: disks with their centre outside of the box. ``in_flight``: disks out
+    of balance that no chain of contacts joins to a wall.
     """
 
     force_residual: float
@@ -92,10 +91,7 @@ def audit(
     periodic : x and x + width are the same place, and there are no side walls.
     rounding : force that a last digit of a position is worth (mean disk weights).
 
-    Raises
-    ------
-    ValueError
-        For a state whose contacts resist rolling: their couples are not summed here.
+    Raises ValueError for a state whose contacts resist rolling: their couples are not summed here.
     """
     if state.pairs.resists_rolling or state.walls.resists_rolling:
         raise ValueError("state: its contacts resist rolling, which is not checked")
@@ -104,12 +100,18 @@ def audit(
     total = np.array(load, float)
     total[:, 1] -= mass
     borne = np.abs(mass) + np.hypot(load[:, 0], load[:, 1])
-    excess = [0.0]
-    mismatch = [0.0]
-    unlisted = 0
+    excess, mismatch, unlisted = 0.0, 0.0, 0
 
-    # disks: upper triangle of all pairs
-    spring, recorded, listed = _tables(state, n)
+    def compare(fn: FloatArray, ft: FloatArray, rule: ContactRule, recorded: FloatArray, known: np.ndarray) -> None:
+        nonlocal excess, mismatch, unlisted
+        excess = max(excess, float((np.abs(ft) - rule.friction * fn).max(initial=0.0)))
+        mismatch = max(mismatch, float(np.abs(np.stack([fn, ft], axis=1) - recorded)[known].max(initial=0.0)))
+        unlisted += int((~known).sum())
+
+    # disks: upper triangle of all pairs. The tangential spring and force do not change sign when the two disks are
+    # exchanged: tangent and slip both turn over, and so does the disk the force acts on.
+    low, high = (which(state.pairs.first, state.pairs.second) for which in (np.minimum, np.maximum))
+    spring, recorded, listed = _tables(state.pairs, low, high, (n, n))
     i, j = np.triu_indices(n, 1)
     d = x[i] - x[j]
     if periodic:  # the nearest of the images
@@ -125,33 +127,19 @@ def audit(
     _add(total, j, normal, fn, ft, radius, -1.0)
     for disk in (i, j):
         np.add.at(borne, disk, np.hypot(fn, ft))
-    excess.append(float((np.abs(ft) - pair.friction * fn).max(initial=0.0)))
-    known = listed[i, j]
-    unlisted += int((~known).sum())
-    found = np.stack([fn, ft], axis=1)
-    mismatch.append(float(np.abs(found - recorded[i, j])[known].max(initial=0.0)))
+    compare(fn, ft, pair, recorded[i, j], listed[i, j])
 
     # walls
-    wall_spring = np.zeros((n, 3))
-    wall_recorded = np.zeros((n, 3, 2))
-    wall_listed = np.zeros((n, 3), bool)
-    c = state.walls
-    wall_spring[c.first, c.second] = c.spring
-    wall_recorded[c.first, c.second] = np.stack([c.normal_force, c.tangential_force], axis=1)
-    wall_listed[c.first, c.second] = True
+    spring, recorded, listed = _tables(state.walls, state.walls.first, state.walls.second, (n, 3))
     held = np.zeros(n, bool)
     for side, gap in enumerate((x[:, 1],) if periodic else (x[:, 1], x[:, 0], width - x[:, 0])):
         k = np.flatnonzero(gap < radius)
         held[k] = True
         fn = wall.normal_force(radius[k] - gap[k], radius[k])
-        ft = -wall.tangential_stiffness * wall_spring[k, side] if wall.friction > 0 else np.zeros(len(k))
+        ft = -wall.tangential_stiffness * spring[k, side] if wall.friction > 0 else np.zeros(len(k))
         _add(total, k, np.broadcast_to(_NORMALS[side], (len(k), 2)), fn, ft, radius, 1.0)
         borne[k] += np.hypot(fn, ft)
-        excess.append(float((np.abs(ft) - wall.friction * fn).max(initial=0.0)))
-        known = wall_listed[k, side]
-        unlisted += int((~known).sum())
-        found = np.stack([fn, ft], axis=1)
-        mismatch.append(float(np.abs(found - wall_recorded[k, side])[known].max(initial=0.0)))
+        compare(fn, ft, wall, recorded[k, side], listed[k, side])
 
     stale = sum(int(((c.status == OPEN) & (c.spring != 0)).sum()) for c in (state.pairs, state.walls))
     outside = (x[:, 1] < 0) | ~np.isfinite(x).all(axis=1)
@@ -167,9 +155,9 @@ def audit(
     return Audit(
         force_residual=float(unbalanced.max()),
         torque_residual=float(np.abs(total[:, 2]).max()) if turning else 0.0,
-        coulomb_excess=max(excess),
+        coulomb_excess=excess,
         relative_residual=float((np.maximum(unbalanced - rounding, 0.0) / borne).max()),
-        force_mismatch=max(mismatch),
+        force_mismatch=mismatch,
         unlisted=unlisted,
         stale_springs=stale,
         escaped=int(outside.sum()),
@@ -177,18 +165,14 @@ def audit(
     )
 
 
-def _tables(state: State, n: int) -> tuple[FloatArray, FloatArray, np.ndarray]:
-    """(n, n) springs, (n, n, 2) recorded forces and (n, n) whether listed, at [smaller index, larger index].
-
-    The tangential spring and force do not change sign when the two disks are exchanged: tangent and slip both turn
-    over, and so does the disk the force acts on.
-    """
-    c = state.pairs
-    low, high = np.minimum(c.first, c.second), np.maximum(c.first, c.second)
-    spring, recorded, listed = np.zeros((n, n)), np.zeros((n, n, 2)), np.zeros((n, n), bool)
-    spring[low, high] = c.spring
-    recorded[low, high] = np.stack([c.normal_force, c.tangential_force], axis=1)
-    listed[low, high] = True
+def _tables(
+    c: Contacts, row: np.ndarray, column: np.ndarray, shape: tuple[int, int]
+) -> tuple[FloatArray, FloatArray, np.ndarray]:
+    """Springs, recorded forces (..., 2) and whether listed, in tables where each contact has its place."""
+    spring, recorded, listed = np.zeros(shape), np.zeros((*shape, 2)), np.zeros(shape, bool)
+    spring[row, column] = c.spring
+    recorded[row, column] = np.stack([c.normal_force, c.tangential_force], axis=1)
+    listed[row, column] = True
     return spring, recorded, listed
 
 

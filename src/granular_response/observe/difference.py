@@ -69,30 +69,25 @@ def match_candidates(rest: State, loaded: State, radius: FloatArray) -> tuple[St
     if loaded.position.shape[0] != n or radius.shape != (n,):
         raise ValueError(f"radius: {radius.shape} for states of {n} and {loaded.position.shape[0]} disks")
 
-    def pair_overlap(state: State, i: NDArray[np.int32], j: NDArray[np.int32]) -> FloatArray:
-        distance = np.linalg.norm(state.box.separation(state.position[i], state.position[j]), axis=1)
-        return radius[i] + radius[j] - distance
-
-    def wall_overlap(state: State, i: NDArray[np.int32], wall: NDArray[np.int32]) -> FloatArray:
-        return -state.box.wall_gap(state.position[i], radius[i], wall)
-
-    pair_keys = [_pair_keys(s.pairs, n) for s in (rest, loaded)]
+    pair_keys = [pair_numbers(s.pairs.first, s.pairs.second, n) for s in (rest, loaded)]
     wall_keys = [s.walls.first.astype(np.int64) * 3 + s.walls.second for s in (rest, loaded)]
-    pair_union = np.union1d(*pair_keys)
-    wall_union = np.union1d(*wall_keys)
+    i, j = np.divmod(pair_union := np.union1d(*pair_keys), n)
+    k, wall = np.divmod(wall_union := np.union1d(*wall_keys), 3)
     matched = []
     for state, pair_key, wall_key in zip((rest, loaded), pair_keys, wall_keys, strict=True):
-        i, j = (pair_union // n).astype(np.int32), (pair_union % n).astype(np.int32)
-        k, wall = (wall_union // 3).astype(np.int32), (wall_union % 3).astype(np.int32)
-        pairs = _spread("pairs", state.pairs, pair_key, pair_union, i, j, pair_overlap(state, i, j))
-        walls = _spread("walls", state.walls, wall_key, wall_union, k, wall, wall_overlap(state, k, wall))
+        distance = np.linalg.norm(state.box.separation(state.position[i], state.position[j]), axis=1)
+        gap = state.box.wall_gap(state.position[k], radius[k], wall)
+        # the couple on the first disk is the opposite of that on the second
+        turned = np.where(state.pairs.first > state.pairs.second, -1.0, 1.0)
+        pairs = _spread("pairs", state.pairs, pair_key, pair_union, i, j, radius[i] + radius[j] - distance, turned)
+        walls = _spread("walls", state.walls, wall_key, wall_union, k, wall, -gap)
         matched.append(replace(state, pairs=pairs, walls=walls))
     return matched[0], matched[1]
 
 
-def _pair_keys(contacts: Contacts, n: int) -> NDArray[np.int64]:
-    low = np.minimum(contacts.first, contacts.second).astype(np.int64)
-    return low * n + np.maximum(contacts.first, contacts.second)
+def pair_numbers(first: NDArray, second: NDArray, n: int) -> NDArray[np.int64]:
+    """(m,) a number for each pair of ``n`` disks, the same in both directions."""
+    return np.minimum(first, second).astype(np.int64) * n + np.maximum(first, second)
 
 
 def _spread(
@@ -100,30 +95,19 @@ def _spread(
     contacts: Contacts,
     key: NDArray[np.int64],
     union: NDArray[np.int64],
-    first: NDArray[np.int32],
-    second: NDArray[np.int32],
+    first: NDArray[np.int64],
+    second: NDArray[np.int64],
     overlap: FloatArray,
+    turned: FloatArray | float = 1.0,
 ) -> Contacts:
     at = np.searchsorted(union, key)
     if np.unique(at).size != at.size:
         raise ValueError(f"{kind}: a contact is listed twice")
-
-    # the couple on the first disk is the opposite of that on the second
-    turned = np.where(contacts.first > contacts.second, -1.0, 1.0) if kind == "pairs" else 1.0
-
-    def place(values: NDArray, default: NDArray) -> NDArray:
-        default[at] = values
-        return default
-
-    return Contacts(
-        first=first,
-        second=second,
-        overlap=place(contacts.overlap, overlap.copy()),
-        normal_force=place(contacts.normal_force, np.zeros(union.size)),
-        tangential_force=place(contacts.tangential_force, np.zeros(union.size)),
-        spring=place(contacts.spring, np.zeros(union.size)),
-        status=place(contacts.status, np.full(union.size, OPEN, dtype=contacts.status.dtype)),
-        rolling_force=place(turned * contacts.rolling_force, np.zeros(union.size)),
-        rolling_spring=place(turned * contacts.rolling_spring, np.zeros(union.size)),
-        rolling_status=place(contacts.rolling_status, np.full(union.size, OPEN, dtype=np.int8)),
-    )
+    spread: dict[str, NDArray] = {"overlap": overlap}
+    for name in ("normal_force", "tangential_force", "spring", "rolling_force", "rolling_spring"):
+        spread[name] = np.zeros(union.size)
+    for name in ("status", "rolling_status"):
+        spread[name] = np.full(union.size, OPEN, np.int8)
+    for name, values in spread.items():
+        values[at] = getattr(contacts, name) * (turned if name in ("rolling_force", "rolling_spring") else 1)
+    return Contacts(first.astype(np.int32), second.astype(np.int32), **spread)

@@ -17,9 +17,8 @@ from .positive import check_positive
 def floor_disks(states: Sequence[State], bottom_row: ArrayLike = ()) -> NDArray[np.intp]:
     """(k,) indices of the floor disks, ordered by their ``x`` in the first state.
 
-    A floor disk belongs to ``bottom_row`` (disk indices, from the packing) or touches the floor in any of
-    ``states``; give every state that is to be compared, so that no floor force is left out.
-    Raises ``ValueError`` without a state.
+    A floor disk belongs to ``bottom_row`` (disk indices, from the packing) or touches the floor in any of ``states``;
+    give every state that is to be compared, so that no floor force is left out. Raises ``ValueError`` without a state.
     """
     if not states:
         raise ValueError("states: none given; at least one state is needed to find the floor disks")

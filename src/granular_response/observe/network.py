@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..state import SLIDING, Contacts, FloatArray, State
-from .difference import require_same
+from ..state import Contacts, FloatArray, State
+from .difference import pair_numbers, require_same
 from .floor import interior_mask
 
 #: Directions of the triangular lattice, as returned by :func:`lattice_direction`.
@@ -38,7 +38,7 @@ def contact_changes(rest: Contacts, loaded: Contacts) -> ContactChanges:
     Raises ``ValueError`` if the candidates differ.
     """
     require_same(rest, loaded)
-    slid, slides = rest.status == SLIDING, loaded.status == SLIDING
+    slid, slides = rest.sliding, loaded.sliding
     return ContactChanges(
         opened=rest.touching & ~loaded.touching,
         closed=~rest.touching & loaded.touching,
@@ -49,8 +49,7 @@ def contact_changes(rest: Contacts, loaded: Contacts) -> ContactChanges:
 
 def sliding_count(state: State, *, walls: bool = True) -> int:
     """Number of sliding contacts, with or without those at the walls (Sec. V.E)."""
-    count = np.count_nonzero(state.pairs.status == SLIDING)
-    return int(count + (np.count_nonzero(state.walls.status == SLIDING) if walls else 0))
+    return int(np.count_nonzero(state.pairs.sliding) + (np.count_nonzero(state.walls.sliding) if walls else 0))
 
 
 def contact_centre(state: State) -> FloatArray:
@@ -107,11 +106,7 @@ def rattlers(state: State, minimum_contacts: int = 2) -> BoolArray:
 
 
 def coordination_number(
-    state: State,
-    disks: BoolArray | None = None,
-    *,
-    walls: bool = False,
-    without_rattlers: bool = False,
+    state: State, disks: BoolArray | None = None, *, walls: bool = False, without_rattlers: bool = False
 ) -> float:
     """Mean number of contacts of a disk (Sec. VII), over ``disks`` ((n,) mask; all of them by default).
 
@@ -135,10 +130,9 @@ def contact_angle_histogram(
 ) -> tuple[FloatArray, FloatArray]:
     """Distribution of the angles of the touching pairs: bin centres (b,) from 0 and density (b,) per radian.
 
-    The density integrates to 1 over pi. The first bin is centred on the horizontal, so contacts that are
-    horizontal up to rounding are not split; with ``bins`` a multiple of 3 so are the oblique lattice
-    directions. ``contacts`` restricts the pairs. An empty network gives zeros. Raises ``ValueError`` for
-    fewer than one bin.
+    The density integrates to 1 over pi. The first bin is centred on the horizontal, so contacts that are horizontal up
+    to rounding are not split; with ``bins`` a multiple of 3 so are the oblique lattice directions. ``contacts``
+    restricts the pairs. An empty network gives zeros. Raises ``ValueError`` for fewer than one bin.
     """
     if bins < 1:
         raise ValueError(f"bins: {bins} given; it must be at least 1")
@@ -163,8 +157,7 @@ def mirror_disks(position: FloatArray, axis: float, tolerance: float = 0.1) -> N
     worst = int(np.argmax(distance))
     if distance[worst] > tolerance:
         raise ValueError(
-            f"position: disk {worst} has no mirror image within {tolerance} "
-            f"(nearest at {distance[worst]:.3g}); "
+            f"position: disk {worst} has no mirror image within {tolerance} (nearest at {distance[worst]:.3g}); "
             f"the packing is not symmetric about x = {axis}"
         )
     if not np.array_equal(index[index], np.arange(index.size)):
@@ -177,15 +170,9 @@ def unmatched_contacts(contacts: Contacts, mirror: NDArray[np.intp], *, sliding:
 
     ``mirror`` comes from :func:`mirror_disks`. An image that is no candidate counts as open.
     """
-    here = contacts.status == SLIDING if sliding else contacts.touching
-    n = mirror.size
-
-    def keys(first: NDArray, second: NDArray) -> NDArray[np.int64]:
-        return np.minimum(first, second).astype(np.int64) * n + np.maximum(first, second)
-
-    present = keys(contacts.first, contacts.second)[here]
-    image = keys(mirror[contacts.first], mirror[contacts.second])
-    return here & ~np.isin(image, present)
+    here = contacts.sliding if sliding else contacts.touching
+    present = pair_numbers(contacts.first, contacts.second, mirror.size)[here]
+    return here & ~np.isin(pair_numbers(mirror[contacts.first], mirror[contacts.second], mirror.size), present)
 
 
 def network_asymmetry(contacts: Contacts, mirror: NDArray[np.intp], *, sliding: bool = False) -> float:
@@ -193,7 +180,7 @@ def network_asymmetry(contacts: Contacts, mirror: NDArray[np.intp], *, sliding: 
 
     Measures the loss of symmetry of the network in Sec. V.E. Zero for a network without such contacts.
     """
-    total = np.count_nonzero(contacts.status == SLIDING if sliding else contacts.touching)
+    total = np.count_nonzero(contacts.sliding if sliding else contacts.touching)
     if total == 0:
         return 0.0
     return float(np.count_nonzero(unmatched_contacts(contacts, mirror, sliding=sliding)) / total)

@@ -22,6 +22,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..state import FloatArray
 from .positive import check_positive
 
+#: Mask over the samples; None takes all.
+Interior = NDArray[np.bool_] | None
+
 #: A dip shallower than this fraction of the largest response does not separate two peaks. Responses of two
 #: correct codes differ by about 1e-4; a dip at the limit of sight in a printed figure is about 1e-2.
 RELATIVE_PROMINENCE = 1e-3
@@ -59,7 +62,7 @@ def find_peaks(
     x: ArrayLike,
     response: ArrayLike,
     *,
-    interior: NDArray[np.bool_] | None = None,
+    interior: Interior = None,
     relative_prominence: float = RELATIVE_PROMINENCE,
     rounding: float = ROUNDING,
 ) -> Peaks:
@@ -119,17 +122,13 @@ def find_peaks(
 
 
 def peak_count(
-    x: ArrayLike,
-    response: ArrayLike,
-    *,
-    interior: NDArray[np.bool_] | None = None,
-    relative_prominence: float = RELATIVE_PROMINENCE,
+    x: ArrayLike, response: ArrayLike, *, interior: Interior = None, relative_prominence: float = RELATIVE_PROMINENCE
 ) -> int:
     """Number of peaks."""
     return len(find_peaks(x, response, interior=interior, relative_prominence=relative_prominence))
 
 
-def central_dip(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_] | None = None) -> float:
+def central_dip(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) -> float:
     """How far the response at x = 0 lies below the lower of the maxima beside it, per largest response.
 
     Continuous in the profile: negative while the maximum is at the centre, positive with two peaks, so its
@@ -149,11 +148,7 @@ def central_dip(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_
 
 
 def is_double_peaked(
-    x: ArrayLike,
-    response: ArrayLike,
-    *,
-    interior: NDArray[np.bool_] | None = None,
-    relative_prominence: float = RELATIVE_PROMINENCE,
+    x: ArrayLike, response: ArrayLike, *, interior: Interior = None, relative_prominence: float = RELATIVE_PROMINENCE
 ) -> bool:
     """Whether the response has two peaks in the sense of the paper's crossover (Secs. IV.A, V.A and V.B).
 
@@ -163,7 +158,7 @@ def is_double_peaked(
     return _outer_peaks(x, response, interior, relative_prominence) is not None
 
 
-def third_peak(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_] | None = None) -> float:
+def third_peak(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) -> float:
     """Prominence of the further peak of a double-peaked response within ``CENTRE`` of x = 0 (Sec. V.E, Fig. 16a).
 
     0 without one.
@@ -172,7 +167,7 @@ def third_peak(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_]
     return 0.0 if peaks is None else float(peaks.prominence[np.abs(peaks.position) <= CENTRE].max(initial=0.0))
 
 
-def asymmetry(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_] | None = None) -> float:
+def asymmetry(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) -> float:
     """Largest ``|r(x) - r(-x)|`` per largest response (Sec. V.E, Fig. 16b): 0 for a symmetric profile.
 
     ``r(-x)`` is interpolated linearly, which changes nothing where the samples lie symmetrically; samples
@@ -190,9 +185,7 @@ def asymmetry(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_] 
     return float(np.max(np.abs(r[both] - np.interp(-x[both], x, r))) / largest)
 
 
-def _outer_peaks(
-    x: ArrayLike, response: ArrayLike, interior: NDArray[np.bool_] | None, relative_prominence: float
-) -> Peaks | None:
+def _outer_peaks(x: ArrayLike, response: ArrayLike, interior: Interior, relative_prominence: float) -> Peaks | None:
     """All peaks, if there are peaks above the centre on both sides of it; else None."""
     peaks = find_peaks(x, response, interior=interior, relative_prominence=relative_prominence)
     x, r = _samples(x, response, interior)
@@ -203,7 +196,7 @@ def _outer_peaks(
     return peaks if both else None
 
 
-def _samples(x: ArrayLike, response: ArrayLike, interior: NDArray[np.bool_] | None) -> tuple[FloatArray, FloatArray]:
+def _samples(x: ArrayLike, response: ArrayLike, interior: Interior) -> tuple[FloatArray, FloatArray]:
     x, r = np.asarray(x, dtype=float), np.asarray(response, dtype=float)
     if x.ndim != 1 or x.shape != r.shape:
         raise ValueError(f"response: shape {r.shape} given for x of shape {x.shape}; both must be the same 1-D shape")

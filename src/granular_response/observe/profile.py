@@ -12,30 +12,21 @@ from .difference import pair_force_difference
 from .network import contact_centre
 from .positive import check_positive
 
-#: Distance of neighbouring rows of the triangular lattice, in lattice constants.
+#: Distance of neighbouring rows of the triangular lattice, in lattice constants, which are 2.
 ROW_SPACING = np.sqrt(3.0) / 2.0
 
 
 def force_profile(
-    rest: State,
-    loaded: State,
-    loaded_disk: int,
-    depth: float,
-    *,
-    lattice_constant: float = 2.0,
-    half_band: float | None = None,
+    rest: State, loaded: State, loaded_disk: int, depth: float, *, half_band: float = 0.5 * ROW_SPACING
 ) -> tuple[FloatArray, FloatArray]:
     """``x`` (c,) and |added force| (c,) of the touching pairs centred ``depth`` below the loaded disk.
 
-    ``x`` is measured from the loaded disk, and positions are those of the rest state, so the contacts at a
-    depth are the same for every load. Gravity is subtracted as a vector. A contact is taken if it touches in
-    either state and its centre is less than ``half_band`` off the depth; the default, a quarter of the
-    row spacing, parts the horizontal contacts of row k (at k row spacings) from the oblique ones between rows
-    (half a spacing further). Ordered by x, then from the top. Raises ``ValueError`` if the states list
-    different candidates, or ``half_band`` is not positive.
+    ``x`` is measured from the loaded disk, and positions are those of the rest state, so the contacts at a depth are
+    the same for every load. Gravity is subtracted as a vector. A contact is taken if it touches in either state and its
+    centre is less than ``half_band`` off the depth; the default, a quarter of the row spacing, parts the horizontal
+    contacts of row k (at k row spacings) from the oblique ones between rows (half a spacing further). Ordered by x,
+    then from the top. Raises ``ValueError`` if the states list different candidates, or ``half_band`` is not positive.
     """
-    if half_band is None:
-        half_band = 0.25 * ROW_SPACING * lattice_constant
     check_positive(half_band=half_band)
     magnitude = np.linalg.norm(pair_force_difference(rest, loaded), axis=1)
     offset = rest.box.separation(contact_centre(rest), rest.position[loaded_disk])
@@ -45,6 +36,6 @@ def force_profile(
     return offset[chosen, 0], magnitude[chosen]
 
 
-def row_depth(row: float, lattice_constant: float = 2.0) -> float:
+def row_depth(row: float) -> float:
     """Depth of the ``row``-th row below the loaded disk; oblique contacts lie at half-integer rows."""
-    return row * ROW_SPACING * lattice_constant
+    return 2.0 * row * ROW_SPACING

@@ -61,10 +61,9 @@ def contact_forces(state: State) -> ContactForces:
 def load_forces(rest: State, loaded: State) -> ContactForces:
     """The forces that the load adds, at the contacts of the loaded geometry (Fig. 14).
 
-    Gravity is subtracted as a vector at each contact. Points and branch vectors are those of the loaded
-    state, so the balance with the load alone is exact; the difference of the two states' stresses is another
-    field, by the product of rest forces and displacements. Raises ``ValueError`` if the states list
-    different candidates.
+    Gravity is subtracted as a vector at each contact. Points and branch vectors are those of the loaded state, so the
+    balance with the load alone is exact; the difference of the two states' stresses is another field, by the product of
+    rest forces and displacements. Raises ``ValueError`` if the states list different candidates.
     """
     return given_forces(loaded, pair_force_difference(rest, loaded), wall_force_difference(rest, loaded))
 

@@ -1,11 +1,10 @@
 """The teardrop: the connected region of contacts that the load opens below itself (Secs. IV.A and IV.B).
 
-Two open contacts are adjacent if their centres are within ``reach`` lattice constants of each other: on the
-triangular lattice horizontal contacts of one row and of neighbouring rows are one lattice constant
-apart, the next nearest 1.7, so the default 1.2 joins neighbours and bridges nothing. The region is the
-connected component nearest to the loaded disk, if it begins within ``start_distance`` lattice constants of
-it: contacts that the load opens far away, where the side walls have thinned the forces, are no teardrop. All
-lengths are measured in the rest state, in mean radii.
+Two open contacts are adjacent if their centres are within ``reach`` lattice constants of each other: on the triangular
+lattice horizontal contacts of one row and of neighbouring rows are one lattice constant apart, the next nearest 1.7, so
+the default 1.2 joins neighbours and bridges nothing. The region is the connected component nearest to the loaded disk,
+if it begins within ``start_distance`` lattice constants of it: contacts that the load opens far away, where the side
+walls have thinned the forces, are no teardrop. All lengths are measured in the rest state, in mean radii.
 """
 
 from __future__ import annotations
@@ -40,12 +39,7 @@ class OpenRegion:
         return int(np.count_nonzero(self.contacts))
 
 
-def teardrop(
-    rest: State,
-    loaded: State,
-    loaded_disk: int,
-    **region: Any,
-) -> OpenRegion:
+def teardrop(rest: State, loaded: State, loaded_disk: int, **region: Any) -> OpenRegion:
     """Region of the pairs that touch at rest and are open under load, nearest to ``loaded_disk`` (Fig. 5).
 
     ``region``: ``start``, ``lattice_constant``, ``reach`` and ``start_distance`` of :func:`open_region`.
@@ -69,11 +63,10 @@ def open_region(
     """Connected region of the ``opened`` pairs ((m,) mask) that begins nearest to ``origin`` ((2,)).
 
     ``state`` gives the geometry. ``start`` (a mask over pairs, such as ``interior_contacts``) can narrow where the
-    region may begin. Contacts that are equally near to the origin (within a hundredth of a
-    lattice constant) all begin the region, so a symmetric network has a symmetric region. The width of a row
-    takes in all contacts whose centres differ in height by less than a quarter of the row spacing. The region
-    reaches the floor with a contact of which both disks touch the floor in ``state``: on the lattice, a
-    horizontal one of the bottom row.
+    region may begin. Contacts that are equally near to the origin (within a hundredth of a lattice constant) all begin
+    the region, so a symmetric network has a symmetric region. The width of a row takes in all contacts whose centres
+    differ in height by less than a quarter of the row spacing. The region reaches the floor with a contact of which
+    both disks touch the floor in ``state``: on the lattice, a horizontal one of the bottom row.
     """
     inside = np.zeros(opened.shape, dtype=bool)
     candidate = np.flatnonzero(opened)

@@ -41,7 +41,8 @@ def lengths(t: FloatArray, profile: FloatArray, tolerance: float = 0.0) -> Float
     """
     shape, profile = profile.shape[:-1], profile.reshape(-1, len(t))
     found = np.full((len(profile), len(DEFINITIONS)), np.nan)
-    within = np.concatenate([np.zeros((len(profile), 1)), np.cumsum(_strips(t, profile), axis=1)], axis=1)
+    strips = 0.5 * (profile[:, 1:] + profile[:, :-1]) * np.diff(t)
+    within = np.concatenate([np.zeros((len(profile), 1)), np.cumsum(strips, axis=1)], axis=1)
     for row, (one, force) in enumerate(zip(profile, within, strict=True)):
         if not np.isfinite(one).all() or not one.max() > 0.0:
             continue
@@ -54,10 +55,6 @@ def lengths(t: FloatArray, profile: FloatArray, tolerance: float = 0.0) -> Float
         if one[0] < (1.0 - tolerance) * one[top]:
             found[row, 2:] = t[top], outer - t[top]
     return found.reshape(*shape, len(DEFINITIONS))
-
-
-def _strips(t: FloatArray, profile: FloatArray) -> FloatArray:
-    return 0.5 * (profile[:, 1:] + profile[:, :-1]) * np.diff(t)
 
 
 def last_passage(t: FloatArray, profile: FloatArray, level: float) -> float:

@@ -19,7 +19,7 @@ from ..state import FloatArray
 from ..store import atomic
 from . import chains, style
 from .chains import draw_chains, draw_key, draw_response
-from .pictures import HasDataset, PictureError, Shown, _has_response, _new_figure, _why_no_response
+from .pictures import HasDataset, PictureError, Shown, _has_response, _new_figure, _why_no_response, check_positive
 
 Results = HasDataset | xr.Dataset | Mapping[str, HasDataset | xr.Dataset]
 
@@ -61,11 +61,8 @@ def animate(
     dpi, width : pixels per inch, and inches from side to side.
     figure : drawn into, or a new one of pyplot's.
 
-    Raises
-    ------
-    PictureError
-        For results without a response or whose forces differ, another ending, a number that is not positive, and a
-        file that cannot be written.
+    Raises PictureError for results without a response or whose forces differ, another ending, a number that is not
+    positive, and a file that cannot be written.
 
     Examples
     --------
@@ -73,9 +70,7 @@ def animate(
     >>> growing = gr.solve(result.scene, load_factors=np.linspace(0.1, 2.0, 20))
     >>> animation = gr.plot.animate(growing, output="growing.gif")  # in a notebook: HTML(animation.to_jshtml())
     """
-    for name, value in {"fps": fps, "dpi": dpi}.items():
-        if not (np.isfinite(value) and value > 0.0):
-            raise PictureError(f"{name} = {value}: must be a number greater than 0")
+    check_positive(fps=fps, dpi=dpi)
     ending = Path(output).suffix if output is not None else ""
     if output is not None and ending not in FORMATS:
         raise PictureError(f"{output}: format {ending!r} is unknown, must be {', '.join(FORMATS)}")
@@ -115,9 +110,7 @@ class Frames:
         figure: Figure | None = None,
     ) -> None:
         """Parameters and errors are those of :func:`animate`."""
-        for name, value in {"half_width": half_width, "width": width}.items():
-            if value is not None and not (np.isfinite(value) and value > 0.0):
-                raise PictureError(f"{name} = {value}: must be a number greater than 0")
+        check_positive(half_width=half_width, width=width)
         given = results if isinstance(results, Mapping) and not isinstance(results, xr.Dataset) else {"": results}
         self.columns = {title: Shown.of(one) for title, one in given.items()}
         shown = [*self.columns.values()]

@@ -15,14 +15,14 @@ from .pictures import Shown
 
 #: Colours of disks, of the forces that press them together, and of those that the load takes away.
 DISKS, CHAINS, LOST = "#EFEDE8", "#12233F", "#8FA3BF"
-#: Points; a thinner line is left out.
-THINNEST = 0.3
+#: Points: the widest line, and what a line is left out below.
+WIDEST, THINNEST = 3.0, 0.3
 
 
-def draw_chains(axes: Axes, shown: Shown, *, largest: float, widest: float = 3.0, half_width: float) -> None:
+def draw_chains(axes: Axes, shown: Shown, *, largest: float, half_width: float) -> None:
     """What the load adds at each contact as a line from centre to centre, the contacts that it opens, the load.
 
-    Widths go as the square root of the force and reach ``widest`` points at ``largest`` (mean disk weights); larger
+    Widths go as the square root of the force and reach :data:`WIDEST` points at ``largest`` (mean disk weights); larger
     forces have that width. Dark lines press disks together, pale ones take compression away. What is within
     ``half_width`` of the loaded disk is drawn, without axes.
     """
@@ -33,27 +33,27 @@ def draw_chains(axes: Axes, shown: Shown, *, largest: float, widest: float = 3.0
     at_wall, index = shown.values("wall_disk"), shown.values("wall_index")
     pair, wall = shown.forces(added=True)
     network.draw_disks(axes, shown.position[near], shown.radius[near], facecolor=DISKS, edgecolor="none", zorder=0)
-    separation = shown.box.separation(shown.position[first], shown.position[second])
+    along = np.sum(pair * shown.box.separation(shown.position[first], shown.position[second]), axis=1)
     foot = shown.box.on_wall(shown.position[at_wall], index)
-    towards = shown.position[at_wall] - foot
+    inward = np.sum(wall * (shown.position[at_wall] - foot), axis=1)
+    width, wall_width = (
+        WIDEST * np.sqrt(np.minimum(np.linalg.norm(force, axis=1) / (largest if largest > 0.0 else np.inf), 1.0))
+        for force in (pair, wall)
+    )
     for sign, colour, order in ((-1.0, LOST, 2), (1.0, CHAINS, 3)):
         look: dict[str, Any] = {"color": colour, "capstyle": "round", "zorder": order}
-        presses = kept & (sign * np.sum(pair * separation, axis=1) > 0.0)
-        width = _widths(pair, largest, widest)
-        drawn = presses & (width > THINNEST)
+        drawn = kept & (sign * along > 0.0) & (width > THINNEST)
         lines = (first[drawn], second[drawn])
         network.draw_contacts(axes, shown.position, *lines, box=shown.box, linewidth=width[drawn], **look)
-        width = _widths(wall, largest, widest)
-        drawn = near[at_wall] & (sign * np.sum(wall * towards, axis=1) > 0.0) & (width > THINNEST)
+        drawn = near[at_wall] & (sign * inward > 0.0) & (wall_width > THINNEST)
         ends = np.stack([shown.position[at_wall][drawn], foot[drawn]], axis=1)
-        axes.add_collection(LineCollection(list(ends), linewidths=width[drawn], **look), autolim=False)
+        axes.add_collection(LineCollection(list(ends), linewidths=wall_width[drawn], **look), autolim=False)
     opened = kept & (shown.values("contact_status", 0) != OPEN) & (shown.values("contact_status") == OPEN)
-    look = {"color": style.VERMILION, "linewidth": 0.5 * widest, "capstyle": "butt", "zorder": 4}
+    look = {"color": style.VERMILION, "linewidth": 0.5 * WIDEST, "capstyle": "butt", "zorder": 4}
     network.draw_contacts(axes, shown.position, first[opened], second[opened], box=shown.box, **look)
     axes.axhline(0.0, color=style.MUTED, linewidth=1.0, linestyle="-", zorder=5)
     for disk, force, _ in shown.loads:
-        size = float(np.hypot(*force))
-        if size > 0.0:
+        if size := float(np.hypot(*force)):
             tip = shown.position[disk] - shown.radius[disk] * force / size
             network.draw_load(axes, tip, force, length=0.15 * shown.top)
     style.no_axes(axes)
@@ -88,9 +88,3 @@ def draw_key(axes: Axes, reference: str) -> None:
     for k, (text, colour) in enumerate((("opened contacts", style.VERMILION), (reference, style.MUTED))):
         axes.annotate(text, (1.0, 1.0), (-1.0, -2.0 - 10.0 * k), xycoords="axes fraction", textcoords="offset points",
                       ha="right", va="top", fontsize=8, color=colour)  # fmt: skip
-
-
-def _widths(force: np.ndarray, largest: float, widest: float) -> np.ndarray:
-    """(m,) points."""
-    part = np.linalg.norm(force, axis=1) / largest if largest > 0.0 else np.zeros(len(force))
-    return widest * np.sqrt(np.minimum(part, 1.0))

@@ -292,13 +292,7 @@ def draw_torque(axes: Axes, at: ArrayLike, torque: float, *, radius: float = 1.7
 
 
 def draw_box(
-    axes: Axes,
-    box: Box,
-    height: float,
-    *,
-    between: tuple[float, float] | None = None,
-    shift: float = 0.0,
-    **lines: Any,
+    axes: Axes, box: Box, height: float, *, between: tuple[float, float] | None = None, shift: float = 0.0, **lines: Any
 ) -> LineCollection:
     """The floor and the sides up to ``height``, dashed where they are periodic; only what lies ``between`` two x.
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from ..observe.disk_stress import disk_stress, principal_difference
 from ..state import FloatArray, wall_normals
 from . import style
-from .pictures import HasDataset, PictureError, Shown, _aspect, _axes, _loads
+from .pictures import HasDataset, Shown, _aspect, _axes, _loads, check_positive
 
 #: Each pixel is the mean of this many by as many points: near a contact fringes are narrower than a pixel.
 POINTS = 2
@@ -46,19 +46,14 @@ def photoelastic(
     pixels : of the picture, from side to side.
     image : goes to ``Axes.imshow``.
 
-    Raises
-    ------
-    PictureError
-        For a state that there is not, and unless ``fringe``, ``half_width`` and ``pixels`` are positive.
+    Raises PictureError for a state that there is not, unless ``fringe``, ``half_width`` and ``pixels`` are positive.
 
     Examples
     --------
     >>> gr.plot.photoelastic(result, half_width=15.0).figure.savefig("fringes.png")
     """
     shown = Shown.of(result, state)
-    for name, value in {"fringe": fringe, "half_width": half_width, "pixels": pixels}.items():
-        if value is not None and not (np.isfinite(value) and value > 0.0):
-            raise PictureError(f"{name} = {value}: must be a number greater than 0")
+    check_positive(fringe=fringe, half_width=half_width, pixels=pixels)
     added = shown.index > 0 if added is None else added
     left, right = 0.0, shown.box.width
     if half_width is not None:
@@ -113,16 +108,11 @@ def _on_rims(shown: Shown, added: bool) -> tuple[np.ndarray, FloatArray, FloatAr
     separation = shown.box.separation(shown.position[first], shown.position[second])
     normal = separation / np.linalg.norm(separation, axis=1, keepdims=True)
     pair, wall = shown.forces(added)
-    loads = [(disk, -force / size, force) for disk, force, _ in shown.loads if (size := float(np.hypot(*force)))]
+    inward = wall_normals(shown.values("wall_index"))
+    acting = [(disk, *(-force / size), *force) for disk, force, _ in shown.loads if (size := np.hypot(*force))]
+    loads = np.reshape(acting, (-1, 5))
     return (
-        np.concatenate([first, second, shown.values("wall_disk"), np.array([disk for disk, *_ in loads], dtype=int)]),
-        np.concatenate(
-            [
-                -normal,
-                normal,
-                -wall_normals(shown.values("wall_index")),
-                np.reshape([at for _, at, _ in loads], (-1, 2)),
-            ]
-        ),
-        np.concatenate([pair, -pair, wall, np.reshape([force for *_, force in loads], (-1, 2))]),
+        np.concatenate([first, second, shown.values("wall_disk"), loads[:, 0].astype(int)]),
+        np.concatenate([-normal, normal, -inward, loads[:, 1:3]]),
+        np.concatenate([pair, -pair, wall, loads[:, 3:]]),
     )

@@ -36,6 +36,13 @@ class PictureError(GranularError, ValueError):
     """A picture that cannot be drawn as asked. The message is one line."""
 
 
+def check_positive(**given: float | None) -> None:
+    """PictureError, with its name, for the first of ``given`` that is no number greater than 0; None is left out."""
+    for name, value in given.items():
+        if value is not None and not (np.isfinite(value) and value > 0.0):
+            raise PictureError(f"{name} = {value}: must be a number greater than 0")
+
+
 class HasDataset(Protocol):
     """A result."""
 
@@ -132,22 +139,21 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
     >>> gr.plot.response(result).figure.savefig("response.png")
     """
     shown = Shown.of(result)
-    values = np.atleast_2d(shown.data["floor_response"].values)
     if not _has_response(shown):
         raise PictureError(
             f"result: {_why_no_response(shown)}, so there is no response; floor draws the forces on the floor"
         )
     with style.context():
         axes = _axes(ax, 0.36)
-        forces = np.atleast_1d(shown.data["total_force"].values)
-        branch = _load_branches(shown)
-        for k, (curve, force) in enumerate(zip(values, forces, strict=True)):
-            if np.isnan(curve).all():  # unloaded: floor draws what is left
-                continue
-            colour = style.ordered_colours(len(values))[k]
-            label = f"{force:g}{branch[k]}"
-            look = {**style.marked_line(k, colour=colour), "markersize": 2.6, "label": label, **line}
-            axes.plot(shown.data["x"].values, curve, **look)
+        curves = np.atleast_2d(shown.data["floor_response"].values)
+        forces, colours = np.atleast_1d(shown.data["total_force"].values), style.ordered_colours(len(curves))
+        branches = shown.data["branch"].values if "branch" in shown.data.variables else ["loading"] * len(curves)
+        one_branch = all(branch == "loading" for branch in branches)
+        for k, (curve, force, branch) in enumerate(zip(curves, forces, branches, strict=True)):
+            if not np.isnan(curve).all():  # unloaded: floor draws what is left
+                label = f"{force:g}" if one_branch else f"{force:g} ({branch})"
+                look = {**style.marked_line(k, colour=colours[k]), "markersize": 2.6, "label": label, **line}
+                axes.plot(shown.data["x"].values, curve, **look)
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
         axes.set(xlabel=style.POSITION, ylabel=style.RESPONSE)
         axes.margins(x=0.02)
@@ -155,20 +161,8 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
     return axes
 
 
-def _load_branches(shown: Shown) -> list[str]:
-    """What a legend adds to each load: its branch, where not all are on the first."""
-    branch = shown.data["branch"].values.tolist() if "branch" in shown.data.variables else []
-    told = any(one != "loading" for one in branch)
-    return [f" ({one})" if told else "" for one in branch] or [""] * shown.data["floor_response"].size
-
-
 def floor(
-    result: HasDataset | xr.Dataset,
-    *,
-    ax: Axes | None = None,
-    state: int = -1,
-    added: bool | None = None,
-    **line: Any,
+    result: HasDataset | xr.Dataset, *, ax: Axes | None = None, state: int = -1, added: bool | None = None, **line: Any
 ) -> Axes:
     """The vertical force on each floor disk in mean disk weights, by default the part that the load adds.
 
@@ -232,12 +226,9 @@ def forces(
     pair, wall = shown.forces(added)
     normal = shown.box.separation(*(shown.position[disks] for disks in shown.pairs))
     inward = wall_normals(shown.values("wall_index"))
-    point = np.concatenate(
-        [
-            network.pair_points(shown.position, shown.radius, *shown.pairs, box=shown.box),
-            network.wall_points(shown.position, shown.radius, shown.values("wall_disk"), shown.values("wall_index")),
-        ]
-    )
+    between = network.pair_points(shown.position, shown.radius, *shown.pairs, box=shown.box)
+    feet = network.wall_points(shown.position, shown.radius, shown.values("wall_disk"), shown.values("wall_index"))
+    point = np.concatenate([between, feet])
     force, direction = np.concatenate([pair, wall]), np.concatenate([normal, inward])
     pushes = np.sum(force * direction, axis=1) >= 0.0
     reference = float(np.linalg.norm(force, axis=1).max(initial=0.0)) if vmax is None else vmax
@@ -247,7 +238,9 @@ def forces(
         _packing(axes, shown)
         # by percentile, half of all forces are large: shorter and thinner lines keep them apart
         crowded = 0.5 if scale == "percentile" else 1.0
-        widest = crowded * _width_per_radius(axes, shown)
+        # the largest force is as wide as the radius of a disk across the page, in points
+        inches = axes.figure.get_figure(root=True).get_size_inches()[0] * axes.get_position().width
+        widest = crowded * float(np.clip(72.0 * inches / shown.box.width, 0.8, 5.0))
         factors = {"length_per_force": 4.0 * crowded, "width_per_force": widest}
         kinds = {"force increased": (pushes, style.BLACK, 3), "force decreased": (~pushes, style.VERMILION, 4)}
         for mask, colour, order in kinds.values():
@@ -259,8 +252,7 @@ def forces(
             if added and (np.linalg.norm(drawn[mask], axis=1) > 0.02).any()
         ]
         if reference > 0.0 and scale != "percentile":
-            sizes = [reference, 0.1 * reference]
-            for size in sizes:
+            for size in (reference, 0.1 * reference):
                 part = float(network.SCALES[scale](np.array([size / reference]))[0])
                 name = f"${size:.2g}\\,\\bar m g$"
                 handles.append(Line2D([], [], color=style.BLACK, linewidth=widest * part, label=name))
@@ -330,8 +322,7 @@ def stress(
     added = shown.index > 0 if added is None else added
     if component not in ("xx", "xz", "zx", "zz"):
         raise PictureError(f"component = {component!r}: must be one of xx, xz, zx, zz")
-    if vmax is not None and not (np.isfinite(vmax) and vmax > 0.0):
-        raise PictureError(f"vmax = {vmax}: must be a number greater than 0")
+    check_positive(vmax=vmax)
     first, second = shown.pairs
     at_wall, wall = shown.position[shown.values("wall_disk")], shown.values("wall_index")
     separation = shown.box.separation(shown.position[first], shown.position[second])
@@ -360,9 +351,8 @@ def stress(
         _loads(axes, shown, origin=shown.origin)
         axes.set(ylim=(-0.03 * shown.top, None), xlabel=style.POSITION, ylabel=style.HEIGHT)
         axes.tick_params(top=False, right=False)
-        what = "added " if added else ""
         bar = axes.figure.colorbar(image, ax=axes, shrink=0.9, aspect=14, pad=0.02)
-        bar.set_label(f"{what}$\\sigma_{{{component}}}\\bar R/\\bar m g$")
+        bar.set_label(f"{'added ' if added else ''}$\\sigma_{{{component}}}\\bar R/\\bar m g$")
         ticks = [end * part for part in (-1.0, -0.25, 0.0, 0.25, 1.0)]
         bar.set_ticks(ticks, labels=[f"${tick:.2g}$" for tick in ticks])
         bar.ax.minorticks_off()
@@ -474,9 +464,8 @@ def page(
             if k >= len(what):
                 axes.set_axis_off()
                 continue
-            options: dict[str, Any] = {} if what[k] == "response" else {"state": state}
-            options |= {"scale": scale} if what[k] == "forces" else {}
-            PICTURES[what[k]](shown.data, ax=axes, **options)
+            options = {} if what[k] == "response" else {"state": state}
+            PICTURES[what[k]](shown.data, ax=axes, **options, **({"scale": scale} if what[k] == "forces" else {}))
             if what[k] in _GRAPHS and columns > 1:
                 axes.set_box_aspect(0.75)
             style.letter(axes, chr(ord("a") + k), place="above", text=_title(what[k], shown))
@@ -513,13 +502,11 @@ def save(
 
 
 def _title(what: str, shown: Shown) -> str:
-    load = "at rest"
-    if shown.index:
-        total = sum(float(np.hypot(*force)) for _, force, _ in shown.loads)
-        turning = sum(abs(torque) for *_, torque in shown.loads)
-        load = f"$F_{{\\mathrm{{ext}}}} = {total:.4g}\\,\\bar m g$"
-        if turning and not total:
-            load = f"torque ${turning:.4g}\\,{style.TORQUE_UNIT}$"
+    total = sum(float(np.hypot(*force)) for _, force, _ in shown.loads)
+    turning = sum(abs(torque) for *_, torque in shown.loads)
+    load = f"$F_{{\\mathrm{{ext}}}} = {total:.4g}\\,\\bar m g$" if shown.index else "at rest"
+    if turning and not total:
+        load = f"torque ${turning:.4g}\\,{style.TORQUE_UNIT}$"
     return "floor response" if what == "response" else f"{'floor forces' if what == 'floor' else what}, {load}"
 
 
@@ -557,12 +544,6 @@ def _aspect(shown: Shown) -> float:
     return 1.2 * shown.top / (shown.box.width + 2.0)
 
 
-def _width_per_radius(axes: Axes, shown: Shown) -> float:
-    """Points that one mean radius takes across the page: the largest force is as wide as a disk's radius."""
-    inches = axes.figure.get_figure(root=True).get_size_inches()[0] * axes.get_position().width
-    return float(np.clip(72.0 * inches / shown.box.width, 0.8, 5.0))
-
-
 def _packing(axes: Axes, shown: Shown, **disks: Any) -> Any:
     """Disks, box and loads, without axes."""
     look = {"edgecolor": "#DCDCDC", "linewidth": 0.4, **disks}
@@ -585,11 +566,9 @@ def _loads(axes: Axes, shown: Shown, *, origin: float | None = None) -> None:
         if origin is not None:
             centre = shown.box.separation(centre, np.array([origin, 0.0]))
         network.draw_loaded_disk(axes, centre, radius)
-        size = float(np.hypot(*force))
-        if size > 0.0:
-            tip = centre - radius * force / size
+        if size := float(np.hypot(*force)):
             length = max(3.0, 0.16 * shown.top) * size / largest
-            network.draw_load(axes, tip, force, length=length)
+            network.draw_load(axes, centre - radius * force / size, force, length=length)
         network.draw_torque(axes, centre, torque, radius=1.7 * radius)
         if torque and not largest:  # no arrow of a force makes room for the arc
             axes.update_datalim([(centre[0], centre[1] + 2.2 * radius)])
@@ -599,11 +578,6 @@ def _loads(axes: Axes, shown: Shown, *, origin: float | None = None) -> None:
 def _legend(axes: Axes, handles: Sequence[Any], shown: Shown) -> None:
     """Below the picture, in two columns where that is narrow."""
     if handles:
-        axes.legend(
-            handles=handles,
-            loc="upper center",
-            bbox_to_anchor=(0.5, 0.0),
-            ncols=len(handles) if _aspect(shown) < 0.6 else 2,
-            columnspacing=1.4,
-            borderaxespad=0.2,
-        )
+        columns = len(handles) if _aspect(shown) < 0.6 else 2
+        below: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "borderaxespad": 0.2}
+        axes.legend(handles=handles, ncols=columns, columnspacing=1.4, **below)

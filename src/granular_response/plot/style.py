@@ -31,16 +31,8 @@ MARGIN = 0.06
 
 #: Categorical colours (Okabe and Ito), told apart with every common kind of colour vision; each with a line
 #: style and a marker of its own, so that they survive a black-and-white print too.
-BLACK, BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
-    "#000000",
-    "#0072B2",
-    "#D55E00",
-    "#009E73",
-    "#CC79A7",
-    "#E69F00",
-    "#56B4E9",
-)
-COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK = COLOURS
 LINE_STYLES: tuple[Any, ...] = (
     "-",
     (0, (5, 1.6)),
@@ -103,6 +95,15 @@ FAINT, MUTED = "#C8C8C8", "#707070"
 #: What the paper says, on a plot: lines with its value beside them, or a band.
 PAPER, PAPER_BAND = "#9A7B4F", "#F1E9DA"
 
+#: Of both axes.
+_TICKS: dict[str, Any] = {
+    "direction": "in",
+    "labelsize": 8,
+    "major.size": 3.0,
+    "major.width": 0.6,
+    "minor.size": 1.6,
+    "minor.width": 0.4,
+}
 RC: dict[str, Any] = {
     "axes.axisbelow": True,
     "axes.formatter.use_mathtext": True,
@@ -135,21 +136,13 @@ RC: dict[str, Any] = {
     "savefig.dpi": 200,
     "svg.fonttype": "path",  # letters as drawn, whatever fonts the reader has
     "svg.hashsalt": "granular_response",
-    "xtick.direction": "in",
-    "xtick.labelsize": 8,
-    "xtick.major.size": 3.0,
-    "xtick.major.width": 0.6,
-    "xtick.minor.size": 1.6,
-    "xtick.minor.width": 0.4,
     "xtick.top": True,
-    "ytick.direction": "in",
-    "ytick.labelsize": 8,
-    "ytick.major.size": 3.0,
-    "ytick.major.width": 0.6,
-    "ytick.minor.size": 1.6,
-    "ytick.minor.width": 0.4,
     "ytick.right": True,
+    **{f"{axis}tick.{key}": value for axis in "xy" for key, value in _TICKS.items()},
 }
+#: Settings of the program rather than of a picture; resetting some of them warns or switches the backend.
+_NOT_STYLE = ("animation", "backend", "backend_fallback", "docstring", "interactive", "keymap", "macosx", "timezone",
+              "tk", "toolbar", "webagg")  # fmt: skip
 
 
 @contextmanager
@@ -159,29 +152,10 @@ def context() -> Iterator[None]:
     Legends, colour bars and texts take their looks when they are made, so the whole of a drawing function
     belongs inside: decorate it with ``@style.context()``.
     """
-    settings: dict[Any, Any] = {k: v for k, v in mpl.rcParamsDefault.items() if k not in _NOT_STYLE}
-    settings.update(RC)
+    defaults = {key: one for key, one in mpl.rcParamsDefault.items() if key.partition(".")[0] not in _NOT_STYLE}
+    settings: dict[Any, Any] = {**defaults, **RC}
     with mpl.rc_context(settings):
         yield
-
-
-#: Settings of the program rather than of a picture; resetting some of them warns or switches the backend.
-_NOT_STYLE = frozenset(
-    key
-    for key in mpl.rcParamsDefault
-    if key.partition(".")[0]
-    in {
-        "animation",
-        "backend",
-        "backend_fallback",
-        "docstring",
-        "interactive",
-        "keymap",
-        "macosx",
-        "timezone",
-    }
-    | {"tk", "toolbar", "webagg"}
-)
 
 
 def figure(
@@ -197,10 +171,11 @@ def figure(
     ``width`` is one of the journal's column widths or inches, ``height`` is in inches; ``subplots`` goes to
     ``Figure.subplots`` (``sharex``, ``width_ratios``, ...).
     """
+    columns_wide: dict[Any, float] = {"single": SINGLE, "double": DOUBLE}
+    inches = columns_wide.get(width, width)
+    if isinstance(inches, str):
+        raise ValueError(f"width = {width!r}: must be 'single', 'double' or inches")
     with context():
-        inches = {"single": SINGLE, "double": DOUBLE}.get(width, width) if isinstance(width, str) else width
-        if isinstance(inches, str):
-            raise ValueError(f"width = {width!r}: must be 'single', 'double' or inches")
         made = Figure(figsize=(inches, height), layout="constrained")
         return made, made.subplots(rows, columns, squeeze=False, **subplots)
 
@@ -215,10 +190,7 @@ def ordered_colours(count: int, *, of: str = "force") -> list[str]:
 
 def line(index: int) -> dict[str, Any]:
     """Colour and line style number ``index`` of the categorical cycle, as keywords of ``plot``."""
-    return {
-        "color": COLOURS[index % len(COLOURS)],
-        "linestyle": LINE_STYLES[index % len(LINE_STYLES)],
-    }
+    return {"color": COLOURS[index % len(COLOURS)], "linestyle": LINE_STYLES[index % len(LINE_STYLES)]}
 
 
 def marked_line(index: int, *, colour: str | None = None) -> dict[str, Any]:
@@ -290,9 +262,8 @@ def paper_value(
         if not text:
             return
         # on a band in its middle, else beside the line
-        gap = 0.0 if band is not None else 1.5 if side == "behind" else -1.5
-        across = "center" if band is not None else "left" if side == "behind" else "right"
-        over = "center" if band is not None else "top" if side == "behind" else "bottom"
+        beside = (1.5, "left", "top") if side == "behind" else (-1.5, "right", "bottom")
+        gap, across, over = beside if band is None else (0.0, "center", "center")
         axes.annotate(
             text,
             (value, at) if upright else (at, value),

@@ -40,9 +40,7 @@ class ArrayPacking(PackingDescription):
     z: Column = Field(repr=False, description="Height of each centre.")
     radius: Column = Field(repr=False, description="Of each disk.")
     mass: Column | None = Field(
-        default=None,
-        repr=False,
-        description="Of each disk; null takes them in proportion to the square of the radius.",
+        default=None, repr=False, description="Of each disk; null takes them in proportion to the square of the radius."
     )
     width: Positive | None = Field(
         default=None,

@@ -160,17 +160,10 @@ Fraction = Annotated[float, Field(strict=True, ge=0, lt=1), allowed("must be a n
 Part = Annotated[float, Field(strict=True, gt=0, le=1), allowed("must be a number above 0, at most 1")]
 Count = Annotated[int, Field(strict=True, ge=1), allowed("must be a whole number, 1 or greater")]
 Index = Annotated[
-    int,
-    Field(strict=True, ge=0, lt=2**63),
-    allowed("must be a whole number, 0 or greater and less than 2^63"),
+    int, Field(strict=True, ge=0, lt=2**63), allowed("must be a whole number, 0 or greater and less than 2^63")
 ]
 Flag = Annotated[bool, Field(strict=True), allowed("must be true or false")]
-Sides = Annotated[
-    Literal["walls", "periodic"],
-    Field(
-        description="Side walls, or periodic sides.",
-    ),
-]
+Sides = Annotated[Literal["walls", "periodic"], Field(description="Side walls, or periodic sides.")]
 
 
 class PackingDescription(Description):

@@ -20,11 +20,8 @@ LEAST_MASS, LEAST_RADIUS = 1e-12, 1e-6
 def packed(table: Table, left: float, floor: float, width: float, periodic: bool) -> Packing:
     """The disks above ``floor`` and right of ``left``, in a box of this ``width``, in mean radii and mean masses.
 
-    Raises
-    ------
-    Problem
-        With the key ``(column, disk)`` for a value that is not allowed, ``(disk,)`` for a disk in the place of
-        another, ``("width",)`` for a box that is too wide.
+    Raises Problem with the key ``(column, disk)`` for a value that is not allowed, ``(disk,)`` for a disk in the place
+    of another, ``("width",)`` for a box that is too wide.
     """
     radius, places = table.radius, table.places
     x, z = table.x - left, table.z - floor

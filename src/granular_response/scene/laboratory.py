@@ -10,6 +10,7 @@ from typing import Any, Final, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from .base import UNITS
 from .errors import SceneError, describe, suggestion
 
 Value = TypeVar("Value", float, NDArray[np.float64])
@@ -31,17 +32,12 @@ _DIMENSIONS: Final = {
 }
 #: Names of the reduced units in results and tables.
 LENGTH, MASS, TIME, FORCE = "mean_radius", "mean_mass", "reduced_time", "mean_weight"
-#: Keys of a scene that have a unit, and what they are; lengths of own disks are in any unit.
-_KEYS: Final = {
-    "lattice_constant": "length",
-    "displacement": "length",
-    "normal_stiffness": "stiffness",
-    "force": "force",
-    "torque": "torque",
-    "time_step": "time",
-    "ramp_time": "time",
-    "stop_kinetic_energy": "energy",
-}
+#: What keys of a scene are, by their unit; lengths of own disks are in any unit.
+_QUANTITIES: Final = {
+    "mean radius": "length", "mg / mean radius": "stiffness", "mg": "force", "mg × mean radius": "energy",
+    "sqrt(R/g)": "time",
+}  # fmt: skip
+_KEYS: Final = {key: _QUANTITIES[unit] for key, unit in UNITS.items() if unit in _QUANTITIES}
 #: The same for the place of a loaded disk.
 _PLACE: Final = {"x": "length"}
 
@@ -54,8 +50,7 @@ class LaboratoryUnits:
     packing ``radius`` is the mean radius; the mean mass is then larger by the variance of the relative
     radius (0.7 % at polydispersity 0.25), which this leaves out.
 
-    A ``stress`` is two-dimensional, force per length (N/m); a ``pressure`` is a stress over the thickness
-    (Pa).
+    A ``stress`` is two-dimensional, force per length (N/m); a ``pressure`` is a stress over the thickness (Pa).
 
     Examples
     --------

@@ -22,8 +22,6 @@ LatticeConstant = Annotated[
     Annotated[float, Field(strict=True, gt=0, le=1000)] | Literal["touching-largest"],
     allowed(f"must be a number greater than 0, at most 1000, or {TOUCHING_LARGEST}"),
 ]
-
-
 #: Disks per row of the narrowest periodic slab.
 LEAST_PERIOD = 5
 
@@ -34,8 +32,7 @@ class LatticePacking(PackingDescription):
     kind: str
     layers: Rows
     polydispersity: Fraction = Field(
-        default=0.0,
-        description="delta: radii are drawn uniformly from [(1 - delta) R, R] and rescaled to a mean of 1.",
+        default=0.0, description="delta: radii are drawn uniformly from [(1 - delta) R, R] and rescaled to a mean of 1."
     )
     lattice_constant: LatticeConstant = Field(
         default=2.0,
@@ -81,23 +78,20 @@ class LatticePacking(PackingDescription):
         count, left = self.row_count(), self._left()
         row = np.repeat(np.arange(len(count)), count)
         column = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+        sequence = np.random.SeedSequence(self.seed, spawn_key=(self.realization,))
+        radius = 1.0 - self.polydispersity * np.random.default_rng(sequence).random(len(row))
         a = self.spacing
         x = 0.5 * a * (1 + left[row] + 2 * column)
         z = 0.5 * a + row * (0.5 * math.sqrt(3.0) * a)
         return Packing(
             position=np.stack([x, z], axis=1),
-            radius=self._radius(len(row)),
+            radius=radius / exact_mean(radius),
             row=row.astype(np.int32),
             width=float(count[0] * a),
             left=left,
             lattice_constant=float(a),
             periodic=self.periodic,
         )
-
-    def _radius(self, n: int) -> NDArray[np.float64]:
-        sequence = np.random.SeedSequence(self.seed, spawn_key=(self.realization,))
-        radius = 1.0 - self.polydispersity * np.random.default_rng(sequence).random(n)
-        return radius / exact_mean(radius)
 
 
 class SlabPacking(LatticePacking):
@@ -112,8 +106,7 @@ class SlabPacking(LatticePacking):
     """
 
     kind: Literal["slab"] = Field(
-        default="slab",
-        description="Rows on a triangular lattice between side walls, or with periodic sides.",
+        default="slab", description="Rows on a triangular lattice between side walls, or with periodic sides."
     )
     layers: Rows = Field(default=15, description="Number of rows.")
     disks_per_row: RowLength = Field(

@@ -135,11 +135,8 @@ def resolve_disk(
     equally near (within 1e-6) the one with the lower index. In a lattice with a long row at the top this is
     the middle disk of that row. A ``TopSelector`` means the disk on top nearest to its ``x`` from the middle.
 
-    Raises
-    ------
-    SceneError
-        For a disk or a row that the packing does not have, and an ``x`` beyond its sides; ``key`` is what the message
-        calls the selector.
+    Raises SceneError for a disk or a row that the packing does not have, and an ``x`` beyond its sides; ``key`` is what
+    the message calls the selector.
     """
     if selector == TOP_CENTRE:
         return _nearest_on_top(packing.radius, packing.middle, np.asarray(position))
@@ -187,22 +184,17 @@ def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.
 
 def _nearest_on_top(radius: NDArray[np.float64], place: float, position: NDArray[np.float64]) -> int:
     x, z = position[:, 0], position[:, 1]
-    away = np.abs(x - place)
-    largest = float(radius.max())
+    away, largest = np.abs(x - place), float(radius.max())
     reach = 4.0 * largest
-    while True:
+    found: list[int] = []
+    while not found:
         # Only disks near the place are looked at; the band grows in the odd case that none is on top.
-        band = np.flatnonzero(away <= reach)
-        if len(band):
-            around = np.flatnonzero(away <= reach + 2.0 * largest)
-            best: tuple[float, int] | None = None
-            for i in band[np.lexsort((band, away[band]))]:
-                if best is not None and away[i] > best[0] + 1e-6:
-                    break
-                dx, dz = np.abs(x[around] - x[i]), z[around] - z[i]
-                covers = (dx < radius[around] + radius[i]) & (dz > 0.0) & (dz > COVERING_SLOPE * dx)
-                if not covers.any():
-                    best = (float(away[i]), int(i)) if best is None else (best[0], min(best[1], int(i)))
-            if best is not None:
-                return best[1]
+        band, around = (np.flatnonzero(away <= reach + more) for more in (0.0, 2.0 * largest))
+        for i in band[np.argsort(away[band], kind="stable")]:
+            if found and away[i] > away[found[0]] + 1e-6:
+                break
+            dx, dz = np.abs(x[around] - x[i]), z[around] - z[i]
+            if not np.any((dx < radius[around] + radius[i]) & (dz > 0.0) & (dz > COVERING_SLOPE * dx)):
+                found.append(int(i))
         reach *= 2.0
+    return min(found)

@@ -73,15 +73,11 @@ class Contact(Sparse):
         "normal_stiffness as the stiffness at a normal force of mg between two mean disks, or a mean disk and the "
         "wall. The walls follow the same law.",
     )
-    normal_stiffness: Stiffness = Field(
-        default=3000.0,
-        description="k_N, stiffness of the normal spring.",
-    )
+    normal_stiffness: Stiffness = Field(default=3000.0, description="k_N, stiffness of the normal spring.")
     stiffness_ratio: Ratio = Field(default=0.8, description="k_T / k_N, tangential over normal stiffness.")
     friction: Ratio = Field(default=0.2, description="Coefficient of friction, static and dynamic.")
     damping_ratio: Ratio = Field(
-        default=0.5,
-        description="Damping over critical damping 2 sqrt(k) of one contact, for both dashpots.",
+        default=0.5, description="Damping over critical damping 2 sqrt(k) of one contact, for both dashpots."
     )
     rolling_friction: Ratio = Field(
         default=0.0,
@@ -90,9 +86,7 @@ class Contact(Sparse):
     )
     rolling_stiffness_ratio: Ratio = Field(default=0.0, description="k_R / k_N, rolling over normal stiffness.")
     parameters: SerializeAsAny[Description] = Field(
-        default=NoParameters(),
-        validate_default=True,
-        description="Parameters of a user-defined law, by name.",
+        default=NoParameters(), validate_default=True, description="Parameters of a user-defined law, by name."
     )
 
     @field_validator("parameters", mode="plain")
@@ -165,17 +159,5 @@ class Wall(Sparse):
 
     def resolved(self, contact: Contact) -> Contact:
         """The parameters of disk-wall contacts beside disk-disk contacts with ``contact``."""
-
-        def either(own: float | None, otherwise: float) -> float:
-            return otherwise if own is None else own
-
-        return Contact(
-            law=contact.law,
-            normal_stiffness=either(self.normal_stiffness, 2.0 * contact.normal_stiffness),
-            stiffness_ratio=either(self.stiffness_ratio, contact.stiffness_ratio),
-            friction=self.friction,
-            damping_ratio=either(self.damping_ratio, contact.damping_ratio),
-            rolling_friction=self.rolling_friction,
-            rolling_stiffness_ratio=either(self.rolling_stiffness_ratio, contact.rolling_stiffness_ratio),
-            parameters=contact.parameters,
-        )
+        own = {name: value for name, value in self if value is not None}
+        return Contact(**{**dict(contact), "normal_stiffness": 2.0 * contact.normal_stiffness, **own})

@@ -98,20 +98,13 @@ class Packing:
         count = self.row_count
         start = np.concatenate([[0], np.cumsum(count)[:-1]])
         column = np.arange(self.n) - start[self.row]
-        # In half lattice constants the upper neighbours of h are at h - 1 and h + 1.
-        left = self.left
         length = count[self.row]
-        has_right = self.periodic | (column + 1 < length)
-        pairs = [_pairs(has_right, start[self.row] + (column + 1) % length)]
+        found = [(self.periodic | (column + 1 < length), start[self.row] + (column + 1) % length)]
         above = np.minimum(self.row + 1, len(count) - 1)
-        for side in (-1, 1):
-            upper = (left[self.row] + 2 * column + side - left[above]) // 2
+        for side in (-1, 1):  # in half lattice constants the upper neighbours of h are at h - 1 and h + 1
+            upper = (self.left[self.row] + 2 * column + side - self.left[above]) // 2
             exists = (above > self.row) & (self.periodic | ((upper >= 0) & (upper < count[above])))
-            pairs.append(_pairs(exists, start[above] + upper % count[above]))
+            found.append((exists, start[above] + upper % count[above]))
+        pairs = [np.stack([np.flatnonzero(exists), other[exists]], axis=1) for exists, other in found]
         result = np.sort(np.concatenate(pairs), axis=1)
         return np.ascontiguousarray(result[np.lexsort((result[:, 1], result[:, 0]))], dtype=np.int32)
-
-
-def _pairs(exists: NDArray[np.bool_], other: NDArray[np.int64]) -> NDArray[np.int64]:
-    first = np.flatnonzero(exists)
-    return np.stack([first, other[first]], axis=1)

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from ..state import FloatArray
 from .base import Fraction, Index, PackingDescription, Positive, Sides, allowed
@@ -28,14 +28,11 @@ Disks = Annotated[
 ]
 
 
-def _check_positive(value: Any) -> Any:
-    numbers = isinstance(value, (list, tuple)) and all(type(one) in (int, float) for one in value)
-    if not (numbers and value and all(0.0 < one < math.inf for one in value)):
-        raise Problem("must be a list of numbers greater than 0")
-    return value
-
-
-Numbers = Annotated[tuple[float, ...], BeforeValidator(_check_positive)]
+Numbers = Annotated[
+    tuple[Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)], ...],
+    Field(min_length=1),
+    allowed("must be a list of numbers greater than 0"),
+]
 
 
 class PouredPacking(PackingDescription):

@@ -11,13 +11,10 @@ from .base import Count, Description, Flag, NonNegative, Positive, allowed
 from .errors import Problem
 
 TimeStep = Annotated[
-    Annotated[float, Field(strict=True, gt=0)] | Literal["auto"],
-    allowed("must be a number greater than 0, or auto"),
+    Annotated[float, Field(strict=True, gt=0)] | Literal["auto"], allowed("must be a number greater than 0, or auto")
 ]
 #: The time step of Sec. III.
 PAPERS_TIME_STEP = 5e-4
-
-
 LoadFactors = Annotated[
     tuple[Annotated[float, Field(strict=True, allow_inf_nan=False)], ...],
     Field(min_length=1),
@@ -52,10 +49,7 @@ class Preparation(Description):
         "ramp_time; frictionless: the packing settles without friction, which acts from then on, with tangential "
         "springs at zero.",
     )
-    ramp_time: Positive = Field(
-        default=100.0,
-        description="Time over which slow gravity grows.",
-    )
+    ramp_time: Positive = Field(default=100.0, description="Time over which slow gravity grows.")
 
 
 class Protocol(Description):
@@ -96,8 +90,7 @@ class Protocol(Description):
     )
     ramp_time: NonNegative = Field(default=20.0, description="Time over which the loads grow linearly to their values.")
     stop_kinetic_energy: Positive = Field(
-        default=1e-13,
-        description="Kinetic energy per disk below which a packing counts as settled (E_stop).",
+        default=1e-13, description="Kinetic energy per disk below which a packing counts as settled (E_stop)."
     )
     stop_rule: Literal["instantaneous", "envelope"] = Field(
         default="instantaneous",
@@ -105,8 +98,7 @@ class Protocol(Description):
         "swing.",
     )
     static_finish: Flag = Field(
-        default=True,
-        description="Solve the equations of equilibrium where the dynamics stopped.",
+        default=True, description="Solve the equations of equilibrium where the dynamics stopped."
     )
     friction_law: Literal["cut", "literal", "unloading"] = Field(
         default="cut",
@@ -115,8 +107,7 @@ class Protocol(Description):
         "cut; unloading: the same, but slip may shorten the spring. The last two are for dynamics alone.",
     )
     tensile_dashpot: Flag = Field(
-        default=True,
-        description="Whether the normal force may pull while a contact opens fast, as in the paper.",
+        default=True, description="Whether the normal force may pull while a contact opens fast, as in the paper."
     )
     maximum_steps: Count = Field(
         default=5_000_000,

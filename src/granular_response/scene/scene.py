@@ -74,17 +74,13 @@ class Scene(Description):
     protocol: Protocol = Field(default_factory=Protocol, description="How equilibrium is reached.")
 
     @model_validator(mode="after")
-    def _check_wall(self) -> Scene:
+    def _check_contacts(self) -> Scene:
         if self.wall.normal_stiffness is None and self.contact.normal_stiffness > 0.5 * MOST_STIFFNESS:
             raise Problem(
                 "must be at most 5e11 where wall.normal_stiffness, twice as much, is left open",
                 key=("contact", "normal_stiffness"),
                 value=self.contact.normal_stiffness,
             )
-        return self
-
-    @model_validator(mode="after")
-    def _check_rolling(self) -> Scene:
         for name, contact in (("contact", self.contact), ("wall", self.resolved_wall)):
             if contact.rolls and not (contact.rubs and contact.rolling_stiffness_ratio > 0):
                 raise Problem(
@@ -95,33 +91,25 @@ class Scene(Description):
         return self
 
     @model_validator(mode="after")
-    def _check_torques(self) -> Scene:
-        if not self.contact.rubs and not self.resolved_wall.rubs:
-            for place, load in enumerate(self.loads):
-                if load.torque != 0:
-                    raise Problem(
-                        "must be 0 without friction and tangential springs (contact and wall: friction, "
-                        "stiffness_ratio), which alone can balance it",
-                        key=("loads", place, "torque"),
-                        value=load.torque,
-                    )
-        return self
-
-    @model_validator(mode="after")
-    def _check_sideways_loads(self) -> Scene:
+    def _check_loads(self) -> Scene:
+        rough_floor = self.resolved_wall.rubs
+        for place, load in enumerate(self.loads):
+            if load.torque != 0 and not self.contact.rubs and not rough_floor:
+                raise Problem(
+                    "must be 0 without friction and tangential springs (contact and wall: friction, stiffness_ratio), "
+                    "which alone can balance it",
+                    key=("loads", place, "torque"),
+                    value=load.torque,
+                )
         sideways = sum(load.force[0] for load in self.loads)
         held = any(load.holds(0) for load in self.loads)
         rounding = 1e-12 * sum(abs(load.force[0]) for load in self.loads)
-        if self.packing.periodic and not self.resolved_wall.rubs and abs(sideways) > rounding and not held:
+        if self.packing.periodic and not rough_floor and abs(sideways) > rounding and not held:
             raise Problem(
                 "forces along x must sum to 0 with periodic sides on a smooth floor, which hold nothing",
                 key=("loads",),
                 value=sideways,
             )
-        return self
-
-    @model_validator(mode="after")
-    def _check_loaded_disks(self) -> Scene:
         if total := self.packing.disk_count:  # 0: only the file knows
             count = self.packing.row_count() if isinstance(self.packing, LatticePacking) else np.zeros(0, np.int64)
             for place, load in enumerate(self.loads):
@@ -212,10 +200,7 @@ class Scene(Description):
         sides : "walls" or "periodic".
         scene : all else, as a scene or nested mappings with its keys; that of ``Scene()`` if left out.
 
-        Raises
-        ------
-        SceneError
-            Where a number is not allowed, such as ``packing.x[3] = -1.0``, or the columns differ in length.
+        Raises SceneError where a number is not allowed, as ``packing.x[3] = -1.0``, or the columns differ in length.
 
         Examples
         --------
@@ -250,12 +235,7 @@ class Scene(Description):
     def from_yaml(cls, path: str | PathLike[str]) -> Scene:
         """A scene from a YAML file; the messages of errors begin with its name.
 
-        Raises
-        ------
-        SceneFileError
-            If the file cannot be read.
-        SceneError
-            For what it holds.
+        Raises SceneFileError if the file cannot be read, SceneError for what it holds.
 
         Examples
         --------
@@ -305,10 +285,7 @@ class Scene(Description):
         exception: a packing of another ``kind`` takes the place of the packing, with its own defaults. A description
         (``Wall(friction=0.5)``) and a list are whole and replace what is there. The order of the keys means nothing.
 
-        Raises
-        ------
-        SceneError
-            If a value is named twice, in different spellings, or is not allowed: the copy is validated.
+        Raises SceneError if a value is named twice, in different spellings, or is not allowed: the copy is validated.
 
         Examples
         --------

@@ -85,14 +85,11 @@ class FilePacking(PackingDescription):
     def build(self) -> Packing:
         """Read the table and rescale it.
 
-        Raises
-        ------
-        SceneError
-            For a file that is missing, cannot be read or is not of its format, and, with its place in the file, for a
-            value that is no finite number, a radius or mass that is not positive, or so small that it is lost beside
-            the largest, a centre outside the box or too far away, or two disks in one place; for a width or an origin
-            that neither the scene nor the file gives, a disk wider than that, and sides or a period other than those
-            that the file says.
+        Raises SceneError for a file that is missing, cannot be read or is not of its format, and, with its place in the
+        file, for a value that is no finite number, a radius or mass that is not positive, or so small that it is lost
+        beside the largest, a centre outside the box or too far away, or two disks in one place; for a width or an
+        origin that neither the scene nor the file gives, a disk wider than that, and sides or a period other than those
+        that the file says.
 
         Warns (UserWarning) where a file of another program has disks of several sizes and no masses.
         """

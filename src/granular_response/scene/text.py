@@ -7,25 +7,27 @@ knows only the types a scene can hold: null, true and false, whole numbers, numb
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import yaml
 
 from .errors import SceneError, show
 
-_NULL, _BOOL, _INT, _FLOAT = (f"tag:yaml.org,2002:{name}" for name in ("null", "bool", "int", "float"))
-_SCALARS = {
-    _NULL: (re.compile(r"(?:~|null|Null|NULL|)$"), ["~", "n", "N", ""]),
-    _BOOL: (re.compile(r"(?:true|True|TRUE|false|False|FALSE)$"), list("tTfF")),
-    _INT: (re.compile(r"[-+]?[0-9]+$"), list("-+0123456789")),
-    _FLOAT: (
-        re.compile(
-            r"(?:[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?"
-            r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$"
-        ),
-        list("-+.0123456789"),
+_TAG = "tag:yaml.org,2002:"
+_NUMBER = r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)"
+#: Of each type of a value: how it is spelled, how that may begin, and the value.
+_SCALARS: dict[str, tuple[re.Pattern[str], list[str], Callable[[str], Any]]] = {
+    f"{_TAG}null": (re.compile(r"(?:~|null|Null|NULL|)$"), ["~", "n", "N", ""], lambda _: None),
+    f"{_TAG}bool": (
+        re.compile(r"(?:true|True|TRUE|false|False|FALSE)$"), list("tTfF"), lambda text: text.lower() == "true",
     ),
-}
+    f"{_TAG}int": (re.compile(r"[-+]?[0-9]+$"), list("-+0123456789"), int),
+    f"{_TAG}float": (
+        re.compile(f"(?:{_NUMBER})$"), list("-+.0123456789"),
+        lambda text: float(text.lower().replace(".inf", "inf").replace(".nan", "nan")),
+    ),
+}  # fmt: skip
 
 
 class _Reader(yaml.SafeLoader):
@@ -50,21 +52,15 @@ class _Reader(yaml.SafeLoader):
 
     def _scalar(self, node: yaml.ScalarNode) -> Any:
         text = str(self.construct_scalar(node))
-        if node.tag in _SCALARS and not _SCALARS[node.tag][0].match(text):
+        if node.tag not in _SCALARS:
+            return text
+        pattern, _, value_of = _SCALARS[node.tag]
+        if not pattern.match(text):
             raise _mistake(node, f"{show(text)} does not fit its tag")
         try:
-            match node.tag:
-                case t if t == _NULL:
-                    return None
-                case t if t == _BOOL:
-                    return text.lower() == "true"
-                case t if t == _INT:
-                    return int(text)
-                case t if t == _FLOAT:
-                    return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
+            return value_of(text)
         except ValueError:
             raise _mistake(node, f"number {show(text)} is too long") from None
-        return text
 
     def _unknown(self, node: yaml.Node) -> Any:
         raise _mistake(node, f"tag {show(node.tag)} is not allowed")
@@ -77,13 +73,13 @@ class _Writer(yaml.SafeDumper):
         return True
 
 
-for _tag, (_pattern, _first) in _SCALARS.items():
+for _tag, (_pattern, _first, _) in _SCALARS.items():
     _Reader.add_implicit_resolver(_tag, _pattern, _first)
     _Writer.add_implicit_resolver(_tag, _pattern, _first)
     _Reader.add_constructor(_tag, _Reader._scalar)
-_Reader.add_constructor("tag:yaml.org,2002:str", _Reader._scalar)
-_Reader.add_constructor("tag:yaml.org,2002:seq", _Reader._list)
-_Reader.add_constructor("tag:yaml.org,2002:map", _Reader._mapping)
+_Reader.add_constructor(f"{_TAG}str", _Reader._scalar)
+_Reader.add_constructor(f"{_TAG}seq", _Reader._list)
+_Reader.add_constructor(f"{_TAG}map", _Reader._mapping)
 _Reader.add_constructor(None, _Reader._unknown)
 
 
@@ -92,13 +88,7 @@ def _mistake(node: yaml.Node, problem: str) -> yaml.MarkedYAMLError:
 
 
 def read(text: str) -> Any:
-    """The content of one YAML document.
-
-    Raises
-    ------
-    SceneError
-        With line and column, for anything that is not one YAML document of plain data.
-    """
+    """The content of one YAML document; SceneError, with line and column, for what is not one of plain data."""
     try:
         reader = _Reader(text)
         try:

@@ -81,9 +81,6 @@ class Box:
 
     def near_walls(self, position, radius, margin: float) -> tuple[NDArray[np.int64], NDArray[np.int8]]:
         """Disks with a gap below ``margin`` to a wall, and that wall: wall by wall, in the order of disks."""
-        disks, walls = [], []
-        for wall in self.walls:
-            near = np.flatnonzero(self.wall_gap(position, radius, np.full(len(radius), wall)) < margin)
-            disks.append(near)
-            walls.append(np.full(len(near), wall, np.int8))
-        return np.concatenate(disks).astype(np.int64), np.concatenate(walls)
+        disks = [np.flatnonzero(self.wall_gap(position, radius, np.array(wall)) < margin) for wall in self.walls]
+        walls = np.repeat(np.array(self.walls, np.int8), [len(near) for near in disks])
+        return np.concatenate(disks).astype(np.int64), walls

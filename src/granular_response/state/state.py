@@ -20,12 +20,11 @@ from .status import OPEN, SLIDING
 class Contacts:
     """Candidate contacts of one kind (between disks, or of disks with walls), each of length m.
 
-    ``overlap`` is positive in touch; ``normal_force`` is positive in compression; ``spring`` is the
-    elongation of the tangential spring (Sec. III.A); ``status`` is OPEN, STICKING or SLIDING.
-    Without friction ``tangential_force`` and ``spring`` are zero and a touching contact is STICKING. Where it rolls
-    against a resistance, ``rolling_force`` times the reduced radius is the couple on the first body, ``rolling_spring``
-    the elongation of its spring, and ``rolling_status`` STICKING within its limit and SLIDING at it; else they are
-    zero and OPEN, as they are by default.
+    ``overlap`` is positive in touch; ``normal_force`` is positive in compression; ``spring`` is the elongation of the
+    tangential spring (Sec. III.A); ``status`` is OPEN, STICKING or SLIDING. Without friction ``tangential_force`` and
+    ``spring`` are zero and a touching contact is STICKING. Where it rolls against a resistance, ``rolling_force`` times
+    the reduced radius is the couple on the first body, ``rolling_spring`` the elongation of its spring, and
+    ``rolling_status`` STICKING within its limit and SLIDING at it; else they are zero and OPEN, as they are by default.
     """
 
     first: NDArray[np.int32]  #: (m,) index of the disk the force acts on

@@ -22,19 +22,9 @@ from pathlib import Path
 def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[bytes], None] | None = None) -> None:
     """Write ``data`` to ``path``: afterwards the file is whole and on the disk, or as it was before.
 
-    Parameters
-    ----------
-    path
-        The file to make or to replace; its folder must exist. Of a link, what it leads to.
-    data
-        Its content.
-    check
-        Called with the bytes read back from the temporary file; what it raises prevents the replacement.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written, or reads back differently.
+    The folder must exist; of a link, what it leads to is replaced. ``check`` is called with the bytes read back from
+    the temporary file; what it raises prevents the replacement. Raises OSError if the file cannot be written, or reads
+    back differently.
     """
     target = _regular(path)
     with _temporary(target) as (descriptor, temporary):
@@ -50,7 +40,12 @@ def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[byte
         if check:
             check(written)
         os.replace(temporary, target)
-    _sync_folder(target.parent)
+    with contextlib.suppress(OSError):  # the new name goes to the disk too, where the file system can
+        folder = os.open(target.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
 
 
 def check_writable(path: str | os.PathLike[str], inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
@@ -111,13 +106,3 @@ def _is_open(descriptor: int, path: Path) -> bool:
         return os.path.samestat(os.fstat(descriptor), os.stat(path))
     except FileNotFoundError:
         return False
-
-
-def _sync_folder(folder: Path) -> None:
-    """Put the new name on the disk too, where the file system can."""
-    with contextlib.suppress(OSError):
-        descriptor = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)

@@ -27,12 +27,7 @@ _POSITIVE = ("radius", "mass")
 def read_result(path: str | os.PathLike[str], *, sealed: bool = True) -> xr.Dataset:
     """The result in a file, checked; ``sealed=False`` takes what xarray has written of a result too.
 
-    Raises
-    ------
-    granular_response.store.files.StoreError
-        If the file cannot be read.
-    ResultError
-        If it holds something else than a whole result.
+    Raises StoreError if the file cannot be read, ResultError if it holds something else than a whole result.
     """
     dataset = files.read(path, sealed=sealed).get("")
     try:

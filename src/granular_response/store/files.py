@@ -64,30 +64,22 @@ def write(
 
     Parameters
     ----------
-    path
-        The file to make or to replace, ``.nc``. Missing folders are made.
-    datasets
-        One dataset, or a mapping from group names (``"mu_0.2"``, ``"slab/rest"``; ``""`` is the root) to datasets.
-        Every variable and coordinate has the attributes ``long_name`` and ``units``.
-    attributes
-        Attributes of the file as a whole. ``format`` and ``package_version`` are added.
-    keep
-        What cost a computation is not given up where ``path`` cannot be written: it is kept under a new name beside it,
-        or in the current folder or that of temporary files, and the error says where.
+    path : the file to make or to replace, ``.nc``. Missing folders are made.
+    datasets : one dataset, or a mapping from group names (``"mu_0.2"``, ``"slab/rest"``; ``""`` is the root) to
+        datasets. Every variable and coordinate has the attributes ``long_name`` and ``units``.
+    attributes : of the file as a whole. ``format`` and ``package_version`` are added.
+    keep : what cost a computation is not given up where ``path`` cannot be written: it is kept under a new name beside
+        it, or in the current folder or that of temporary files, and the error says where.
 
-    Raises
-    ------
-    StoreError
-        If a variable lacks its labels, a value cannot be stored, or the file cannot be written. A file that
-        was there before is then as it was.
+    Raises StoreError if a variable lacks its labels, a value cannot be stored, or the file cannot be written. A file
+    that was there before is then as it was.
     """
     path = _named(path)
     groups = {"": datasets} if isinstance(datasets, xr.Dataset) else dict(datasets)
     for name, dataset in groups.items():
         _check(path, name, dataset)
-    marks = {"format": FORMAT, "package_version": __version__}
-    root = groups.pop("", xr.Dataset()).assign_attrs({**(attributes or {}), **marks})
-    groups = {"": root, **groups}
+    marks = {**(attributes or {}), "format": FORMAT, "package_version": __version__}
+    groups = {"": groups.pop("", xr.Dataset()).assign_attrs(marks), **groups}
     data = _made(path, groups)
     data += _SEAL + hashlib.sha256(data).digest()
     try:
@@ -133,12 +125,8 @@ def read(path: str | os.PathLike[str], *, sealed: bool = True) -> dict[str, xr.D
     """All datasets of a file, in memory, by the name of their group.
 
     The root is there under ``""`` if it holds variables or if the file has no groups. ``sealed=False`` takes
-    datasets of ours that xarray has written too, which have no digest.
-
-    Raises
-    ------
-    StoreError
-        If the file is missing, truncated, damaged or not one of ours.
+    datasets of ours that xarray has written too, which have no digest. Raises StoreError if the file is missing,
+    truncated, damaged or not one of ours.
     """
     with _open(path, sealed) as file:
         try:

@@ -10,6 +10,7 @@ import json
 import os
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import fields, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -55,8 +56,8 @@ from .variables import (
 #: The system of units of everything stored.
 UNITS = "reduced: mean disk radius, mean disk mass, g"
 
-
 STATUSES = flags(status.MEANINGS)
+_MOTION = ("position", "angle", "velocity", "angular_velocity")
 #: Lists of candidate contacts of a state, by what the names of their variables begin with.
 _LISTS = {"contact": "pairs", "wall": "walls"}
 #: By the same, the variables with the disk and with the other disk, or the wall.
@@ -91,17 +92,12 @@ def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Data
 
 
 def _states(states: Sequence[State], along: str) -> dict[str, xr.Variable]:
-    data = {
-        name: described(name, np.stack([getattr(state, name) for state in states]), along=along)
-        for name in ("position", "angle", "velocity", "angular_velocity")
-    }
+    data = {name: described(name, [getattr(state, name) for state in states], along=along) for name in _MOTION}
     for prefix, (first, second) in _CANDIDATES.items():
         contacts: list[Contacts] = [getattr(state, _LISTS[prefix]) for state in states]
-        data[first] = described(first, contacts[0].first)
-        data[second] = described(second, contacts[0].second)
-        rolling = ROLLING if any(one.resists_rolling for one in contacts) else {}
-        for name in (*CONTACT, *rolling):
-            values = np.stack([getattr(one, name) for one in contacts])
+        data |= {first: described(first, contacts[0].first), second: described(second, contacts[0].second)}
+        for name in (*CONTACT, *(ROLLING if any(one.resists_rolling for one in contacts) else {})):
+            values = [getattr(one, name) for one in contacts]
             data[f"{prefix}_{name}"] = described(f"{prefix}_{name}", values, along=along)
     data["load_factor"] = described("state_load_factor", [state.load_factor for state in states], along=along)
     return {**data, "axis": described("axis", ["x", "z"])}
@@ -137,8 +133,6 @@ def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, xr.Variabl
             attributes = flags([kind.replace(" ", "_") for kind in known])
         elif name == "at_wall":
             values = np.array(values, np.int8)
-        elif name == "reason":
-            values = np.array(values, str)
         data[f"event_{name}"] = described(f"event_{name}", values, **attributes)
     return {**data, "event_state": described("event_state", [k for k, _ in found])}
 
@@ -174,13 +168,12 @@ def _reached(states: Sequence[State]) -> dict[str, xr.Variable]:
     for name, (text, *_) in REACHED.items():
         known = [getattr(state.reached, name) for state in states]
         if name == "method":
-            data["reached_method"] = described("reached_method", np.array([one or "" for one in known], str))
+            data["reached_method"] = described("reached_method", [one or "" for one in known])
         elif any(one is not None for one in known):
             whole = all(one is None or isinstance(one, (bool, int, np.integer)) for one in known)
-            missing = NOT_DETERMINED if whole else np.nan
-            values = np.array([missing if one is None else one for one in known], np.int64 if whole else float)
-            said = f"{text} (-1: not known)" if whole else text
-            data[f"reached_{name}"] = described(f"reached_{name}", values, text=said)
+            missing, kind, said = (NOT_DETERMINED, np.int64, " (-1: not known)") if whole else (np.nan, float, "")
+            values = np.array([missing if one is None else one for one in known], kind)
+            data[f"reached_{name}"] = described(f"reached_{name}", values, text=text + said)
     return data
 
 
@@ -249,28 +242,22 @@ def added_forces_dataset(
     Gravity is subtracted as a vector. With the geometry under load that pictures need, and the certificates.
     """
     pairs, walls = rest[0].pairs, rest[0].walls
-    both = list(zip(rest, loaded, strict=True))
+    statuses, statuses_rest = ([one.pairs.status for one in states] for states in (loaded, rest))
     text = f"contact force that the load adds, on the first disk {WEIGHTS}"
-
-    def stacked(like: str, values: Sequence[np.ndarray], text: str) -> xr.Variable:
-        return described(like, np.stack(values), along=dimension, text=text)
-
+    under_load = f"disk centre x, z under load {RADII}"
+    stacked = partial(described, along=dimension)
     return xr.Dataset(
         {
-            "position": stacked("position", [one.position for one in loaded], f"disk centre x, z under load {RADII}"),
+            "position": stacked("position", [one.position for one in loaded], text=under_load),
             "radius": described("radius", packing.radius),
             "contact_disk": described("contact_disk", pairs.first),
             "contact_partner": described("contact_partner", pairs.second),
-            "contact_added_force": stacked("contact_force", [pair_force_difference(*one) for one in both], text),
-            "contact_status_rest": stacked(
-                "contact_status", [one.pairs.status for one in rest], "contact status at rest"
-            ),
-            "contact_status": stacked(
-                "contact_status", [one.pairs.status for one in loaded], "contact status under load"
-            ),
+            "contact_added_force": stacked("contact_force", list(map(pair_force_difference, rest, loaded)), text=text),
+            "contact_status_rest": stacked("contact_status", statuses_rest, text="contact status at rest"),
+            "contact_status": stacked("contact_status", statuses, text="contact status under load"),
             "wall_disk": described("wall_disk", walls.first, text="disk that the wall's force acts on"),
             "wall_index": described("wall_index", walls.second),
-            "wall_added_force": stacked("wall_force", [wall_force_difference(*one) for one in both], text),
+            "wall_added_force": stacked("wall_force", list(map(wall_force_difference, rest, loaded)), text=text),
             "width": variable((), packing.width, f"distance of the side walls {RADII}"),
         },
         coords={"axis": described("axis", ["x", "z"])},
@@ -297,8 +284,8 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     disks, x = disks[by], x[by]
     at_rest = floor_force(rest, disks)
     forces = np.array([floor_force(s, disks) for s in loaded]).reshape(len(loaded), len(disks))
+    change = forces - at_rest
     applied = np.array([solution.applied_force(state) for state in solution.loaded], float)
-    response = (forces - at_rest) / np.where(applied > 0, applied, np.nan)[:, None]
     of_states = _states(states, "state")
     data = {
         "state_load_factor": of_states.pop("load_factor"),
@@ -309,8 +296,8 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     numbers = {
         "floor_force_rest": at_rest,
         "floor_force": forces,
-        "floor_force_change": forces - at_rest,
-        "floor_response": response,
+        "floor_force_change": change,
+        "floor_response": change / np.where(applied > 0, applied, np.nan)[:, None],
         "radius": packing.radius,
         "mass": packing.mass,
         "row": packing.row,
@@ -326,11 +313,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     data |= {"floor_disk": described("floor_disk", disks), "x": described("x", x)}
     data["component"] = described("component", ["force_x", "force_z", "torque"])
     moved = any(state.reached.time_step is not None for state in states)
-    methods = {"rest": solution.rest_choice.method, "load": getattr(solution.load_choice, "method", "none")}
-    reasons = {
-        "rest": solution.rest_choice.reason,
-        "load": getattr(solution.load_choice, "reason", "no loads"),
-    }
+    choices = {"rest": solution.rest_choice, "load": solution.load_choice}
     attributes = {
         "title": "quasi-static response of a granular packing",
         "package": "granular_response",
@@ -339,8 +322,8 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "scene_folder_note": "paths in the scene are relative to the folder of the scene file",
         "width": packing.width,
         "sides": "periodic" if packing.box.periodic else "walls",
-        "method": json.dumps(methods),
-        "method_reason": json.dumps(reasons),
+        "method": json.dumps({stage: getattr(one, "method", "none") for stage, one in choices.items()}),
+        "method_reason": json.dumps({stage: getattr(one, "reason", "no loads") for stage, one in choices.items()}),
         **({"time_step": time_step_reason(problem)} if moved else {}),
         "stable": _verdict([s.certificate.stable for s in states]),
         "settled": _verdict([s.reached.settled is not False for s in states]),
@@ -386,10 +369,8 @@ def _as_solved(dataset: xr.Dataset, index: int) -> State:
 
 def described_forces(states: Sequence[State]) -> dict[str, xr.Variable]:
     """Contact forces as vectors, on the disk named first."""
-    return {
-        "contact_force": described("contact_force", np.stack([state.pair_force() for state in states])),
-        "wall_force": described("wall_force", np.stack([state.wall_force() for state in states])),
-    }
+    found = {"contact_force": [s.pair_force() for s in states], "wall_force": [s.wall_force() for s in states]}
+    return {name: described(name, forces) for name, forces in found.items()}
 
 
 def _verdict(all_states: Sequence[bool | None]) -> str:
@@ -402,10 +383,7 @@ def _verdict(all_states: Sequence[bool | None]) -> str:
 def state_from(dataset: xr.Dataset, index: int = -1) -> State:
     """A state back from a dataset, with its certificate, equal to the stored one to the last bit: a restart.
 
-    Raises
-    ------
-    ResultError
-        When the dataset holds no states.
+    Raises ResultError when the dataset holds no states.
     """
     if "contact_spring" not in dataset:
         raise ResultError("the dataset holds no states (variable contact_spring is missing)")
@@ -427,10 +405,7 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         return Contacts(first, second, **found)
 
     return State(
-        position=one["position"].values.astype(float),
-        angle=one["angle"].values.astype(float),
-        velocity=one["velocity"].values.astype(float),
-        angular_velocity=one["angular_velocity"].values.astype(float),
+        **{name: one[name].values.astype(float) for name in _MOTION},
         pairs=contacts("contact"),
         walls=contacts("wall"),
         box=Box.of(dataset.attrs),
@@ -446,14 +421,8 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
 def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None = None) -> Solution:
     """The solution that a dataset was made from, to be continued (``solvers.continue_solution``).
 
-    ``folder`` is that of the scene file, for a packing from a table.
-
-    Raises
-    ------
-    ResultError
-        When the dataset holds no states, or another packing than its scene describes.
-    granular_response.scene.SceneError
-        When the scene cannot be read.
+    ``folder`` is that of the scene file, for a packing from a table. Raises ResultError when the dataset holds no
+    states, or another packing than its scene describes, SceneError when the scene cannot be read.
     """
     rest = state_from(dataset, 0)
     scene = scene_of(dataset, folder=folder)

@@ -22,16 +22,7 @@ from .result import events_from
 from .variables import EVENT_KINDS, NOT_DETERMINED
 
 #: Attributes that a summary shows elsewhere or not at all.
-_HIDDEN = {
-    "format",
-    "scene",
-    "scene_folder_note",
-    "parameters",
-    "method",
-    "method_reason",
-    "stable",
-    "settled",
-}
+_HIDDEN = {"format", "scene", "scene_folder_note", "parameters", "method", "method_reason", "stable", "settled"}
 
 #: What is shown of the work that each state took.
 _WORK = ("steps", "increments", "factorisations", "newton_iterations")
@@ -91,12 +82,7 @@ def _json(value: Any) -> Any:
 def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     """Parts of the summary of a file, in order.
 
-    Raises
-    ------
-    granular_response.store.files.StoreError
-        If the file cannot be read.
-    granular_response.store.result.ResultError
-        If it is a result that is not whole.
+    Raises StoreError if the file cannot be read, ResultError if it is a result that is not whole.
     """
     datasets, attributes, result = _opened(path)
     yield _text(path, style="bold")

@@ -115,11 +115,7 @@ def poisson_ratio(normal: float, tangential: float) -> float:
 
 
 def measured_moduli(
-    springs: Springs,
-    rotations: Rotations = "suppressed",
-    *,
-    relax: bool = True,
-    cells: tuple[int, int] = (4, 4),
+    springs: Springs, rotations: Rotations = "suppressed", *, relax: bool = True, cells: tuple[int, int] = (4, 4)
 ) -> NDArray[np.float64]:
     """(3, 3) stress per strain, in the order of ``Moduli.matrix``, of a periodic lattice actually strained.
 

@@ -36,8 +36,7 @@ _CHUNK = 1024
 def _decay(generator: FloatArray, q: FloatArray) -> FloatArray:
     """(n, 2, 2) ``exp(generator q)`` of a 2 x 2 matrix whose eigenvalues have negative real parts.
 
-    Exact also where the eigenvalues coincide, which the general matrix exponential resolves
-    to ten digits only.
+    Exact also where the eigenvalues coincide, which the general matrix exponential resolves to ten digits only.
     """
     mean = 0.5 * np.trace(generator)
     deviator = generator - mean * np.eye(2)
@@ -54,9 +53,8 @@ def _decay(generator: FloatArray, q: FloatArray) -> FloatArray:
 class Slab:
     """An elastic slab of ``height`` on a rigid ``floor``; lengths in any unit.
 
-    ``width`` is the distance of smooth side walls at ``x = -width/2`` and ``width/2``; None is unbounded.
-    The force pushes down at ``x = load_position``. Stresses are positive in tension,
-    pressures in compression.
+    ``width`` is the distance of smooth side walls at ``x = -width/2`` and ``width/2``; None is unbounded. The force
+    pushes down at ``x = load_position``. Stresses are positive in tension, pressures in compression.
     """
 
     height: float

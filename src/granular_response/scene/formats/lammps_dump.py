@@ -36,12 +36,9 @@ def read(path: Path) -> Table:
     starts = [k for k, line in enumerate(lines) if line.startswith("ITEM: TIMESTEP")]
     if not starts:
         raise FormatError("is not a LAMMPS dump file of text, must have ITEM: TIMESTEP")
-    items: dict[str, int] = {}
-    for k in range(starts[-1], len(lines)):
-        if lines[k].startswith("ITEM: "):
-            for name in ("NUMBER OF ATOMS", "BOX BOUNDS", "ATOMS"):
-                if lines[k].startswith(f"ITEM: {name}"):
-                    items[name] = k
+    headings = [k for k in range(starts[-1], len(lines)) if lines[k].startswith("ITEM: ")]
+    parts = ("NUMBER OF ATOMS", "BOX BOUNDS", "ATOMS")
+    items = {name: k for k in headings for name in parts if lines[k].startswith(f"ITEM: {name}")}
     try:
         count = int(lines[items["NUMBER OF ATOMS"] + 1])
         box, atoms = items["BOX BOUNDS"], items["ATOMS"]
@@ -68,12 +65,10 @@ def read(path: Path) -> Table:
 
     def coordinate(axis: int) -> FloatArray:
         low, size = sides[axis]
-        for name in (_AXES[axis], f"{_AXES[axis]}u"):
-            if name in names:
-                return column(names.index(name))
-        for name in (f"{_AXES[axis]}s", f"{_AXES[axis]}su"):
-            if name in names:
-                return low + size * column(names.index(name))
+        for ending, scaled in (("", False), ("u", False), ("s", True), ("su", True)):
+            if (name := _AXES[axis] + ending) in names:
+                values = column(names.index(name))
+                return low + size * values if scaled else values
         raise FormatError(f"column {_AXES[axis]} is missing", heading)
 
     def quantity(*words: str) -> FloatArray | None:

@@ -1,19 +1,8 @@
-"""Results as files for other programs: ``text``, ``gsd_file`` and ``vtk``.
+"""Results as files for other programs: ``text``, ``gsd_file`` and ``vtk``, by the suffix.
 
-``export`` picks the format by the suffix:
-
-* ``.gsd`` and ``.xyz`` for OVITO: one frame for each stored state, or for the one asked for, with radius, angle, mass,
-  load and coordination number of every disk, and the force that the state's load adds to it (the change of the contact
-  forces, largest around the loaded disk).
-* ``.vtu`` for ParaView: one state, the last one unless another is asked for. Disks are vertices with their radius
-  (show them with a Glyph filter) and the stress that the load adds, contacts are lines with normal and tangential force
-  and status. ``.pvd`` is all states in order, each a ``.vtu`` beside it.
-* ``.data`` and ``.dump`` for LAMMPS, ``.txt`` for YADE, ``.csv`` for anything: disks alone, which
-  ``packing: {kind: file}`` reads again (``scene.formats`` has the suffixes). A dump has all states or one, the others
-  one.
-* ``.events.csv``: the events of the load path, one a line, all of them or those on the way to one state. ``.vtu`` has
-  them as field data; the other formats leave them out.
-* ``.contacts.csv``: the closed contacts of one state, a line each, with place, status and forces.
+Files of frames (``.gsd``, ``.xyz``, ``.dump``) have all states or the one asked for, ``.pvd`` all, each in a ``.vtu``
+beside it, the others one. ``.events.csv`` has the events on the way to them, ``.vtu`` as field data; the other formats
+leave them out. Suffixes of ``scene.formats`` hold disks alone, which ``packing: {kind: file}`` reads again.
 
 Disks lie in the plane of the screen: file coordinates are (x, z, 0); YADE's are (x, 0, z), where gravity points to -z.
 Units are those of the result: mean disk radius, mean disk mass, g.
@@ -68,21 +57,13 @@ class ExportError(GranularError):
 def export(
     result: str | os.PathLike[str] | xr.Dataset, output: str | os.PathLike[str], *, state: int | None = None
 ) -> Path:
-    """Write a stored result as a file for another program; returns its path.
+    """Write a stored result, a file or its dataset, as a file for another program; returns its path.
 
-    Parameters
-    ----------
-    result : netCDF file that ``granular-response run`` made, or the dataset of a result.
-    output : file to make; what its name ends with (one of ``SUFFIXES``) is the format.
-    state : index of the only state to write, 0 for the initial equilibrium, -1 the last one; if None all, or the
-        last one in a file of one state.
+    What the name of ``output`` ends with (one of ``SUFFIXES``) is the format. ``state`` is the index of the only state
+    to write; if None all, or the last one in a file of one state.
 
-    Raises
-    ------
-    ExportError
-        For another ending, a state that does not exist or of a series of all, or a missing library.
-    granular_response.store.files.StoreError, granular_response.store.result.ResultError
-        If the result cannot be read, or is none.
+    Raises ExportError for another ending, a state that does not exist or of a series of all, or a missing library,
+    StoreError if the result cannot be read, ResultError if it is none.
 
     Warns (UserWarning) of what a format that can be read again as a packing does not carry: masses, and the tangential
     springs of contacts, from which friction goes on.
