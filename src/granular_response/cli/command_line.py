@@ -13,6 +13,7 @@ import os
 import sys
 import warnings
 from collections.abc import Callable
+from functools import partial
 
 import typer
 
@@ -22,6 +23,9 @@ from ..machine import floating_point
 from ..sweeps.errors import SweepError
 
 floating_point.pin()
+
+#: The option of commands that make a file or a folder.
+output_option = partial(typer.Option, "--output", "-o")
 
 
 class CommandLine:
