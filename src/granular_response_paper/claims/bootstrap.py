@@ -33,7 +33,7 @@ def of_draws(
 
 
 def _picked(number: int) -> NDArray[np.intp]:
-    """(d, number) which realizations each draw has. NotMeasured for fewer than three, which do not show their spread."""
+    """(d, number) which realizations each draw has. NotMeasured for less than three, which do not show a spread."""
     if number < 3:
         raise NotMeasured(f"{number} realizations: an interval needs three or more")
     return np.random.default_rng(0).integers(0, number, (DRAWS, number))

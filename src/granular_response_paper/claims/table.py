@@ -145,7 +145,9 @@ def _row(entry: Entry) -> dict[str, Any]:
 
 
 def _named(one: object, *names: str) -> dict[str, Any]:
-    return {name: getattr(one, name) for name in names}
+    """Attributes by name, as JSON has them."""
+    values = {name: getattr(one, name) for name in names}
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
 
 
 def _interval(quantity: Quantity | None) -> dict[str, Any]:
