@@ -238,23 +238,24 @@ class _Contacts:
         ever = np.any([np.any(states["contact_status"].values != OPEN, axis=0) for states in slab.states], axis=0)
         inside = ever & (np.abs(place[first, 0]) <= REACH) & (np.abs(place[second, 0]) <= REACH)
         first, second = first[inside], second[inside]
-        at_rest = [_forces(states.isel(state=0), first, second, inside) for states in slab.states]
-        strength, opened, sliding = [], [], []
-        for applied, (source, k) in zip(slab.measured("force").astype(float), slab.chosen, strict=True):
-            force, along, across, touching = _forces(slab.states[source].isel(state=k), first, second, inside)
-            before, along_before, _, touched = at_rest[source]
-            sign = np.where(along >= along_before, 1.0, -1.0)
-            strength.append(sign * np.linalg.norm(force - before, axis=1) / applied)
-            opened.append(touched & ~touching)
-            limit = (1.0 - MARGIN) * slab.friction * along
-            sliding.append(touching & (np.abs(across) >= limit) & (slab.friction > 0.0))
-        return cls(
-            np.rint(10.0 * np.concatenate([place[first], place[second]], axis=1)).astype(np.int16),
-            np.stack(strength),
-            np.stack(opened),
-            np.stack(sliding),
-            float(place[:, 1].max()) + 1.0,
-        )
+        found = []
+        for source, states in enumerate(slab.states):
+            position = states["position"].values.astype(float)
+            normal = position[:, first] - position[:, second]
+            normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+            along, across = (
+                states[f"contact_{part}_force"].values[:, inside].astype(float) for part in ("normal", "tangential")
+            )
+            touching = states["contact_status"].values[:, inside] != OPEN
+            force = contact_force(normal, along, across)
+            added = np.where(along >= along[0], 1.0, -1.0) * np.linalg.norm(force - force[0], axis=-1)
+            slides = touching & (np.abs(across) >= (1.0 - MARGIN) * slab.friction * along) & (slab.friction > 0.0)
+            chosen = [k for one, k in slab.chosen if one == source]
+            found.append((added[chosen], (touching[0] & ~touching)[chosen], slides[chosen]))
+        added, opened, sliding = map(np.concatenate, zip(*found, strict=True))
+        lines = np.rint(10.0 * np.concatenate([place[first], place[second]], axis=1)).astype(np.int16)
+        strength = added / slab.measured("force").astype(float)[:, None]
+        return cls(lines, strength, opened, sliding, float(place[:, 1].max()) + 1.0)
 
     def bytes(self, strongest: float) -> bytes:
         """Lines as little-endian 16-bit numbers; then for each force a byte for each contact and a bit for sliding."""
@@ -262,17 +263,6 @@ class _Contacts:
         levels[self.opened] = OPENED
         frames = np.concatenate([levels.view(np.uint8), np.packbits(self.sliding, axis=1)], axis=1)
         return self.lines.astype("<i2").tobytes() + frames.tobytes()
-
-
-def _forces(
-    state: xr.Dataset, first: NDArray[np.intp], second: NDArray[np.intp], inside: NDArray[np.bool_]
-) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.bool_]]:
-    """Of contacts ``inside``: (contact, 2) forces on their first disks, normal and tangential parts, what touches."""
-    position = state["position"].values.astype(float)
-    normal = position[first] - position[second]
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    along, across = (state[f"contact_{part}_force"].values[inside].astype(float) for part in ("normal", "tangential"))
-    return contact_force(normal, along, across), along, across, state["contact_status"].values[inside] != OPEN
 
 
 def _range(datasets: Datasets) -> list[dict[str, Any]]:
