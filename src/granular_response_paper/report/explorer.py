@@ -91,9 +91,7 @@ class Slab:
 def payload(friction: Datasets, more: Datasets | None = None, phase: Datasets | None = None) -> dict[str, Any] | None:
     """What the page embeds, and ``packed``, the contacts of all slabs; None without the states of any friction.
 
-    Parameters
-    ----------
-    friction, more, phase : datasets of ``friction_linear_range``, ``explorer`` and ``phase_diagram``.
+    The datasets are those of ``friction_linear_range``, ``explorer`` and ``phase_diagram``.
     """
     slabs = [*_ordered(friction), *map(_added, (more or {}).values())]
     if not slabs:
