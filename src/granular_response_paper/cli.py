@@ -10,6 +10,8 @@ import typer
 from granular_response import __version__
 from granular_response.cli.command_line import CommandLine, loaded, output_option
 
+from .groups import NAMES
+
 commands = CommandLine(
     "granular-response-paper",
     "The reproduction of the paper: simulations, figures, claims, the report.",
@@ -18,14 +20,7 @@ commands = CommandLine(
 )
 
 
-def _group_names() -> list[str]:
-    """For completion in a shell."""
-    from .groups import NAMES
-
-    return list(NAMES)
-
-
-Group = Annotated[str, typer.Argument(help="Figure group.", autocompletion=_group_names)]
+Group = Annotated[str, typer.Argument(help="Figure group.", autocompletion=lambda: list(NAMES))]
 #: Folders and files that several commands take.
 LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
 GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
@@ -89,11 +84,9 @@ def draw(
     from .pipeline import drawing, measuring
 
     loaded()
-    numbers = measuring.measure(group, data) if measured else None  # first: they do not wait for pictures
-    for path in drawing.draw(group, data, output):
+    numbers = [measuring.measure(group, data)] if measured else []  # first: they do not wait for pictures
+    for path in (*drawing.draw(group, data, output), *numbers):
         typer.echo(str(path))
-    if numbers is not None:
-        typer.echo(str(numbers))
 
 
 @commands.command("measure pile_dip", "measure pile_dip --data other.nc -o other.json")
@@ -144,7 +137,7 @@ def groups(root: Annotated[Path, typer.Option(help="Folder with figures/ and ben
     from granular_response.inputs import read_json
 
     runs = {run["group"]: run for run in read_json(root / "benchmarks" / "pipeline.json")["runs"]}
-    for name in _group_names():
+    for name in NAMES:
         captions = read_json(root / "figures" / name / "captions.json")
         numbers = sorted({one["figure"] for one in captions.values() if one.get("figure")})
         shown = f"Fig. {', '.join(map(str, numbers))}" if numbers else "beyond the paper"
@@ -182,7 +175,7 @@ def report(
 def notebooks(
     groups: Annotated[
         list[str] | None,
-        typer.Argument(help="Figure groups; all of them if none is given.", autocompletion=_group_names),
+        typer.Argument(help="Figure groups; all of them if none is given.", autocompletion=lambda: list(NAMES)),
     ] = None,
     params: Annotated[Path, typer.Option(help="Parameters of the reproduction.")] = Path("params.yaml"),
     reduced: Annotated[Path, typer.Option(help="Parameters that the notebooks begin with.")] = Path(
@@ -192,7 +185,6 @@ def notebooks(
 ) -> None:
     """Write a notebook for each figure group: its parameters, simulation, figures and captions."""
     from . import notebooks as writing
-    from .groups import NAMES
 
     loaded()
     for path in writing.write(output, groups or NAMES, own=params, reduced=reduced):
