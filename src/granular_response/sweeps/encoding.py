@@ -90,14 +90,13 @@ class _Reader(pickle.Unpickler):
     def find_class(self, module: str, name: str) -> Any:
         if name in _PLAIN.get(module, ()):
             return super().find_class(module, name)
-        if module.partition(".")[0] == __name__.partition(".")[0] or (self._is_named(module) and module in sys.modules):
+        own = module.partition(".")[0] == __name__.partition(".")[0]
+        named = module in sys.modules and any(f"{module}.".startswith(f"{given}.") for given in self.modules)
+        if own or named:
             kind = super().find_class(module, name)
             if isinstance(kind, type) and kind.__module__ == module and _holds_values(kind):
                 return kind
         raise NotDecodable(f"{module}.{name} is no class that may be made")
-
-    def _is_named(self, module: str) -> bool:
-        return any(f"{module}.".startswith(f"{name}.") for name in self.modules)
 
 
 def _holds_values(kind: type) -> bool:
