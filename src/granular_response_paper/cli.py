@@ -8,7 +8,9 @@ from typing import Annotated
 import typer
 
 from granular_response import __version__
-from granular_response.cli.command_line import CommandLine, loaded
+from granular_response.cli.command_line import CommandLine, loaded, output_option
+
+from .groups import NAMES
 
 commands = CommandLine(
     "granular-response-paper",
@@ -18,14 +20,7 @@ commands = CommandLine(
 )
 
 
-def _group_names() -> list[str]:
-    """For completion in a shell."""
-    from .groups import NAMES
-
-    return list(NAMES)
-
-
-Group = Annotated[str, typer.Argument(help="Figure group.", show_default=False, autocompletion=_group_names)]
+Group = Annotated[str, typer.Argument(help="Figure group.", autocompletion=lambda: list(NAMES))]
 #: Folders and files that several commands take.
 LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
 GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
@@ -49,9 +44,7 @@ def simulate(
     params: Annotated[Path, typer.Option(help="Parameter file with the sections common and GROUP.")] = Path(
         "params.yaml"
     ),
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Datasets (netCDF); data/GROUP.nc if not given.")
-    ] = None,
+    output: Annotated[Path | None, output_option(help="Datasets (netCDF); data/GROUP.nc if not given.")] = None,
 ) -> None:
     """Run the simulations of a figure group.
 
@@ -62,7 +55,6 @@ def simulate(
     from .pipeline import simulation
 
     loaded()
-
     if before := simulation.finished(group, output):
         commands.say(
             f"{group}: {before} finished tasks are kept; those of this code and these parameters are not run again"
@@ -70,12 +62,7 @@ def simulate(
     try:
         with TerminalProgress() as progress:
             path = simulation.simulate(
-                group,
-                output,
-                parameter_file=params,
-                workers=workers,
-                scheduler=scheduler,
-                progress=progress,
+                group, output, parameter_file=params, workers=workers, scheduler=scheduler, progress=progress
             )
     except KeyboardInterrupt:
         if count := simulation.finished(group, output):
@@ -88,9 +75,7 @@ def simulate(
 def draw(
     group: Group,
     data: GroupData = None,
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Folder of the figures; figures/GROUP if not given.")
-    ] = None,
+    output: Annotated[Path | None, output_option(help="Folder of the figures; figures/GROUP if not given.")] = None,
     measured: Annotated[
         bool, typer.Option("--measure", help="Write its numbers too, to figures/metrics/GROUP.json.")
     ] = False,
@@ -99,12 +84,9 @@ def draw(
     from .pipeline import drawing, measuring
 
     loaded()
-
-    numbers = measuring.measure(group, data) if measured else None  # first: they do not wait for pictures
-    for path in drawing.draw(group, data, output):
+    numbers = [measuring.measure(group, data)] if measured else []  # first: they do not wait for pictures
+    for path in (*drawing.draw(group, data, output), *numbers):
         typer.echo(str(path))
-    if numbers is not None:
-        typer.echo(str(numbers))
 
 
 @commands.command("measure pile_dip", "measure pile_dip --data other.nc -o other.json")
@@ -112,7 +94,7 @@ def measure(
     group: Group,
     data: GroupData = None,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Numbers (JSON); figures/metrics/GROUP.json if not given.")
+        Path | None, output_option(help="Numbers (JSON); figures/metrics/GROUP.json if not given.")
     ] = None,
 ) -> None:
     """Write the numbers of a group, as its own datasets have them, for comparing experiments.
@@ -122,26 +104,20 @@ def measure(
     from .pipeline import measuring
 
     loaded()
-
     typer.echo(str(measuring.measure(group, data, output)))
 
 
 @commands.command("claims", "claims --list", "claims --readme README.md")
 def claims(
     data: Annotated[Path, typer.Option(help="Folder of the datasets.")] = Path("data"),
-    output: Annotated[Path, typer.Option("--output", "-o", help="Table of claims (JSON).")] = Path(
-        "figures/claims.json"
-    ),
-    readme: Annotated[
-        Path | None, typer.Option(help="Renew the counts that this file quotes.", show_default=False)
-    ] = None,
+    output: Annotated[Path, output_option(help="Table of claims (JSON).")] = Path("figures/claims.json"),
+    readme: Annotated[Path | None, typer.Option(help="Renew the counts that this file quotes.")] = None,
     every: Annotated[bool, typer.Option("--list", help="Print the stored table; judge nothing anew.")] = False,
 ) -> None:
     """Compare the paper's claims with the stored datasets."""
     from .claims import stored, table
 
     loaded()
-
     found = stored.read(output) if every else table.write(output, data, keep=[readme] if readme else [])
     if readme is not None:
         stored.renew(readme, found)
@@ -161,7 +137,7 @@ def groups(root: Annotated[Path, typer.Option(help="Folder with figures/ and ben
     from granular_response.inputs import read_json
 
     runs = {run["group"]: run for run in read_json(root / "benchmarks" / "pipeline.json")["runs"]}
-    for name in _group_names():
+    for name in NAMES:
         captions = read_json(root / "figures" / name / "captions.json")
         numbers = sorted({one["figure"] for one in captions.values() if one.get("figure")})
         shown = f"Fig. {', '.join(map(str, numbers))}" if numbers else "beyond the paper"
@@ -173,28 +149,21 @@ def groups(root: Annotated[Path, typer.Option(help="Folder with figures/ and ben
     "report", "report -o page.html", "report --notes docs/reproduction-notes.md --figures docs/figures.md"
 )
 def report(
-    output: Annotated[Path, typer.Option("--output", "-o", help="Page to make (HTML).")] = Path("figures/report.html"),
+    output: Annotated[Path, output_option(help="Page to make (HTML).")] = Path("figures/report.html"),
     root: Annotated[Path, typer.Option(help="Folder with figures/ and data/.")] = Path("."),
-    notes: Annotated[
-        Path | None, typer.Option(help="Renew the table of interpretations in this file.", show_default=False)
-    ] = None,
+    notes: Annotated[Path | None, typer.Option(help="Renew the table of interpretations in this file.")] = None,
     figures: Annotated[
-        Path | None,
-        typer.Option(help="Renew the table of the captions' parameters in this file.", show_default=False),
+        Path | None, typer.Option(help="Renew the table of the captions' parameters in this file.")
     ] = None,
     beyond: Annotated[
-        Path | None,
-        typer.Option(help="Renew the tables of groups beyond the paper in this file.", show_default=False),
+        Path | None, typer.Option(help="Renew the tables of groups beyond the paper in this file.")
     ] = None,
-    data: Annotated[
-        Path | None, typer.Option(help="Renew the table of stored datasets in this file.", show_default=False)
-    ] = None,
+    data: Annotated[Path | None, typer.Option(help="Renew the table of stored datasets in this file.")] = None,
 ) -> None:
     """Make the page that shows verdicts, figures and benchmarks. It needs no network."""
     from . import report as reporting
 
     loaded()
-
     options = {"notes": notes, "figures": figures, "beyond": beyond, "data": data}
     documents = {kind: file for kind, file in options.items() if file is not None}
     typer.echo(str(reporting.write(output, root, keep=[*documents.values()])))
@@ -206,27 +175,25 @@ def report(
 def notebooks(
     groups: Annotated[
         list[str] | None,
-        typer.Argument(help="Figure groups; all of them if none is given.", autocompletion=_group_names),
+        typer.Argument(help="Figure groups; all of them if none is given.", autocompletion=lambda: list(NAMES)),
     ] = None,
     params: Annotated[Path, typer.Option(help="Parameters of the reproduction.")] = Path("params.yaml"),
     reduced: Annotated[Path, typer.Option(help="Parameters that the notebooks begin with.")] = Path(
         "notebooks/reduced.yaml"
     ),
-    output: Annotated[Path, typer.Option("--output", "-o", help="Folder of the notebooks.")] = Path("notebooks"),
+    output: Annotated[Path, output_option(help="Folder of the notebooks.")] = Path("notebooks"),
 ) -> None:
     """Write a notebook for each figure group: its parameters, simulation, figures and captions."""
     from . import notebooks as writing
-    from .groups import NAMES
 
     loaded()
-
     for path in writing.write(output, groups or NAMES, own=params, reduced=reduced):
         typer.echo(str(path))
 
 
 @commands.command("archive", "archive -o slabs.zip")
 def archive(
-    output: Annotated[Path, typer.Option("--output", "-o", help="Archive to make (RO-Crate, zip).")] = Path(
+    output: Annotated[Path, output_option(help="Archive to make (RO-Crate, zip).")] = Path(
         f"granular-response-{__version__}.zip"
     ),
     root: LockFolder = Path("."),
@@ -238,16 +205,13 @@ def archive(
     from .archive import crate
 
     loaded()
-
     names = crate.write(output, root)
     typer.echo(f"{output}: {len(names)} files, {output.stat().st_size / 1e6:.1f} MB")
 
 
 @commands.command("restore granular-response-0.1.0.zip", "restore https://example.org/granular-response-0.1.0.zip")
 def restore(
-    archive: Annotated[
-        str, typer.Argument(help="An archive of this project: a file, or its address.", show_default=False)
-    ],
+    archive: Annotated[str, typer.Argument(help="An archive of this project: a file, or its address.")],
     root: LockFolder = Path("."),
 ) -> None:
     """Take the datasets out of an archive, in place of computing them.
@@ -257,7 +221,6 @@ def restore(
     from .archive import restore as restoring
 
     loaded()
-
     with restoring.local(archive) as file:
         restored = restoring.restore(file, root)
     for path in restored:
@@ -265,6 +228,5 @@ def restore(
     typer.echo(f"{archive}: {len(restored)} datasets restored, those there already are the same")
 
 
-def main() -> None:
-    """Entry point."""
-    commands.run()
+#: Entry point.
+main = commands.run

@@ -18,7 +18,26 @@ from granular_response_paper.pipeline import group_member, simulation
 #: The groups at a size that takes seconds.
 REDUCED = Path("notebooks") / "reduced.yaml"
 
-_PACKAGE = "granular_response_paper.groups"
+#: The code of the cells.
+_IMPORTS = """\
+from IPython.display import Image, Markdown, display
+
+from granular_response.plot import style
+from granular_response.sweeps.resources import using
+from {group}.draw import captions, draw
+from {group}.parameters import Parameters
+from {group}.simulate import simulate"""
+_SURVEY = """\
+from pathlib import Path
+
+from granular_response.scene import text
+from granular_response_paper.survey import simulate as survey
+
+file = Path("{folder}") / "params.yaml"
+file.parent.mkdir(exist_ok=True)
+file.write_text(text.write({section}))
+for block in survey.read_parameters(file).blocks:
+    survey.run(survey.ensemble(block, file), file.parent, workers=1)"""
 _RUN = """\
 # own has the sizes of the paper and takes up to minutes; without workers all cores are used
 parameters = Parameters(**reduced)
@@ -37,16 +56,9 @@ def write(
 ) -> list[Path]:
     """Write ``folder/GROUP.ipynb`` for each group, without outputs; returns the paths.
 
-    ``own`` has the parameters of the reproduction, ``reduced`` those that the notebook begins with.
-
-    Raises
-    ------
-    granular_response_paper.pipeline.GroupError
-        If there is no such group, or a parameter file or a section of it is missing.
-    granular_response.scene.SceneError
-        If a parameter is not what it must be.
-    OSError
-        If a notebook cannot be written, or would replace a parameter file.
+    ``own`` has the parameters of the reproduction, ``reduced`` those that the notebook begins with. Raises what
+    ``simulation.parameters`` raises of them, and OSError if a notebook cannot be written, or would replace a parameter
+    file.
     """
     made = {
         folder / f"{group}.ipynb": json.dumps(_notebook(group, own, reduced), indent=1, ensure_ascii=False) + "\n"
@@ -66,53 +78,32 @@ def _notebook(group: str, own: Path, reduced: Path) -> dict[str, Any]:
     full, _ = simulation.parameters(group, own)
     small, _ = simulation.parameters(group, reduced)
     cells = [
-        _cell("markdown", f"# Figure group `{group}`\n\n{about}"),
-        _cell("code", _imports(group)),
-        _cell("markdown", f"The parameters of the group, as in `{own.name}`, and those of a run that takes seconds."),
-        _cell("code", f"own = {_literal(full)}"),
-        _cell("code", f"reduced = {_literal(small)}"),
+        ("markdown", f"# Figure group `{group}`\n\n{about}"),
+        ("code", _IMPORTS.format(group=f"granular_response_paper.groups.{group}")),
+        ("markdown", f"The parameters of the group, as in `{own.name}`, and those of a run that takes seconds."),
+        ("code", f"own = {_literal(full)}"),
+        ("code", f"reduced = {_literal(small)}"),
     ]
     if "survey" in full:
-        sections = text.read(read_text(reduced))
+        section = text.read(read_text(reduced))["survey"]
+        code = _SURVEY.format(folder=Path(small["survey"]).parent, section=_literal(section))
         cells += [
-            _cell("markdown", "It reads the survey of disordered slabs (`make survey`), here a small one."),
-            _cell("code", _surveyed(sections["survey"], Path(small["survey"]).parent)),
+            ("markdown", "It reads the survey of disordered slabs (`make survey`), here a small one."),
+            ("code", code),
         ]
-    cells += [_cell("code", _RUN), _cell("code", _DRAW)]
-    for number, cell in enumerate(cells):
-        cell["id"] = f"{group}-{number}"
+    cells += [("code", _RUN), ("code", _DRAW)]
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
-    return {"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
+    return {
+        "cells": [_cell(f"{group}-{number}", *cell) for number, cell in enumerate(cells)],
+        "metadata": {"kernelspec": kernel},
+        "nbformat": 4,
+        "nbformat_minor": 5,
+    }
 
 
-def _cell(kind: str, text: str) -> dict[str, Any]:
+def _cell(name: str, kind: str, text: str) -> dict[str, Any]:
     code: dict[str, Any] = {"execution_count": None, "outputs": []} if kind == "code" else {}
-    return {"cell_type": kind, "id": "", "metadata": {}, "source": text.splitlines(keepends=True), **code}
-
-
-def _imports(group: str) -> str:
-    return f"""\
-from IPython.display import Image, Markdown, display
-
-from granular_response.plot import style
-from granular_response.sweeps.resources import using
-from {_PACKAGE}.{group}.draw import captions, draw
-from {_PACKAGE}.{group}.parameters import Parameters
-from {_PACKAGE}.{group}.simulate import simulate"""
-
-
-def _surveyed(section: dict[str, Any], folder: Path) -> str:
-    return f"""\
-from pathlib import Path
-
-from granular_response.scene import text
-from granular_response_paper.survey import simulate as survey
-
-file = Path("{folder}") / "params.yaml"
-file.parent.mkdir(exist_ok=True)
-file.write_text(text.write({_literal(section)}))
-for block in survey.read_parameters(file).blocks:
-    survey.run(survey.ensemble(block, file), file.parent, workers=1)"""
+    return {"cell_type": kind, "id": name, "metadata": {}, "source": text.splitlines(keepends=True), **code}
 
 
 def _literal(section: dict[str, Any]) -> str:

@@ -58,18 +58,12 @@ def columns(kind: type) -> dict[str, Column]:
 def table(records: Mapping[Place, Any] | Sequence[Any], *dims: str, kind: type | None = None) -> xr.Dataset:
     """A variable for each stored field, along ``dims`` and those of the field; nan where there is no record.
 
-    Parameters
-    ----------
-    records
-        Of one kind, by their places along ``dims``; a sequence goes along one dimension. Arrays of different lengths
-        are padded with nan.
-    dims
-        The leading dimensions; none for the one record at the place ``()``.
-    kind
-        Class of the records, needed where there may be none.
+    Records are of one kind, by their places along ``dims``, the one of no dimension at the place ``()``; a sequence
+    goes along one. Arrays of different lengths are padded with nan. ``kind`` is needed where there may be no record.
     """
-    placed: Mapping[Any, Any]
-    placed = records if isinstance(records, Mapping) else {(k,): one for k, one in enumerate(records)}
+    placed: Mapping[Any, Any] = (
+        records if isinstance(records, Mapping) else {(k,): one for k, one in enumerate(records)}
+    )
     kind = kind or type(next(iter(placed.values())))
     hints = get_type_hints(kind)
     data = {}

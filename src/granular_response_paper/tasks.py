@@ -19,12 +19,7 @@ def computed(
 
     A task is a call with its arguments, ``functools.partial(compute, scene, ...)``: of a function of a module, with
     plain values, so that it runs on all cores or a cluster and is kept when a run is interrupted. Those with the most
-    ``work`` begin first, so that no worker is left with one at the end.
-
-    Raises
-    ------
-    granular_response.sweeps.errors.SweepError
-        If a task raises.
+    ``work`` begin first, so that no worker is left with one at the end. Raises SweepError if a task raises.
     """
     order = sorted(tasks, key=work, reverse=True) if work else list(tasks)
     alone = 1 if len(order) == 1 else None  # in this process: one task is not worth another

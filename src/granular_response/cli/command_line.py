@@ -13,6 +13,7 @@ import os
 import sys
 import warnings
 from collections.abc import Callable
+from functools import partial
 
 import typer
 
@@ -23,18 +24,14 @@ from ..sweeps.errors import SweepError
 
 floating_point.pin()
 
+#: The option of commands that make a file or a folder.
+output_option = partial(typer.Option, "--output", "-o")
+
 
 class CommandLine:
     """A command line: commands with examples, and errors that are one line.
 
-    Parameters
-    ----------
-    name
-        As it is called, and before each of its messages.
-    about
-        What it is for, in one line.
-    examples
-        Arguments worth showing, as they follow the name.
+    ``name`` is as it is called, and stands before each of its messages; ``examples`` are arguments worth showing.
     """
 
     def __init__(self, name: str, about: str, *examples: str) -> None:

@@ -13,7 +13,7 @@ import typer
 
 from .. import __version__
 from ..errors import SolveError
-from .command_line import CommandLine, loaded
+from .command_line import CommandLine, loaded, output_option
 
 if TYPE_CHECKING:
     from ..api.terminal import TerminalProgress
@@ -54,8 +54,8 @@ commands = CommandLine(
 )
 
 #: Files and settings that several commands take.
-StoredResult = Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)]
-ResultFile = Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)]
+StoredResult = Annotated[Path, typer.Argument(help="A stored result (netCDF).")]
+ResultFile = Annotated[Path, output_option(help="Result (netCDF).")]
 AllowUnsettled = Annotated[
     bool, typer.Option("--allow-unsettled", help="Do not fail where states are stored that are not settled.")
 ]
@@ -79,8 +79,7 @@ def _examples_folder() -> Path:
 @commands.command("example slab > slab.yaml", "example")
 def example(
     name: Annotated[
-        str | None,
-        typer.Argument(help="Of the scene; all names if left out.", show_default=False, autocompletion=_example_names),
+        str | None, typer.Argument(help="Of the scene; all names if left out.", autocompletion=_example_names)
     ] = None,
 ) -> None:
     """Print a scene to start from."""
@@ -123,11 +122,10 @@ def _computing(threads: int | None) -> Iterator[TerminalProgress]:
 
 @commands.command("run examples/slab.yaml -o slab.nc", "run scene.yaml -o scene-by-dynamics.nc --method dynamics")
 def run(
-    scene: Annotated[Path, typer.Argument(help="Scene file (YAML).", show_default=False)],
+    scene: Annotated[Path, typer.Argument(help="Scene file (YAML).")],
     output: ResultFile,
     method: Annotated[
-        str | None,
-        typer.Option(help="Solve by this method in place of the scene's: auto, dynamics, path or minimise."),
+        str | None, typer.Option(help="Solve by this method in place of the scene's: auto, dynamics, path or minimise.")
     ] = None,
     threads: Threads = None,
     allow_unsettled: AllowUnsettled = False,
@@ -164,10 +162,7 @@ def run(
 )
 def continue_(
     result: StoredResult,
-    to: Annotated[
-        list[float],
-        typer.Option(help="Multiple of the scene's loads to go to; repeated, up or down.", show_default=False),
-    ],
+    to: Annotated[list[float], typer.Option(help="Multiple of the scene's loads to go to; repeated, up or down.")],
     output: ResultFile,
     folder: Annotated[Path, typer.Option(help="Folder of the scene file, for a packing from a table.")] = Path("."),
     threads: Threads = None,
@@ -201,7 +196,7 @@ def continue_(
 
 @commands.command("show slab.nc", "show data/pile_dip.nc", "show slab.nc --json")
 def show(
-    file: Annotated[Path, typer.Argument(help="A stored result or study (netCDF).", show_default=False)],
+    file: Annotated[Path, typer.Argument(help="A stored result or study (netCDF).")],
     as_json: Annotated[bool, typer.Option("--json", help="As JSON, with all digits.")] = False,
 ) -> None:
     """Summarise a stored file.
@@ -235,15 +230,12 @@ def show(
 )
 def plot(
     result: StoredResult,
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Picture to make: .pdf, .png or .svg.", show_default=False)
-    ] = None,
+    output: Annotated[Path | None, output_option(help="Picture to make: .pdf, .png or .svg.")] = None,
     what: Annotated[
         str | None,
         typer.Option(
             help="Pictures on the page, among response, floor, forces, contacts, stress, packing, photoelastic; if not "
-            "given response,forces,contacts,stress, with floor for response where no force is applied.",
-            show_default=False,
+            "given response,forces,contacts,stress, with floor for response where no force is applied."
         ),
     ] = None,
     state: Annotated[
@@ -251,8 +243,7 @@ def plot(
     ] = -1,
     scale: Annotated[str, typer.Option(help="Scale of the forces: linear, sqrt or percentile.")] = "sqrt",
     animate: Annotated[
-        Path | None,
-        typer.Option(help="Animation to make: .gif, .webp or .html, a frame for each load.", show_default=False),
+        Path | None, typer.Option(help="Animation to make: .gif, .webp or .html, a frame for each load.")
     ] = None,
 ) -> None:
     """Draw a result: response, force chains, contacts and stress on one page, or an animation of its loads."""
@@ -263,7 +254,6 @@ def plot(
     from ..store.checked import read_result
 
     loaded()
-
     if output is None and animate is None:
         raise pictures.PictureError("nothing to draw: --output or --animate must be given")
     stored = read_result(result)
@@ -277,10 +267,8 @@ def plot(
 
 @commands.command("keys", "keys protocol", "keys --page docs/scene-reference.md")
 def keys(
-    part: Annotated[str, typer.Argument(help="Beginning of the keys, such as contact.", show_default=False)] = "",
-    page: Annotated[
-        Path | None, typer.Option(help="Renew the tables in this file in place of printing.", show_default=False)
-    ] = None,
+    part: Annotated[str, typer.Argument(help="Beginning of the keys, such as contact.")] = "",
+    page: Annotated[Path | None, typer.Option(help="Renew the tables in this file in place of printing.")] = None,
 ) -> None:
     """Print the keys of a scene file: default, what is allowed, unit and meaning."""
     from . import scene_reference
@@ -296,13 +284,12 @@ def keys(
 )
 def export(
     result: StoredResult,
-    output: Annotated[Path, typer.Option("--output", "-o", help="File to make; its ending is the format.")],
+    output: Annotated[Path, output_option(help="File to make; its ending is the format.")],
     state: Annotated[
         int | None,
         typer.Option(
             help="Write this state alone: 0 for the initial equilibrium, -1 the last one. If not given all, or "
-            "the last in a file of one.",
-            show_default=False,
+            "the last in a file of one."
         ),
     ] = None,
 ) -> None:
@@ -316,9 +303,7 @@ def export(
 
 
 @commands.command("cite", "cite --bibtex >> references.bib")
-def cite(
-    bibtex: Annotated[bool, typer.Option("--bibtex", help="As BibTeX entries.")] = False,
-) -> None:
+def cite(bibtex: Annotated[bool, typer.Option("--bibtex", help="As BibTeX entries.")] = False) -> None:
     """Print how to cite the paper and this package."""
     typer.echo(BIBTEX if bibtex else f"The paper:\n  {PAPER}\n\nThis package:\n  {PACKAGE}")
 
@@ -329,6 +314,5 @@ def print_version() -> None:
     commands.print_version()
 
 
-def main() -> None:
-    """Entry point."""
-    commands.run()
+#: Entry point.
+main = commands.run

@@ -43,31 +43,19 @@ def aligned(values) -> NDArray[np.float64]:
     return copy
 
 
-class _LanesType(types.Type):
-    def __init__(self):
-        super().__init__(name=f"Lanes({WIDTH})")
+class _VectorType(types.Type):
+    """Type of ``WIDTH`` numbers or truth values in registers."""
 
 
-class _MaskType(types.Type):
-    def __init__(self):
-        super().__init__(name=f"LaneMask({WIDTH})")
-
-
-LANES, MASK = _LanesType(), _MaskType()
+LANES, MASK = _VectorType(f"Lanes({WIDTH})"), _VectorType(f"LaneMask({WIDTH})")
 _DOUBLES = ir.VectorType(ir.DoubleType(), WIDTH)
 _BITS = ir.VectorType(ir.IntType(1), WIDTH)
 
 
-@register_model(_LanesType)
-class _LanesModel(models.PrimitiveModel):
+@register_model(_VectorType)
+class _VectorModel(models.PrimitiveModel):
     def __init__(self, manager, kind):
-        super().__init__(manager, kind, _DOUBLES)
-
-
-@register_model(_MaskType)
-class _MaskModel(models.PrimitiveModel):
-    def __init__(self, manager, kind):
-        super().__init__(manager, kind, _BITS)
+        super().__init__(manager, kind, _DOUBLES if kind == LANES else _BITS)
 
 
 def _spread(builder, value):
@@ -77,61 +65,53 @@ def _spread(builder, value):
     return builder.shuffle_vector(one, ir.Constant(_DOUBLES, ir.Undefined), zeros)
 
 
-def _as_lanes(builder, kind, value):
-    return value if kind == LANES else _spread(builder, value)
+def _alike(builder, kinds, values):
+    """The values, where some are lanes or masks with the numbers among them in every lane."""
+    if not {LANES, MASK} & {*kinds}:
+        return values
+    return [value if k in (LANES, MASK) else _spread(builder, value) for k, value in zip(kinds, values, strict=True)]
 
 
-_ARITHMETIC = {operator.add: "fadd", operator.sub: "fsub", operator.mul: "fmul", operator.truediv: "fdiv"}
-_COMPARISONS = {operator.gt: ">", operator.ge: ">=", operator.lt: "<", operator.le: "<=", operator.ne: "!="}
-_OPERANDS = [(LANES, LANES), (LANES, types.float64), (types.float64, LANES)]
+def _define(operation, result, instruction, *operands):
+    """Let an operator work on lanes, for these types of its operands."""
 
-
-def _define_binary(operation, result, instruction):
+    @infer_global(operation)
     class Typing(AbstractTemplate):
         def generic(self, args, kws):
-            if len(args) == 2 and LANES in args and not kws:
-                return signature(result, *(LANES if a == LANES else types.float64 for a in args))
-            return None
-
-    infer_global(operation)(Typing)
+            return signature(result, *(LANES if a == LANES else types.float64 for a in args)) if LANES in args else None
 
     def lower(context, builder, sig, args):
-        left, right = (_as_lanes(builder, k, v) for k, v in zip(sig.args, args, strict=True))
-        return instruction(builder, left, right)
+        return instruction(builder, *_alike(builder, sig.args, args))
 
-    for operands in _OPERANDS:
-        lower_builtin(operation, *operands)(lower)
-
-
-for _operation, _name in _ARITHMETIC.items():
-    _define_binary(_operation, LANES, lambda builder, a, b, name=_name: getattr(builder, name)(a, b))
-for _operation, _sign in _COMPARISONS.items():
-    if _sign == "!=":
-        _define_binary(_operation, MASK, lambda builder, a, b: builder.fcmp_unordered("!=", a, b))
-    else:
-        _define_binary(_operation, MASK, lambda builder, a, b, sign=_sign: builder.fcmp_ordered(sign, a, b))
+    for kinds in operands:
+        lower_builtin(operation, *kinds)(lower)
 
 
-@infer_global(operator.neg)
-class _Negative(AbstractTemplate):
-    def generic(self, args, kws):
-        return signature(LANES, LANES) if args == (LANES,) else None
-
-
-@lower_builtin(operator.neg, LANES)
-def _negative(context, builder, sig, args):
-    return builder.fneg(args[0])
+_BINARY = {
+    operator.add: (LANES, ir.IRBuilder.fadd),
+    operator.sub: (LANES, ir.IRBuilder.fsub),
+    operator.mul: (LANES, ir.IRBuilder.fmul),
+    operator.truediv: (LANES, ir.IRBuilder.fdiv),
+    operator.gt: (MASK, lambda builder, a, b: builder.fcmp_ordered(">", a, b)),
+    operator.ge: (MASK, lambda builder, a, b: builder.fcmp_ordered(">=", a, b)),
+    operator.lt: (MASK, lambda builder, a, b: builder.fcmp_ordered("<", a, b)),
+    operator.le: (MASK, lambda builder, a, b: builder.fcmp_ordered("<=", a, b)),
+    operator.ne: (MASK, lambda builder, a, b: builder.fcmp_unordered("!=", a, b)),
+}
+for _operator, _defined in _BINARY.items():
+    _define(_operator, *_defined, (LANES, LANES), (LANES, types.float64), (types.float64, LANES))
+_define(operator.neg, LANES, ir.IRBuilder.fneg, (LANES,))
 
 
 def _kind(like):
     return LANES if like in (LANES, MASK) else types.float64
 
 
-def _alike(builder, sig, args):
-    """Arguments as lanes where the result is."""
-    if sig.return_type != LANES:
-        return args
-    return [value if k == MASK else _as_lanes(builder, k, value) for k, value in zip(sig.args, args, strict=True)]
+def _chosen(condition, *numbers):
+    """Type of a choice between numbers, and of all its arguments."""
+    result = _kind(condition)
+    condition = MASK if result == LANES else types.boolean
+    return result(condition, *(LANES if k == LANES else types.float64 for k in numbers))
 
 
 def _llvm(builder, name, values):
@@ -159,9 +139,7 @@ def take(typing, array, k, like):
 
     def generate(context, builder, sig, args):
         element = _DOUBLES if like == LANES else ir.DoubleType()
-        loaded = builder.load(_at(context, builder, sig.args[0], args[0], args[1], element))
-        loaded.align = 8
-        return loaded
+        return builder.load(_at(context, builder, sig.args[0], args[0], args[1], element), align=8)
 
     return like(array, types.intp, like), generate
 
@@ -173,8 +151,7 @@ def put(typing, array, k, value):
         return None
 
     def generate(context, builder, sig, args):
-        stored = builder.store(args[2], _at(context, builder, sig.args[0], args[0], args[1], args[2].type))
-        stored.align = 8
+        builder.store(args[2], _at(context, builder, sig.args[0], args[0], args[1], args[2].type), align=8)
         return context.get_dummy_value()
 
     return types.none(array, types.intp, value), generate
@@ -210,10 +187,8 @@ def spread(typing, value):
 @intrinsic
 def select(typing, condition, yes, no):
     """``yes`` where ``condition`` holds and else ``no``, without a branch; both are evaluated."""
-    result = _kind(condition)
-    kinds = [LANES if k == LANES else types.float64 for k in (yes, no)]
-    signed = result(MASK if result == LANES else types.boolean, *kinds)
-    return signed, lambda context, builder, sig, args: builder.select(*_alike(builder, sig, args))
+    signed = _chosen(condition, yes, no)
+    return signed, lambda context, builder, sig, args: builder.select(*_alike(builder, sig.args, args))
 
 
 def _any(builder, mask):
@@ -243,19 +218,17 @@ def magnitude(typing, value):
 @intrinsic
 def quotient_where(typing, condition, dividend, divisor, otherwise):
     """``dividend / divisor`` where ``condition`` holds and else ``otherwise``; no lane divides when none has to."""
-    result = _kind(condition)
-    kinds = [LANES if k == LANES else types.float64 for k in (dividend, divisor, otherwise)]
 
     def generate(context, builder, sig, args):
-        condition, dividend, divisor, otherwise = _alike(builder, sig, args)
-        if result != LANES:
+        condition, dividend, divisor, otherwise = _alike(builder, sig.args, args)
+        if sig.return_type != LANES:
             return builder.select(condition, builder.fdiv(dividend, divisor), otherwise)
         found = cgutils.alloca_once_value(builder, otherwise)
         with builder.if_then(_any(builder, condition)):
             builder.store(builder.select(condition, builder.fdiv(dividend, divisor), otherwise), found)
         return builder.load(found)
 
-    return result(MASK if result == LANES else types.boolean, *kinds), generate
+    return _chosen(condition, dividend, divisor, otherwise), generate
 
 
 @intrinsic
@@ -264,10 +237,8 @@ def less_product(typing, value, factor, other):
     kind = _kind(value)
 
     def generate(context, builder, sig, args):
-        factor = builder.fneg(args[1])
-        if kind == LANES:
-            factor = _as_lanes(builder, sig.args[1], factor)
-        return _llvm(builder, "fma", [factor, args[2], args[0]])
+        value, factor, other = _alike(builder, sig.args, (args[0], builder.fneg(args[1]), args[2]))
+        return _llvm(builder, "fma", [factor, other, value])
 
     return kind(kind, LANES if factor == LANES else types.float64, kind), generate
 

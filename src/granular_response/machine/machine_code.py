@@ -27,12 +27,8 @@ def kernel(function: Callable | None = None, **options: Any) -> Any:
     """Decorator: compile with Numba on first use and keep the machine code.
 
     Kernels have no Python errors of division, make no arrays and so count no references to them: counting costs a
-    small scene half of its time. ``options`` are those of ``numba.njit`` beside that.
-
-    Raises
-    ------
-    ValueError
-        For ``fastmath``: the compiler then sums in the order of a processor's registers, and others give other digits.
+    small scene half of its time. ``options`` are those of ``numba.njit`` beside that. Raises ValueError for
+    ``fastmath``: the compiler then sums in the order of a processor's registers, and others give other digits.
     """
     if options.get("fastmath"):
         raise ValueError("fastmath is not allowed: results would depend on the processor; write out the order of sums")

@@ -14,7 +14,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import ContextVar
-from typing import TypeVar
+from typing import Any
 
 _COUNT: ContextVar[int] = ContextVar("threads", default=1)
 
@@ -24,10 +24,6 @@ def cores() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
-
-
-Item = TypeVar("Item")
-Result = TypeVar("Result")
 
 
 @contextlib.contextmanager
@@ -49,7 +45,7 @@ def using(count: int) -> Iterator[None]:
 
 
 #: Calls a function on items, on whatever threads there are; results are in the order of the items.
-Map = Callable[[Callable[[Item], Result], Iterable[Item]], list[Result]]
+Map = Callable[[Callable[[Any], Any], Iterable[Any]], list[Any]]
 
 
 @contextlib.contextmanager

@@ -41,18 +41,9 @@ class NotDecodable(GranularError, ValueError):
 def encode(value: Any, modules: Collection[str] = ()) -> bytes:
     """Bytes from which ``decode`` makes an equal value, arrays and numbers to the last bit.
 
-    Parameters
-    ----------
-    value
-        Numbers, text, arrays, xarray datasets, lists, tuples, sets and mappings of such, and dataclasses, named tuples,
-        enumerations and scenes.
-    modules
-        Whose classes may occur, beside those of this package; a package stands for all of its modules.
-
-    Raises
-    ------
-    NotEncodable
-        For anything else.
+    A value is numbers, text, arrays, xarray datasets, lists, tuples, sets and mappings of such, and dataclasses, named
+    tuples, enumerations and scenes. Classes of ``modules`` may occur, beside those of this package; a package stands
+    for all of its modules. Raises NotEncodable for anything else.
     """
     stream = io.BytesIO()
     try:
@@ -66,10 +57,7 @@ def encode(value: Any, modules: Collection[str] = ()) -> bytes:
 def decode(data: bytes, modules: Collection[str] = ()) -> Any:
     """The value that was encoded; see :func:`encode`.
 
-    Raises
-    ------
-    NotDecodable
-        If these are no bytes of ``encode``, or the classes in them are not there or not allowed.
+    Raises NotDecodable if these are no bytes of ``encode``, or the classes in them are not there or not allowed.
     """
     try:
         return _Reader(io.BytesIO(data), modules).load()
@@ -102,14 +90,13 @@ class _Reader(pickle.Unpickler):
     def find_class(self, module: str, name: str) -> Any:
         if name in _PLAIN.get(module, ()):
             return super().find_class(module, name)
-        if module.partition(".")[0] == __name__.partition(".")[0] or (self._is_named(module) and module in sys.modules):
+        own = module.partition(".")[0] == __name__.partition(".")[0]
+        named = module in sys.modules and any(f"{module}.".startswith(f"{given}.") for given in self.modules)
+        if own or named:
             kind = super().find_class(module, name)
             if isinstance(kind, type) and kind.__module__ == module and _holds_values(kind):
                 return kind
         raise NotDecodable(f"{module}.{name} is no class that may be made")
-
-    def _is_named(self, module: str) -> bool:
-        return any(f"{module}.".startswith(f"{name}.") for name in self.modules)
 
 
 def _holds_values(kind: type) -> bool:

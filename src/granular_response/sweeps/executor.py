@@ -14,8 +14,8 @@ import traceback
 import warnings
 from collections import deque
 from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
-from typing import Any, Protocol
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from typing import Any
 
 import cloudpickle
 
@@ -27,12 +27,6 @@ PATIENCE = 10.0
 
 #: What was said already, as the module ``warnings`` keeps it.
 _SAID: dict[Any, Any] = {}
-
-
-class Executor(Protocol):
-    """Where tasks run."""
-
-    def submit(self, function: Callable, /, *arguments: Any) -> Future: ...
 
 
 class WorkerError(RuntimeError):

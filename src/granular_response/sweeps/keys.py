@@ -39,12 +39,8 @@ class Indistinct(GranularError, ValueError):
 def key(*values: Any, packages: Collection[str] = ()) -> str:
     """32 hexadecimal digits for values, the same in every process: equal values, equal keys.
 
-    What stands in ``packages`` goes by its name alone, as what stands in this one: :func:`sources` has its code.
-
-    Raises
-    ------
-    Indistinct
-        For values of another kind than those above, and a table that cannot be read.
+    What stands in ``packages`` goes by its name alone, as what stands in this one: :func:`sources` has its code. Raises
+    Indistinct for values of another kind than those above, and a table that cannot be read.
     """
     by_name = {__name__.partition(".")[0], "numpy", *packages, *sys.stdlib_module_names} - {"__main__"}
     return _sha256(json.dumps(_plain(values, by_name)).encode())[:32]

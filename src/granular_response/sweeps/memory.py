@@ -39,18 +39,10 @@ class MemoryWarning(UserWarning):
 
 
 class Memory:
-    """Values that the present sources make, in a folder.
+    """Values that the present sources make, in a folder, which is made with the first value.
 
-    Parameters
-    ----------
-    folder
-        Is made if it is not there, with the first value.
-    parts
-        The sources that make the values, as :func:`.keys.sources` takes them; all if none is named.
-    packages
-        Others whose code makes the values too, and of whose classes they may be.
-    module
-        One more whose classes values may be of.
+    ``parts`` are the sources that make the values, as :func:`.keys.sources` takes them; all if none is named. Code of
+    ``packages`` makes the values too. Values may be of their classes, and of those of one more ``module``.
     """
 
     def __init__(
@@ -73,17 +65,18 @@ class Memory:
             return None
 
     def result(self, function: Callable[[Value], Any], value: Value) -> Any:
-        """``function(value)``, kept or computed; not kept if the value, a table of disks, has changed meanwhile."""
+        """``function(value)``, kept or computed."""
         name = self.name(function, value)
-        found = MISSING if name is None else self.load(name)
+        found = self.load(name)
         if found is MISSING:
             found = function(value)
-            if name is not None and self.name(function, value) == name:
-                self.save(name, found)
+            self.save_result(name, found, function, value)
         return found
 
-    def load(self, name: str) -> Any:
+    def load(self, name: str | None) -> Any:
         """The value under a name, or MISSING."""
+        if name is None:
+            return MISSING
         try:
             data = self._path(name).read_bytes()
             if data[-32:] != _seal(name, data[:-32]):
@@ -104,6 +97,11 @@ class Memory:
             warn(f"{self.folder}: {error}")
         except OSError as error:
             warn(f"{self.folder}: nothing more is kept there: {error.strerror or error}")
+
+    def save_result(self, name: str | None, result: Any, function: Callable, value: Any) -> None:
+        """Keep ``function(value)`` under its name, unless the value, a table of disks, has changed meanwhile."""
+        if name is not None and self.name(function, value) == name:
+            self.save(name, result)
 
     def _path(self, name: str) -> Path:
         return self.shelf / f"{name}.kept"

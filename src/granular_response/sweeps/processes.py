@@ -48,8 +48,8 @@ def over_processes(
                 deaths.update(running.values())
                 for index in running.values():
                     if alone and deaths[index] >= ATTEMPTS:
-                        times = f"{deaths[index]} times"
-                        raise failed(index, items, f"killed its worker process {times}") from None
+                        problem = f"killed its worker process {deaths[index]} times"
+                        raise failed(index, items, problem) from None
                 suspects.extend(sorted(running.values()))
 
 

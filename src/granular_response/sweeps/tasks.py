@@ -88,8 +88,7 @@ def map_tasks(
     folder = checkpoint or given.checkpoint
     memory = Memory(folder, parts, given.packages, _module(function)) if folder and items else None
     names = [memory.name(function, item) if memory else None for item in items]
-
-    results: list[Any] = [memory.load(name) if memory and name else MISSING for name in names]
+    results: list[Any] = [memory.load(name) if memory else MISSING for name in names]
     todo = [index for index, result in enumerate(results) if result is MISSING]
     done = len(items) - len(todo)
     if progress:
@@ -108,9 +107,8 @@ def map_tasks(
     with contextlib.closing(finished):  # whatever goes wrong below ends the workers at once
         for index, result in finished:
             results[index] = result
-            name = names[index]
-            if memory and name and memory.name(function, items[index]) == name:  # no table has changed meanwhile
-                memory.save(name, result)
+            if memory:
+                memory.save_result(names[index], result, function, items[index])
             done += 1
             if progress:
                 progress(done, len(items), what)

@@ -12,7 +12,7 @@ import os
 import re
 import subprocess
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
@@ -54,12 +54,8 @@ FORMATS = {
 def write(output: Path, root: Path = Path(".")) -> list[str]:
     """Archive the project below ``root``; returns the paths that the archive holds.
 
-    Raises
-    ------
-    ArchiveError
-        If a file is missing or is not the one that ``dvc.lock`` names, or the package ``rocrate`` is not there.
-    OSError
-        If the archive cannot be written, or would replace one of the files in it.
+    Raises ArchiveError if a file is missing or is not the one that ``dvc.lock`` names, or there is no package
+    ``rocrate``; OSError if the archive cannot be written, or would replace one of the files in it.
     """
     stages = lock.stages(root)
     items = sorted({item for stage in stages for item in (*stage.read, *stage.written)}, key=lambda item: item.path)
@@ -90,12 +86,17 @@ def _metadata(
     root: Path, stages: Sequence[Stage], items: Sequence[Item], names: Sequence[str], inside: dict[str, list[str]]
 ) -> bytes:
     try:
+        from rocrate.model.contextentity import ContextEntity
         from rocrate.rocrate import ROCrate
     except ModuleNotFoundError as error:
         raise ArchiveError(f"needs the package {error.name}, install granular-response-paper[archive]") from error
     crate = ROCrate(version="1.1")
     crate.metadata.extra_contexts.append(CONTEXT)
-    software = _describe(crate, root)
+
+    def entity(identifier: str, properties: dict[str, Any]) -> Any:
+        return crate.get(identifier) or crate.add(ContextEntity(crate, identifier, properties=properties))
+
+    software = _describe(crate, root, entity)
     hashes = {item.path: item for item in items}
     entities = {
         name: crate.add_file(root / name, name, properties=_file(root, name, hashes.get(name))) for name in names
@@ -105,26 +106,30 @@ def _metadata(
             parts = [{"@id": entities[name].id} for name in found]
             properties = {"name": path, "hasPart": parts, "md5": hashes[path].md5}
             entities[path] = crate.add_dataset(root / path, f"{path}/", properties=properties)
-    actions = [_action(crate, stage, software, entities) for stage in stages]
+    actions = []
+    for stage in stages:
+        read = [entities[item.path] for item in stage.read]
+        for file, values in stage.parameters.items():
+            read.append(entities[file])
+            for key, value in values.items():
+                properties = {"@type": "PropertyValue", "name": key, "value": json.dumps(value, ensure_ascii=False)}
+                read.append(entity(_anchor(f"{file}/{key}"), properties))
+        written = [entities[item.path] for item in stage.written]
+        about = {"name": stage.name, "description": stage.command}
+        actions.append(crate.add_action(software, _anchor(stage.name), object=read, result=written, properties=about))
     crate.root_dataset["mentions"] = actions
-    made = crate.metadata.generate()
-    return (json.dumps(made, indent=1, ensure_ascii=False) + "\n").encode()
+    return (json.dumps(crate.metadata.generate(), indent=1, ensure_ascii=False) + "\n").encode()
 
 
 def _file(root: Path, name: str, item: Item | None) -> dict[str, Any]:
-    found = {"name": PurePosixPath(name).name, "contentSize": str((root / name).stat().st_size)}
+    path = PurePosixPath(name)
+    found = {"name": path.name, "contentSize": str((root / name).stat().st_size)}
     found["md5"] = item.md5 if item else lock.md5(root, name)
-    form = FORMATS.get(PurePosixPath(name).suffix)
-    return {**found, **({"encodingFormat": form} if form else {})}
+    return found | ({"encodingFormat": FORMATS[path.suffix]} if path.suffix in FORMATS else {})
 
 
-def _describe(crate: ROCrate, root: Path) -> Any:
+def _describe(crate: ROCrate, root: Path, entity: Callable[[str, dict[str, Any]], Any]) -> Any:
     """Name, licence, authors and paper from codemeta.json; returns the software, with which every stage was run."""
-    from rocrate.model.contextentity import ContextEntity
-
-    def entity(identifier: str, properties: dict[str, Any]) -> Any:
-        return crate.add(ContextEntity(crate, identifier, properties=properties))
-
     try:
         known = json.loads((root / SOFTWARE).read_text(encoding="utf-8"))
         authors = [entity(_anchor(author["name"]), dict(author)) for author in known["author"]]
@@ -133,18 +138,16 @@ def _describe(crate: ROCrate, root: Path) -> Any:
             entity(_anchor(f"{author['givenName']} {author['familyName']}"), dict(author)) for author in paper["author"]
         ]
         article = entity(paper["url"], {**paper, "author": written_by})
-        software = entity(
-            _anchor(known["name"]),
-            {
-                "@type": "SoftwareApplication",
-                "name": known["name"],
-                "description": known["description"],
-                "softwareVersion": known["version"],
-                "license": known["license"],
-                "author": authors,
-                "citation": article,
-            },
-        )
+        of_software = {
+            "@type": "SoftwareApplication",
+            "name": known["name"],
+            "description": known["description"],
+            "softwareVersion": known["version"],
+            "license": known["license"],
+            "author": authors,
+            "citation": article,
+        }
+        software = entity(_anchor(known["name"]), of_software)
         crate.name = f"{known['name']} {known['version']}: datasets, figures and claims"
         crate.description = known["description"]
         crate.keywords = known["keywords"]
@@ -158,27 +161,6 @@ def _describe(crate: ROCrate, root: Path) -> Any:
     profile = {"@type": "CreativeWork", "name": "Process Run Crate", "version": PROFILE.rpartition("/")[2]}
     crate.root_dataset["conformsTo"] = entity(PROFILE, profile)
     return software
-
-
-def _action(crate: ROCrate, stage: Stage, software: Any, entities: dict[str, Any]) -> Any:
-    from rocrate.model.contextentity import ContextEntity
-
-    read = [entities[item.path] for item in stage.read]
-    for file, values in stage.parameters.items():
-        read.append(entities[file])
-        for key, value in values.items():
-            identifier = _anchor(f"{file}/{key}")
-            if not (found := crate.get(identifier)):
-                properties = {"@type": "PropertyValue", "name": key, "value": json.dumps(value, ensure_ascii=False)}
-                found = crate.add(ContextEntity(crate, identifier, properties=properties))
-            read.append(found)
-    return crate.add_action(
-        software,
-        _anchor(stage.name),
-        object=read,
-        result=[entities[item.path] for item in stage.written],
-        properties={"name": stage.name, "description": stage.command},
-    )
 
 
 def _anchor(name: str) -> str:

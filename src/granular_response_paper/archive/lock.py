@@ -5,7 +5,9 @@ from __future__ import annotations
 import fnmatch
 import hashlib
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -55,35 +57,36 @@ def stages(root: Path) -> list[Stage]:
     missing = [name for name in names if name not in locked]
     if missing:
         raise ArchiveError(f"{root / LOCK}: stage {missing[0]} has not been run; make it with make reproduce")
+
+    def items(entries: Iterable[dict[str, Any]]) -> tuple[Item, ...]:
+        return tuple(Item(str(one["path"]), str(one["md5"]), int(one["size"])) for one in entries)
+
     try:
         return [
-            Stage(
-                name,
-                str(locked[name]["cmd"]),
-                tuple(_item(entry) for entry in locked[name].get("deps", ())),
-                tuple(_item(entry) for entry in locked[name].get("outs", ())),
-                locked[name].get("params", {}),
-            )
+            Stage(name, str(one["cmd"]), items(one.get("deps", ())), items(one.get("outs", ())), one.get("params", {}))
             for name in names
+            for one in [locked[name]]
         ]
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise ArchiveError(f"{root / LOCK}: is not a lock file of DVC 3: {error!r}") from None
 
 
 def _section(path: Path) -> dict[str, Any]:
-    try:
-        found = text.read(read_text(path))["stages"]
-    except OSError as error:
-        raise ArchiveError(f"{path}: cannot be read: {error.strerror}") from None
-    except (SceneError, UnicodeDecodeError, KeyError, TypeError):
-        found = None
+    found = _mapping(path, "is not a file of DVC with stages").get("stages")
     if not isinstance(found, dict):
         raise ArchiveError(f"{path}: is not a file of DVC with stages")
     return found
 
 
-def _item(entry: dict[str, Any]) -> Item:
-    return Item(str(entry["path"]), str(entry["md5"]), int(entry["size"]))
+def _mapping(path: Path, otherwise: str = "") -> dict[str, Any]:
+    """What a file of YAML holds, empty if that is no mapping; ``otherwise`` says what is wrong if it is no YAML."""
+    try:
+        found = text.read(read_text(path))
+    except OSError as error:
+        raise ArchiveError(f"{path}: cannot be read: {error.strerror}") from None
+    except (SceneError, UnicodeDecodeError) as error:
+        raise ArchiveError(f"{path}: {otherwise or error}") from None
+    return found if isinstance(found, dict) else {}
 
 
 def files(root: Path, path: str) -> list[str]:
@@ -109,43 +112,21 @@ def files(root: Path, path: str) -> list[str]:
 def md5(root: Path, path: str) -> str:
     """The hash of a file or a folder, as DVC makes it. Raises ArchiveError if nothing is there."""
     if (root / path).is_file():
-        return _md5_of_file(root / path)
-    inside = [
-        {"md5": _md5_of_file(root / name), "relpath": PurePosixPath(name).relative_to(path).as_posix()}
-        for name in files(root, path)
-    ]
-    inside.sort(key=lambda entry: entry["relpath"])
-    return hashlib.md5(json.dumps(inside, sort_keys=True).encode()).hexdigest() + ".dir"
-
-
-def _md5_of_file(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "md5").hexdigest()
+        with (root / path).open("rb") as file:
+            return hashlib.file_digest(file, "md5").hexdigest()
+    names = {PurePosixPath(name).relative_to(path).as_posix(): name for name in files(root, path)}
+    inside = [{"md5": md5(root, names[relative]), "relpath": relative} for relative in sorted(names)]
+    return hashlib.md5(json.dumps(inside).encode()).hexdigest() + ".dir"
 
 
 def check(root: Path, stages: list[Stage]) -> None:
     """Raise ArchiveError, naming the first file and stage, unless all files and parameters are those of the stages."""
-    known: dict[str, str] = {}
-    now: dict[str, dict[str, Any]] = {}
+    known, now = cache(lambda path: md5(root, path)), cache(lambda name: _mapping(root / name))
     for stage in stages:
         for item in (*stage.read, *stage.written):
-            if item.path not in known:
-                known[item.path] = md5(root, item.path)
-            if known[item.path] != item.md5:
+            if known(item.path) != item.md5:
                 raise ArchiveError(f"{root / item.path}: is not what stage {stage.name} had; make reproduce first")
         for name, values in stage.parameters.items():
-            if name not in now:
-                now[name] = _parameters(root / name)
             for key, value in values.items():
-                if now[name].get(key) != value:
+                if now(name).get(key) != value:
                     raise ArchiveError(f"{root / name}: {key} is not what stage {stage.name} had; make reproduce first")
-
-
-def _parameters(path: Path) -> dict[str, Any]:
-    try:
-        found = text.read(read_text(path))
-    except OSError as error:
-        raise ArchiveError(f"{path}: cannot be read: {error.strerror}") from None
-    except (SceneError, UnicodeDecodeError) as error:
-        raise ArchiveError(f"{path}: {error}") from None
-    return found if isinstance(found, dict) else {}

@@ -48,13 +48,8 @@ def restore(archive: Path, root: Path = Path(".")) -> list[str]:
     Nothing is written before all of them have been checked, and nothing else that the archive holds. A dataset that is
     there already stays.
 
-    Raises
-    ------
-    ArchiveError
-        If the archive is damaged, if a dataset is missing from it or is not the one that ``dvc.lock`` names, or if
-        another one stands in its place.
-    OSError
-        If the archive cannot be read or a dataset not be written.
+    Raises ArchiveError if the archive is damaged, if a dataset is missing from it or is not the one that ``dvc.lock``
+    names, or if another one stands in its place; OSError if the archive cannot be read or a dataset not be written.
     """
     items = [item for stage in lock.stages(root) for item in stage.written if item.path.endswith(store.SUFFIX)]
     check_regular(archive)
@@ -73,13 +68,12 @@ def restore(archive: Path, root: Path = Path(".")) -> list[str]:
 
 
 def _is_there(root: Path, item: Item) -> bool:
-    if not (root / item.path).exists():
-        return False
-    if lock.md5(root, item.path) != item.md5:
+    there = (root / item.path).exists()
+    if there and lock.md5(root, item.path) != item.md5:
         raise ArchiveError(
             f"{root / item.path}: is there already and is not the one of {lock.LOCK}; move it away to restore that one"
         )
-    return True
+    return there
 
 
 def _content(archive: Path, file: zipfile.ZipFile, item: Item) -> bytes:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.special import betaincinv
 
 from granular_response.state import FloatArray
@@ -32,17 +32,21 @@ def of_draws(
     return Quantity(float(value), low, high, "confidence", test, samples)
 
 
+def _picked(number: int) -> NDArray[np.intp]:
+    """(d, number) which realizations each draw has. NotMeasured for less than three, which do not show a spread."""
+    if number < 3:
+        raise NotMeasured(f"{number} realizations: an interval needs three or more")
+    return np.random.default_rng(0).integers(0, number, (DRAWS, number))
+
+
 def over_realizations(values: ArrayLike, statistic: Statistic = np.median) -> Quantity:
     """``statistic`` (np.median, np.mean, ...: called with ``axis``) of finite ``values`` (r,) with its interval.
 
-    Raises NotMeasured with fewer than three values: nothing can be said about their spread.
+    Raises NotMeasured with fewer than three values.
     """
     found = np.asarray(values, dtype=float)
     found = found[np.isfinite(found)]
-    if found.size < 3:
-        raise NotMeasured(f"{found.size} realizations: an interval needs three or more")
-    picked = np.random.default_rng(0).integers(0, found.size, (DRAWS, found.size))
-    drawn = statistic(found[picked], axis=1)
+    drawn = statistic(found[_picked(found.size)], axis=1)
     return of_draws(float(statistic(found, axis=0)), drawn, f"bootstrap of the {statistic.__name__}", found.size)
 
 
@@ -66,11 +70,9 @@ def over_brackets(each: Sequence[Quantity]) -> Quantity:
 
     Raises NotMeasured with fewer than three.
     """
-    if len(each) < 3:
-        raise NotMeasured(f"{len(each)} realizations: an interval needs three or more")
+    picked = _picked(len(each))
     low, high = (np.array([getattr(one, end) for one in each]) for end in ("low", "high"))
     middle = float(np.median([one.value if np.isfinite(one.value) else 0.5 * (one.low + one.high) for one in each]))
     middle = middle if np.isfinite(middle) else float("nan")
-    picked = np.random.default_rng(0).integers(0, len(each), (DRAWS, len(each)))
     drawn = np.median(low[picked], axis=1), np.median(high[picked], axis=1)
     return of_draws(middle, drawn, "bootstrap of the median", len(each), "inverted_cdf")

@@ -150,13 +150,12 @@ class Condition:
 
     @property
     def asked(self) -> str:
+        least, most = _number(self.least, self.unit), _number(self.most, self.unit)
         if not math.isfinite(self.most):
-            return f"{'more than' if self.strict else 'at least'} {_number(self.least, self.unit)}"
+            return f"{'more than' if self.strict else 'at least'} {least}"
         if not math.isfinite(self.least):
-            return f"{'less than' if self.strict else 'at most'} {_number(self.most, self.unit)}"
-        if self.least == self.most:
-            return _number(self.least, self.unit)
-        return f"{_number(self.least, self.unit)} to {_number(self.most, self.unit)}"
+            return f"{'less than' if self.strict else 'at most'} {most}"
+        return least if self.least == self.most else f"{least} to {most}"
 
     @property
     def measured(self) -> str:
@@ -180,9 +179,7 @@ class Reading:
             raise ValueError(f"{name}: a reading needs conditions")
         if change and change not in CHANGES:
             raise KeyError(f"{name}: {change} is no change of the set-up")
-        object.__setattr__(self, "name", name)
-        object.__setattr__(self, "conditions", conditions)
-        object.__setattr__(self, "change", change)
+        vars(self).update(name=name, conditions=conditions, change=change)
 
     @property
     def outcome(self) -> Outcome:

@@ -54,7 +54,7 @@ GROUPS: tuple[str, ...] = tuple(
 FACTORS = (0.5, 2.0)
 
 #: Intervals as they are named for readers.
-KINDS = {"none": "", "bracket": "bracket", "confidence": "95 % confidence", "range": "range"}
+KINDS = {"bracket": "bracket", "confidence": "95 % confidence", "range": "range"}
 
 
 def collect(folder: str | os.PathLike[str] = "data") -> Data:
@@ -91,15 +91,9 @@ def sensitivity(data: Data, entries: Sequence[Entry]) -> list[dict[str, Any]]:
         changed = bounds(word.name, factor)
         now = {name: judge(one.claim, data, changed).verdict for name, one in own.items() if word.name in one.words}
         moved = {name: verdict for name, verdict in now.items() if verdict != verdicts[name]}
-        rows.append(
-            {
-                "word": word.name,
-                "bound": changed[word.name],
-                "factor": factor,
-                "counts": counts(list((verdicts | moved).values())),
-                "changed": moved,
-            }
-        )
+        tally = counts(list((verdicts | now).values()))
+        setting = {"word": word.name, "bound": changed[word.name], "factor": factor}
+        rows.append(setting | {"counts": tally, "changed": moved})
     return rows
 
 
@@ -111,11 +105,7 @@ def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
     own = [entry for entry in entries if not entry.claim.beyond]
     degrees = [entry.robustness for entry in own]
     return {
-        "counts": {
-            **counts([entry.verdict for entry in own]),
-            "total": len(own),
-            "beyond": len(entries) - len(own),
-        },
+        "counts": counts([entry.verdict for entry in own]) | {"total": len(own), "beyond": len(entries) - len(own)},
         "robustness": {key(kind): degrees.count(kind) for kind in ROBUSTNESS_MEANINGS},
         "verdict_kinds": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
         "robustness_kinds": [{"robustness": kind, "meaning": meaning} for kind, meaning in ROBUSTNESS_MEANINGS.items()],
@@ -129,62 +119,43 @@ def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
 
 def _row(entry: Entry) -> dict[str, Any]:
     claim, finding = entry.claim, entry.finding
-    row: dict[str, Any] = {
-        "id": claim.id,
-        "place": claim.place,
-        "measured": claim.measured,
-        "paper": claim.paper,
-        "verdict": entry.verdict,
-        "reason": entry.reason,
-        "robustness": entry.robustness,
-        "robustness_reason": entry.robustness_reason,
-        "figures": list(claim.figures),
-        "group": claim.group,
-        "beyond": claim.beyond,
-        "ours": finding.summary if finding else "",
-        "value": None,
-        "interval": None,
-        "interval_kind": "",
-        "tests": [],
-        "samples": None,
-        "readings": [],
-    }
-    if finding:
-        row.update(_interval(finding.quantity))
-        asked = [c.found for reading in finding.interpretations for c in reading.conditions]
-        row["tests"] = list(dict.fromkeys(one.tested for one in asked))
-        row["samples"] = [min(one.samples for one in asked), max(one.samples for one in asked)]
-        row["readings"] = [
-            {
-                "name": reading.name,
-                "change": reading.change,
-                "outcome": reading.outcome,
-                "conditions": [
-                    {
-                        "measured": c.measured,
-                        "asked": c.asked,
-                        "outcome": c.outcome,
-                        "words": list(c.words),
-                        "test": c.found.tested,
-                        "samples": c.found.samples,
-                        **_interval(c.found),
-                    }
-                    for c in reading.conditions
-                ],
-            }
-            for reading in finding.readings
-        ]
-    return row
-
-
-def _interval(quantity: Quantity) -> dict[str, Any]:
-    """A value with its interval and the kind of it; an end that is open is null."""
-    bare = quantity.kind == "none"
+    asked = [c.found for reading in finding.interpretations for c in reading.conditions] if finding else []
+    samples = [one.samples for one in asked]
     return {
-        "value": rounded(quantity.value),
-        "interval": None if bare else [rounded(quantity.low), rounded(quantity.high)],
-        "interval_kind": KINDS[quantity.kind],
+        **_named(claim, "id", "place", "measured", "paper"),
+        **_named(entry, "verdict", "reason", "robustness", "robustness_reason"),
+        **_named(claim, "figures", "group", "beyond"),
+        "ours": finding.summary if finding else "",
+        **_interval(finding.quantity if finding else None),
+        "tests": list(dict.fromkeys(one.tested for one in asked)),
+        "samples": [min(samples), max(samples)] if samples else None,
+        "readings": [
+            _named(reading, "name", "change", "outcome")
+            | {
+                "conditions": [
+                    _named(c, "measured", "asked", "outcome", "words")
+                    | {"test": c.found.tested, "samples": c.found.samples}
+                    | _interval(c.found)
+                    for c in reading.conditions
+                ]
+            }
+            for reading in (finding.readings if finding else ())
+        ],
     }
+
+
+def _named(one: object, *names: str) -> dict[str, Any]:
+    """Attributes by name, as JSON has them."""
+    values = {name: getattr(one, name) for name in names}
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
+
+
+def _interval(quantity: Quantity | None) -> dict[str, Any]:
+    """A value with its interval and the kind of it; null without them, and for an end that is open."""
+    if quantity is None or quantity.kind == "none":
+        return {"value": quantity and rounded(quantity.value), "interval": None, "interval_kind": ""}
+    ends = [rounded(quantity.low), rounded(quantity.high)]
+    return {"value": rounded(quantity.value), "interval": ends, "interval_kind": KINDS[quantity.kind]}
 
 
 def write(

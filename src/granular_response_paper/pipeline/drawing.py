@@ -30,13 +30,8 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
     Animations of a group (``animations`` of its ``draw.py``) are GIFs, each beside the picture of its name.
     A figure that is smaller as SVG than as PNG, and below :data:`LARGEST`, is stored as a compressed SVG too.
 
-    Raises
-    ------
-    granular_response_paper.pipeline.GroupError
-        If there is no such group, the datasets are those of another one or of other parameters than it has now, or
-        hold too little to be drawn.
-    granular_response.store.files.StoreError
-        If its datasets cannot be read.
+    Raises GroupError if there is no such group, the datasets are those of another one or of other parameters than it
+    has now, or hold too little to be drawn; StoreError if its datasets cannot be read.
     """
     function = group_member(group, "draw", "draw")
     path, datasets = stored.datasets(group, data)

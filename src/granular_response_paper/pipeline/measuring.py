@@ -33,22 +33,14 @@ def measure(group: str, data: Path | None = None, output: Path | None = None) ->
     first interpretation; then come their numbers there, the lower bound where that is all there is, and those of the
     group's ``numbers.py``.
 
-    Raises
-    ------
-    GroupError
-        If there is no such group, it has neither claims nor numbers, or the datasets are those of another one.
-    granular_response.store.files.StoreError
-        If its datasets cannot be read.
-    OSError
-        If the output cannot be written.
+    Raises GroupError if there is no such group, it has neither claims nor numbers, or the datasets are those of another
+    one; StoreError if its datasets cannot be read, OSError if the output cannot be written.
     """
     claims, numbers = contents(group)
     if claims is None and numbers is None:
         raise GroupError(f"{group}: has neither claims.py nor numbers.py, so there is nothing to measure")
     path, datasets = stored.datasets(group, data)
-    found: dict[str, str | float | None] = {}
-    if claims is not None:
-        found = _claims(claims, group, datasets)
+    found = _claims(claims or (), group, datasets)
     if numbers is not None:
         try:
             found |= {name: rounded(value) for name, value in numbers(datasets).items()}
@@ -76,11 +68,8 @@ def _claims(claims: Sequence[Claim], group: str, datasets: Mapping[str, xr.Datas
         if finding is None:
             outcomes["not measured"].append(claim.id)
             continue
-        reading = finding.readings[0]
-        outcomes[reading.outcome].append(claim.id)
-        condition = reading.conditions[0]
-        quantity = condition.found
-        values[f"{claim.id} {condition.what}"] = rounded(
-            quantity.value if math.isfinite(quantity.value) else quantity.low
-        )
+        outcomes[finding.readings[0].outcome].append(claim.id)
+        condition = finding.readings[0].conditions[0]
+        value = condition.found.value
+        values[f"{claim.id} {condition.what}"] = rounded(value if math.isfinite(value) else condition.found.low)
     return {outcome: " ".join(ids) for outcome, ids in outcomes.items() if ids} | values

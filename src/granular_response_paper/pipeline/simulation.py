@@ -33,29 +33,22 @@ def parameters(group: str, path: Path = PARAMETERS) -> tuple[dict[str, Any], Des
 
     Its own section has precedence.
 
-    Raises
-    ------
-    GroupError
-        If there is no such group, or the file or a section is missing.
-    granular_response.scene.SceneError
-        If the file is not YAML, or a parameter is missing, unknown or not what it must be: one line with its key.
+    Raises GroupError if there is no such group, or the file or a section is missing; SceneError if the file is not
+    YAML, or a parameter is missing, unknown or not what it must be: one line with its key.
     """
     kind: type[Description] = group_member(group, "parameters", "Parameters")
     try:
         sections = deepcopy(_read(read_text(path)))
+        common, own = (_section(sections, name, path) for name in ("common", group))
+        _describe(Common, common, "common")
+        taken = {key: value for key, value in common.items() if key in kind.model_fields}
+        return taken | own, _describe(kind, taken | own, group)
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from None
     except UnicodeDecodeError:
         raise GroupError(f"{path}: is not a text file in UTF-8") from None
     except OSError as error:
         raise GroupError(f"{path}: cannot be read: {error.strerror}") from None
-    common, own = (_section(sections, name, path) for name in ("common", group))
-    try:
-        _describe(Common, common, "common")
-        taken = {key: value for key, value in common.items() if key in kind.model_fields}
-        return taken | own, _describe(kind, taken | own, group)
-    except SceneError as error:
-        raise SceneError(f"{path}: {error}") from None
 
 
 @lru_cache(maxsize=4)  # the report and tests ask for one group after another
@@ -99,15 +92,8 @@ def simulate(
     output = output or data_path(group)
     store.check_writable(output, [parameter_file])
     kept = _checkpoint(output)
-    rest_states = output.parent.absolute() / REST_STATES
-    resources = using(
-        workers=workers,
-        scheduler=scheduler,
-        progress=progress,
-        checkpoint=kept,
-        rest_states=rest_states,
-        packages=(PACKAGE,),
-    )
+    folders = {"checkpoint": kept, "rest_states": output.parent.absolute() / REST_STATES}
+    resources = using(workers=workers, scheduler=scheduler, progress=progress, packages=(PACKAGE,), **folders)
     with _alone(kept, output), resources:
         try:
             datasets = function(described)

@@ -46,25 +46,16 @@ def write(
 ) -> Path:
     """Make the page from ``figures/``, ``data/`` and ``benchmarks/`` below ``root``; returns its path.
 
-    Raises
-    ------
-    granular_response_paper.claims.stored.ClaimsError
-        If ``figures/claims.json`` is missing or not JSON.
-    ReportError
-        If a ``captions.json`` is damaged.
-    granular_response.store.files.StoreError
-        If a dataset cannot be read.
-    OSError
-        If the page cannot be written, or would replace one of the files it is made from or of those to ``keep``.
+    Raises ClaimsError, ReportError or StoreError for a table of claims, a ``captions.json`` or a dataset that cannot be
+    read, OSError if the page cannot be written, or would replace one of the files it is made from or of those to
+    ``keep``.
     """
     target = Path(output)
     folders = (Path(root) / name for name in ("figures", "data", "benchmarks"))
     used = [file for folder in folders for file in folder.rglob("*") if file.suffix != ".html"]
-    inputs = [*used, Path(root) / "requirements.lock", *keep]
-    if target.parent.is_dir():  # before the work; else it is made when there is a page
-        atomic.check_writable(target, inputs)
-    else:
-        atomic.check_output(target, inputs)
+    # before the work; a folder is made when there is a page
+    check = atomic.check_writable if target.parent.is_dir() else atomic.check_output
+    check(target, [*used, Path(root) / "requirements.lock", *keep])
     made = page(Path(root), target.parent).encode()
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, made)
@@ -88,14 +79,8 @@ BLOCKS: Mapping[str, Mapping[str, Callable[[Path], str]]] = {
 def renew(kind: str, document: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
     """Renew the generated lines of a document from ``data/`` below ``root``; its ``kind`` is a key of :data:`BLOCKS`.
 
-    Raises
-    ------
-    ReportError
-        If a parameter is not the paper's and nothing says why.
-    granular_response.store.generated.GeneratedError
-        If the file cannot be read or has no place for the lines.
-    granular_response.store.files.StoreError
-        If a dataset is missing or cannot be read.
+    Raises GeneratedError if it cannot be read or has no place for the lines, StoreError for a dataset that cannot be
+    read, ReportError if a parameter is not the paper's and nothing says why.
     """
     for block, lines in BLOCKS[kind].items():
         try:
@@ -115,12 +100,9 @@ def page(root: Path, folder: Path | None = None) -> str:
         shown = pictures.collect(root / "figures")
     except ValueError as error:
         raise ReportError(str(error)) from None
-    data = root / "data"
-    paths = [data / f"{group}.nc" for group in EXPLORED]
-    explored = [store.read(path) if path.exists() else {} for path in paths]
+    paths = [root / "data" / f"{group}.nc" for group in (*EXPLORED, SENSITIVITY)]
+    *explored, sensitivity = (store.read(path) if path.exists() else {} for path in paths)
     states = explorer.payload(*explored) if explored[0] else None
-    sensitivity = data / f"{SENSITIVITY}.nc"
-    tried = readings.table(store.read(sensitivity)) if sensitivity.exists() else None
     numbers: dict[str, set[int]] = {row["group"]: set() for row in claims["table"]}
     for picture in shown.all():
         numbers.setdefault(picture.group, set()).update([picture.number] if picture.number else [])
@@ -143,7 +125,7 @@ def page(root: Path, folder: Path | None = None) -> str:
         "linked": lambda picture: _linked(picture, root, root / OUTPUT.parent if folder is None else folder),
         "states": _json_in_html(states) if states else None,
         "explored": states and _choices(states["slabs"]),
-        "readings": tried,
+        "readings": readings.table(sensitivity) if sensitivity else None,
         "benchmarks": benchmarks.collect(root / "benchmarks"),
         "goals": benchmarks.goals(root / "benchmarks"),
         "groups": groups,

@@ -63,82 +63,81 @@ class Slab:
     """A slab at rest and under k growing forces."""
 
     states: tuple[xr.Dataset, ...]  #: with one list of contacts; rest is the first state of each
+    chosen: list[tuple[int, int]]  #: for each force, which of ``states``, and which state of it
+    rows: list[xr.Dataset]  #: for each force, what is measured
     polydispersity: float
     friction: float
     wall_friction: float
     stiffness_ratio: float
     normal_stiffness: float
-    force: FloatArray  #: (k,)
-    chosen: NDArray[np.intp]  #: (k, 2) which of ``states``, and which state of it
-    x: FloatArray  #: (floor_disk,)
-    response: FloatArray  #: (k, floor_disk) floor force per applied force; of a disordered slab stress times R
-    smoothed: FloatArray | None  #: (k, floor_disk) stress times R per applied force, of a disordered slab
-    centre: FloatArray  #: (k,) response at x = 0, smoothed if there is a smoothed one
-    peaks: FloatArray  #: (k,)
     width: float = 0.0  #: of the Gaussian that smooths a disordered slab
     motion: float | None = None  #: smallest force whose state dynamics from rest reached; below it lies the load path
 
-    @property
-    def symmetric(self) -> list[bool]:
-        """Of each state of an ordered slab."""
-        return [asymmetry(self.x, row) <= ASYMMETRY for row in self.response]
+    def measured(self, name: str) -> NDArray[Any]:
+        """(k, ...) a variable of ``rows``."""
+        return np.stack([row[name].values for row in self.rows])
 
     @property
-    def shown(self) -> NDArray[np.bool_]:
-        """(floor_disk,) which of them are in the part that is shown."""
-        return np.abs(self.x) <= REACH + 0.5
+    def x(self) -> FloatArray:
+        """(floor_disk,)"""
+        return self.rows[0]["x"].values
+
+    @property
+    def response(self) -> FloatArray:
+        """(k, floor_disk) floor force per applied force; of a disordered slab stress times R, as in Fig. 20."""
+        return self.measured("floor_response") / (float(np.diff(self.x).mean()) if self.width else 1.0)
 
 
 def payload(friction: Datasets, more: Datasets | None = None, phase: Datasets | None = None) -> dict[str, Any] | None:
     """What the page embeds, and ``packed``, the contacts of all slabs; None without the states of any friction.
 
-    Parameters
-    ----------
-    friction, more, phase : datasets of ``friction_linear_range``, ``explorer`` and ``phase_diagram``.
+    The datasets are those of ``friction_linear_range``, ``explorer`` and ``phase_diagram``.
     """
     slabs = [*_ordered(friction), *map(_added, (more or {}).values())]
     if not slabs:
         return None
     contacts = [_Contacts.of(slab) for slab in slabs]
     strongest = max(float(one.strength.max()) for one in contacts)
-    packed = b"".join(one.bytes(strongest) for one in contacts)
     return {
         "reach": REACH,
         "full": FULL,
         "opened": OPENED,
         "strongest": round(strongest, 6),
-        "slabs": [
-            {
-                "polydispersity": slab.polydispersity,
-                "friction": slab.friction,
-                "ratio": slab.stiffness_ratio,
-                "about": _about(slab),
-                "about_set": typeset(_about(slab)),
-                "contacts": one.count,
-                "forces": slab.force.tolist(),
-                "height": round(one.height, 2),
-                "x": _rounded(slab.x[slab.shown], 2),
-                "response": [_rounded(row, 4) for row in slab.response[:, slab.shown]],
-                "smoothed": None if slab.smoothed is None else [_rounded(r, 4) for r in slab.smoothed[:, slab.shown]],
-                "centre": _rounded(slab.centre, 6),
-                # noise gives a disordered slab many
-                "peaks": None if slab.polydispersity else [int(count) for count in slab.peaks],
-                "symmetric": None if slab.polydispersity else slab.symmetric,
-                "walls": slab.wall_friction,
-                "width": slab.width,
-                "motion": slab.motion,
-                "paper": [
-                    {"force": force, "what": what, "place": place, "here": _here(friction, mu, events)}
-                    for mu, force, what, place, events in PAPER
-                    if (slab.polydispersity, slab.stiffness_ratio, mu) == (0.0, 0.8, slab.friction)
-                ],
-            }
-            for slab, one in zip(slabs, contacts, strict=True)
-        ],
+        "slabs": [_described(slab, one, friction) for slab, one in zip(slabs, contacts, strict=True)],
         "range": _range(friction),
         "crossovers": _crossovers(phase) if phase else [],
         "width": WIDTH,
-        "packed": base64.b64encode(zlib.compress(packed, 9)).decode(),
+        "packed": base64.b64encode(zlib.compress(b"".join(one.bytes(strongest) for one in contacts), 9)).decode(),
+    }
+
+
+def _described(slab: Slab, contacts: _Contacts, study: Datasets) -> dict[str, Any]:
+    """A slab as the page has it; ``study`` has the stored events."""
+    shown = np.abs(slab.x) <= REACH + 0.5
+    ordered = slab.polydispersity == 0.0  # noise gives a disordered slab many peaks
+    return {
+        "polydispersity": slab.polydispersity,
+        "friction": slab.friction,
+        "ratio": slab.stiffness_ratio,
+        "about": _about(slab),
+        "about_set": typeset(_about(slab)),
+        "contacts": len(contacts.lines),
+        "forces": slab.measured("force").tolist(),
+        "height": round(contacts.height, 2),
+        "x": _rounded(slab.x[shown], 2),
+        "response": [_rounded(row, 4) for row in slab.response[:, shown]],
+        "smoothed": [_rounded(r, 4) for r in slab.measured("smoothed_response")[:, shown]] if slab.width else None,
+        "centre": _rounded(slab.measured("response_at_centre"), 6),
+        "peaks": slab.measured("peak_count").astype(int).tolist() if ordered else None,
+        "symmetric": [asymmetry(slab.x, row) <= ASYMMETRY for row in slab.response] if ordered else None,
+        "walls": slab.wall_friction,
+        "width": slab.width,
+        "motion": slab.motion,
+        "paper": [
+            {"force": force, "what": what, "place": place, "here": _here(study, mu, events)}
+            for mu, force, what, place, events in PAPER
+            if (slab.polydispersity, slab.stiffness_ratio, mu) == (0.0, 0.8, slab.friction)
+        ],
     }
 
 
@@ -160,12 +159,12 @@ def _here(datasets: Datasets, friction: float, names: Sequence[str]) -> str:
     if stored is None or not names:
         return ""
     own = stored.isel(event=stored["friction"].values == friction)
-    rows = [own.isel(event=own["name"].values == name) for name in names]
-    ends = [(float(row["low"][0]), float(row["high"][0])) for row in rows if row.sizes["event"]]
     said = []
-    for low, high in ends:
-        first, last = f"{low:.3g}", f"{high:.3g}"
-        said.append(f"above {first}" if np.isnan(high) else first if first == last else f"between {first} and {last}")
+    for name in names:
+        for k in np.flatnonzero(own["name"].values == name)[:1]:
+            first, last = f"{float(own['low'][k]):.3g}", f"{float(own['high'][k]):.3g}"
+            between = first if first == last else f"between {first} and {last}"
+            said.append(f"above {first}" if last == "nan" else between)
     return f"{', '.join(said)} mg" if said else ""
 
 
@@ -177,16 +176,15 @@ def _ordered(datasets: Datasets) -> Iterator[Slab]:
             continue
         along = datasets["response"]
         along = along.isel(friction=int(np.abs(along["friction"].values - friction).argmin()))
-        sources, parts = [datasets[name]], [(0, along)]
+        sources = [(datasets[name], along)]
         large, motion = datasets.get("large_forces"), None
         if large is not None and float(large["friction"]) == friction:
-            sources.append(datasets["large_force_states"])
-            parts.append((1, large))
+            sources.append((datasets["large_force_states"], large))
             motion = float(large["force"].min())
         chosen: list[tuple[int, int]] = []
         rows: list[xr.Dataset] = []
-        for source, measured in parts:
-            for k, force in enumerate(sources[source]["force"].values.tolist()):
+        for source, (states, measured) in enumerate(sources):
+            for k, force in enumerate(states["force"].values.tolist()):
                 here = np.flatnonzero(np.isclose(measured["force"].values, force))
                 replaced = source == 0 and motion is not None and force >= motion
                 if force > 0.0 and here.size and not replaced:
@@ -194,44 +192,28 @@ def _ordered(datasets: Datasets) -> Iterator[Slab]:
                     rows.append(measured.isel(force=int(here[0])))
         scene = Scene.from_text(datasets[name].attrs["scene"])
         yield Slab(
-            states=tuple(sources),
+            states=tuple(states for states, _ in sources),
+            chosen=chosen,
+            rows=rows,
             polydispersity=0.0,
             friction=friction,
             wall_friction=float(scene.resolved_wall.friction),
             stiffness_ratio=float(scene.contact.stiffness_ratio),
             normal_stiffness=float(scene.contact.normal_stiffness),
-            force=np.array([float(row["force"]) for row in rows]),
-            chosen=np.array(chosen),
-            x=along["x"].values,
-            response=np.stack([row["floor_response"].values for row in rows]),
-            smoothed=None,
-            centre=np.array([float(row["response_at_centre"]) for row in rows]),
-            peaks=np.array([float(row["peak_count"]) for row in rows]),
             motion=motion,
         )
 
 
 def _added(data: xr.Dataset) -> Slab:
     """A slab of the group ``explorer``."""
-    loaded = data.isel(state=slice(1, None))
-    width = float(data["smoothing_width"])
-    # a smoothed response is a stress, as in Fig. 20; so is the force of one disk over the distance to the next one
-    spacing = float(np.diff(data["x"].values).mean()) if width else 1.0
+    loaded = range(1, data.sizes["state"])
+    names = ("polydispersity", "friction", "wall_friction", "stiffness_ratio", "normal_stiffness")
     return Slab(
         states=(data,),
-        polydispersity=float(data["polydispersity"]),
-        friction=float(data["friction"]),
-        wall_friction=float(data["wall_friction"]),
-        stiffness_ratio=float(data["stiffness_ratio"]),
-        normal_stiffness=float(data["normal_stiffness"]),
-        force=loaded["force"].values.astype(float),
-        chosen=np.array([(0, k) for k in range(1, data.sizes["state"])]),
-        x=data["x"].values,
-        response=loaded["floor_response"].values / spacing,
-        smoothed=loaded["smoothed_response"].values if width else None,
-        centre=loaded["response_at_centre"].values,
-        peaks=loaded["peak_count"].values,
-        width=width,
+        chosen=[(0, k) for k in loaded],
+        rows=[data.isel(state=k) for k in loaded],
+        width=float(data["smoothing_width"]),
+        **{name: float(data[name]) for name in names},
     )
 
 
@@ -245,37 +227,33 @@ class _Contacts:
     sliding: NDArray[np.bool_]  #: (k, contact)
     height: float
 
-    @property
-    def count(self) -> int:
-        return len(self.lines)
-
     @classmethod
     def of(cls, slab: Slab) -> _Contacts:
-        first = slab.states[0]["contact_disk"].values
-        second = slab.states[0]["contact_partner"].values
         rest = slab.states[0].isel(state=0)
+        first, second = rest["contact_disk"].values, rest["contact_partner"].values
         place = rest["position"].values.astype(float)
         place = place - np.array([place[int(rest["loaded_disk"]), 0], 0.0])
         ever = np.any([np.any(states["contact_status"].values != OPEN, axis=0) for states in slab.states], axis=0)
         inside = ever & (np.abs(place[first, 0]) <= REACH) & (np.abs(place[second, 0]) <= REACH)
         first, second = first[inside], second[inside]
-        at_rest = [_forces(states.isel(state=0), first, second, inside) for states in slab.states]
-        strength, opened, sliding = [], [], []
-        for applied, (source, k) in zip(slab.force, slab.chosen, strict=True):
-            force, along, across, touching = _forces(slab.states[source].isel(state=k), first, second, inside)
-            before, along_before, _, touched = at_rest[source]
-            sign = np.where(along >= along_before, 1.0, -1.0)
-            strength.append(sign * np.linalg.norm(force - before, axis=1) / applied)
-            opened.append(touched & ~touching)
-            limit = (1.0 - MARGIN) * slab.friction * along
-            sliding.append(touching & (np.abs(across) >= limit) & (slab.friction > 0.0))
-        return cls(
-            np.rint(10.0 * np.concatenate([place[first], place[second]], axis=1)).astype(np.int16),
-            np.stack(strength),
-            np.stack(opened),
-            np.stack(sliding),
-            float(place[:, 1].max()) + 1.0,
-        )
+        found = []
+        for source, states in enumerate(slab.states):
+            position = states["position"].values.astype(float)
+            normal = position[:, first] - position[:, second]
+            normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+            along, across = (
+                states[f"contact_{part}_force"].values[:, inside].astype(float) for part in ("normal", "tangential")
+            )
+            touching = states["contact_status"].values[:, inside] != OPEN
+            force = contact_force(normal, along, across)
+            added = np.where(along >= along[0], 1.0, -1.0) * np.linalg.norm(force - force[0], axis=-1)
+            slides = touching & (np.abs(across) >= (1.0 - MARGIN) * slab.friction * along) & (slab.friction > 0.0)
+            chosen = [k for one, k in slab.chosen if one == source]
+            found.append((added[chosen], (touching[0] & ~touching)[chosen], slides[chosen]))
+        added, opened, sliding = map(np.concatenate, zip(*found, strict=True))
+        lines = np.rint(10.0 * np.concatenate([place[first], place[second]], axis=1)).astype(np.int16)
+        strength = added / slab.measured("force").astype(float)[:, None]
+        return cls(lines, strength, opened, sliding, float(place[:, 1].max()) + 1.0)
 
     def bytes(self, strongest: float) -> bytes:
         """Lines as little-endian 16-bit numbers; then for each force a byte for each contact and a bit for sliding."""
@@ -283,17 +261,6 @@ class _Contacts:
         levels[self.opened] = OPENED
         frames = np.concatenate([levels.view(np.uint8), np.packbits(self.sliding, axis=1)], axis=1)
         return self.lines.astype("<i2").tobytes() + frames.tobytes()
-
-
-def _forces(
-    state: xr.Dataset, first: NDArray[np.intp], second: NDArray[np.intp], inside: NDArray[np.bool_]
-) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.bool_]]:
-    """Of contacts ``inside``: (contact, 2) forces on their first disks, normal and tangential parts, what touches."""
-    position = state["position"].values.astype(float)
-    normal = position[first] - position[second]
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    along, across = (state[f"contact_{part}_force"].values[inside].astype(float) for part in ("normal", "tangential"))
-    return contact_force(normal, along, across), along, across, state["contact_status"].values[inside] != OPEN
 
 
 def _range(datasets: Datasets) -> list[dict[str, Any]]:

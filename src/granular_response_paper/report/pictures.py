@@ -65,7 +65,7 @@ QUESTIONS: Mapping[str, tuple[str, ...]] = {
 FURTHER = "Further figures"
 
 #: The end of a first sentence, which the next one follows.
-_SENTENCE = re.compile(r"(?<!Fig)(?<!Figs)(?<!Sec)(?<!Secs)(?<!Eq)(?<!eq)[.?!]\s+(?=[A-Z(])")
+_SENTENCE = re.compile(r"(?<!Fig.)(?<!Figs.)(?<!Sec.)(?<!Secs.)(?<!Eq.)(?<!eq.)(?<=[.?!])\s+(?=[A-Z(])")
 
 
 @dataclass(frozen=True)
@@ -110,17 +110,12 @@ class Picture:
     @property
     def message(self) -> str:
         """First sentence of the caption."""
-        return self._parts[0]
+        return _SENTENCE.split(self.caption, 1)[0]
 
     @property
     def details(self) -> str:
         """What follows it."""
-        return self._parts[1]
-
-    @property
-    def _parts(self) -> tuple[str, str]:
-        end = _SENTENCE.search(self.caption)
-        return (self.caption[: end.start() + 1], self.caption[end.end() :]) if end else (self.caption, "")
+        return "".join(_SENTENCE.split(self.caption, 1)[1:])
 
     @property
     def text(self) -> str:
@@ -160,14 +155,9 @@ def collect(folder: Path) -> Pictures:
     paths = sorted(folder.glob("*/*.png"), key=lambda path: (path.stem, path.parent.name))
     with threads.using(threads.cores()), threads.mapping() as several:  # encoding is most of the time of a page
         embedded = several(embed, paths)
-    shown = [
-        replace(plain, caption=caption, alternative=alternative)
-        for plain in embedded
-        for caption, alternative in [said.get((plain.group, plain.stem), ("", ""))]
-    ]
+    shown = [replace(plain, **said.get((plain.group, plain.stem), {})) for plain in embedded]
     shown.sort(key=lambda picture: picture.number or captions.NUMBER_OF_FIGURES + 1)  # the others as they are
-    overview = [picture for picture in shown if picture.group == OVERVIEW]
-    overview.sort(key=lambda picture: picture.stem != OVERVIEW)
+    overview = sorted((p for p in shown if p.group == OVERVIEW), key=lambda picture: picture.stem != OVERVIEW)
     known = {group: question for question, groups in QUESTIONS.items() for group in groups}
     by_question = {
         question: tuple(p for p in shown if p.group != OVERVIEW and known.get(p.group, FURTHER) == question)
@@ -176,13 +166,13 @@ def collect(folder: Path) -> Pictures:
     return Pictures(tuple(overview), {question: found for question, found in by_question.items() if found})
 
 
-def _said(folder: Path) -> dict[tuple[str, str], tuple[str, str]]:
+def _said(folder: Path) -> dict[tuple[str, str], dict[str, Any]]:
     """Caption and alternative text of each picture, by group and stem."""
     found = {}
     for path in folder.glob(f"*/{captions.FILE}"):
         try:
             for stem, entry in read_json(path).items():
-                found[path.parent.name, stem] = str(entry["caption"]), str(entry["alternative"])
+                found[path.parent.name, stem] = {name: str(entry[name]) for name in ("caption", "alternative")}
         except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
             raise ValueError(f"{path}: holds no captions: {type(error).__name__} {error}") from None
     return found

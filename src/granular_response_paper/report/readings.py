@@ -42,8 +42,6 @@ READINGS: Mapping[str, Reading] = {
     "gear": Reading("integrator", "Beeman", "Gear, step 2.4e-4 sqrt(R/g)"),
 }
 
-_NEEDED = {"text", "largest_difference"}
-
 
 @dataclass(frozen=True)
 class Table:
@@ -59,20 +57,13 @@ def table(datasets: Mapping[str, xr.Dataset]) -> Table:
 
     A variant that has no words here is shown with those of the study.
     """
-    found = {name: data for name, data in datasets.items() if set(data.variables) >= _NEEDED}
-    values = {name: dict(_column(data, "largest_difference")) for name, data in found.items()}
-    words = {variant: str(text) for data in found.values() for variant, text in _column(data, "text")}
-    variants = [v for v in READINGS if v in words] + [v for v in words if v not in READINGS]
-    return Table(
-        slabs=tuple(name.replace("mu_", "µ = ") for name in found),
-        rows=tuple(
-            (
-                READINGS.get(variant, Reading(words[variant], "", "")),
-                tuple(_short(column[variant]) if variant in column else "" for column in values.values()),
-            )
-            for variant in variants
-        ),
-    )
+    values = _columns(datasets, "largest_difference")
+    words = {variant: str(text) for column in _columns(datasets, "text").values() for variant, text in column.items()}
+    rows = []
+    for variant in sorted(words, key=[*READINGS, *words].index):
+        differences = (_short(column[variant]) if variant in column else "" for column in values.values())
+        rows.append((READINGS.get(variant, Reading(words[variant], "", "")), tuple(differences)))
+    return Table(tuple(name.replace("mu_", "µ = ") for name in values), tuple(rows))
 
 
 def _short(value: float) -> str:
@@ -81,10 +72,14 @@ def _short(value: float) -> str:
     return f"{digits}e{int(exponent)}"
 
 
-def _column(data: xr.Dataset, name: str) -> list[tuple[str, Any]]:
-    """The values of a variable by variant, without the reference."""
-    pairs = zip(data["variant"].values.tolist(), data[name].values.tolist(), strict=True)
-    return [(str(variant), value) for variant, value in pairs if str(variant) != "reference"]
+def _columns(datasets: Mapping[str, xr.Dataset], name: str) -> dict[str, dict[str, Any]]:
+    """For each dataset of the study that holds it, a variable by variant, without the reference."""
+    found = {}
+    for slab, data in datasets.items():
+        if set(data.variables) >= {name, "text", "largest_difference"}:
+            pairs = zip(data["variant"].values.tolist(), data[name].values.tolist(), strict=True)
+            found[slab] = {str(variant): value for variant, value in pairs if str(variant) != "reference"}
+    return found
 
 
 def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
@@ -96,13 +91,12 @@ def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
         said = ("", "") if reading.question == before else (reading.question, reading.choice)
         rows.append([*said, reading.option, *differences])
         before = reading.question
-    lines = [tables.table(heads, rows)]
-    quoted = [
-        f"* {what}: {', '.join(values)} ({', '.join(shown.slabs)})"
-        for variant, name, form, what in _QUOTED
-        if (values := _values(datasets, variant, name, form))
-    ]
-    return "\n".join(lines + ([""] if quoted else []) + quoted)
+    quoted = []
+    for variant, name, form, what in _QUOTED:
+        values = [form(column[variant]) for column in _columns(datasets, name).values() if variant in column]
+        if values:
+            quoted.append(f"* {what}: {', '.join(values)} ({', '.join(shown.slabs)})")
+    return "\n".join([tables.table(heads, rows), *([""] if quoted else []), *quoted])
 
 
 #: What else the notes speak of: variant, variable, how it is written, in words.
@@ -111,8 +105,3 @@ _QUOTED: tuple[tuple[str, str, Callable[[float], str], str], ...] = (
     ("no_static_finish", "response_sum", "{:.4f}".format, "Sum of the response, stopped at 1e-13 per disk"),
     ("literal_friction", "kinetic_energy", _short, "Kinetic energy per disk at the end, friction law as printed"),
 )
-
-
-def _values(datasets: Mapping[str, xr.Dataset], variant: str, name: str, form: Callable[[float], str]) -> list[str]:
-    columns = [dict(_column(data, name)) for data in datasets.values() if set(data.variables) >= {name, *_NEEDED}]
-    return [form(column[variant]) for column in columns if variant in column]
