@@ -118,7 +118,7 @@ def compute(scene: Scene, margin: float, width: float, wide: float) -> Outcome:
     """
     problem = Problem.from_scene(scene)
     rest = rest_state(problem)
-    period, stiffness = problem.packing.width, problem.stiffness
+    count, period, stiffness = rest.contact_count(), problem.packing.width, problem.stiffness
     matrices = np.stack([strained(problem, rest, how, margin=margin).moduli for how in FOLLOWING]) / stiffness
     alone = strained(problem, rest, "free", margin=margin, prestress=False).moduli / stiffness
     height = slab_height(rest, problem.packing)
@@ -129,7 +129,7 @@ def compute(scene: Scene, margin: float, width: float, wide: float) -> Outcome:
     solids = np.stack([*solids, nearest_isotropic(solids[-1])])
     predicted = np.stack([prediction(solid, height, period, floor, widths) for solid in solids])
     return Outcome(
-        height, coordination(rest), at_limit(problem, rest), matrices, alone, mean, predicted,
+        height, float(count[count >= 2].mean()), at_limit(problem, rest), matrices, alone, mean, predicted,
         apart(each, predicted[SOLIDS.index("free")]).mean(axis=0), apart(mean, predicted),
     )  # fmt: skip
 
@@ -138,12 +138,6 @@ def slab_height(rest: State, packing: Packing) -> float:
     """Of the elastic slab: distance of rows times their number (``sqrt(3) layers`` in a lattice of radius 1)."""
     z, rows = rest.position[:, 1], int(packing.row.max())
     return float((z[packing.row == rows].mean() - z[packing.row == 0].mean()) * (rows + 1) / rows)
-
-
-def coordination(rest: State) -> float:
-    """Mean number of contacts of the disks that bear something."""
-    count = rest.contact_count()
-    return float(count[count >= 2].mean())
 
 
 def on_floor(problem: Problem, rest: State) -> tuple[NDArray[np.intp], FloatArray]:

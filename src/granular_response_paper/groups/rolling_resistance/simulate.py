@@ -32,14 +32,7 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.rolling_resistance.parameters import Parameters
 from granular_response_paper.groups.rolling_resistance.parameters import Slab as SlabParameters
 from granular_response_paper.records import axes, column, parts, places, record, table
-from granular_response_paper.slab_response import (
-    TWO_PEAKS,
-    Happening,
-    LoadPath,
-    Measures,
-    first_opening,
-    half_maximum_width,
-)
+from granular_response_paper.slab_response import LoadPath, Measures, first_opening, half_maximum_width, two_peaks
 from granular_response_paper.tasks import computed
 
 CASES = ("supported", "free", "resisting")
@@ -193,8 +186,7 @@ def respond(parameters: Parameters, slab: SlabParameters, rolling: float) -> Sla
     path, width = LoadPath.of(scene), parameters.stress_width
     measures, problem, rest = Measures(path), path.problem, path.rest
     path.through(sorted({*slab.forces, *parameters.shown_forces}))
-    asked = first_opening(measures), Happening(measures.double_peaked, TWO_PEAKS)
-    opening, crossover = (np.array(path.first(slab.forces, happening)) for happening in asked)
+    opening, crossover = (np.array(path.first(slab.forces, of(measures))) for of in (first_opening, two_peaks))
     packing, top = problem.packing, rest.position[measures.loaded_disk]
     lines = coarse.grid_points(top[0] + measures.x, np.linspace(0.0, top[1], parameters.heights))
     inner = coarse.grid_points(top[0] + measures.x[measures.interior], np.arange(width, top[1] - width, 0.5 * width))

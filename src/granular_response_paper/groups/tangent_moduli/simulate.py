@@ -42,7 +42,7 @@ from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.theory.moduli import peak_criterion
 from granular_response_paper.datasets import labelled
 from granular_response_paper.records import axes, column, labels, parts, places, record, table
-from granular_response_paper.slab_response import TWO_PEAKS, Happening, LoadPath, Measures
+from granular_response_paper.slab_response import LoadPath, Measures, two_peaks
 from granular_response_paper.tasks import computed
 
 from .parameters import Parameters
@@ -227,7 +227,7 @@ def respond(parameters: Parameters, friction: float, forces: tuple[float, ...]) 
     path = LoadPath.of(p.base.updated({"contact.friction": friction}))
     measures, problem = Measures(path), path.problem
     path.through(forces)
-    crossover = np.array(path.first(forces, Happening(measures.double_peaked, TWO_PEAKS)))
+    crossover = np.array(path.first(forces, two_peaks(measures)))
     packing, loaded, inside, disks = problem.packing, measures.loaded_disk, measures.interior, measures.disks
     corners, middle = triangles(packing.position), np.array([path.rest.position[loaded, 0], 0.0])
 
