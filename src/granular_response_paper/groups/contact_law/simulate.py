@@ -7,7 +7,6 @@ rest under the linear law, both give the same force. ``responses`` holds the flo
 from __future__ import annotations
 
 from functools import partial
-from itertools import product
 
 import numpy as np
 import xarray as xr
@@ -18,7 +17,7 @@ from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.contact_law.parameters import Parameters
-from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.records import axes, column, places, record, table
 from granular_response_paper.slab_response import LoadPath, Measures
 from granular_response_paper.tasks import computed
 
@@ -74,10 +73,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Dataset ``responses``."""
     p = parameters
     scenes = [p.base.updated({"contact.friction": mu}) for mu in p.friction]
-    tasks = {
-        (f, k): partial(compute, scene, law, p.forces)
-        for (f, scene), (k, law) in product(enumerate(scenes), enumerate(LAWS))
-    }
+    tasks = {place: partial(compute, scene, law, p.forces) for place, (scene, law) in places(scenes, LAWS)}
     # the longest first
     data = table(computed(tasks, "slabs", work=lambda place: place[::-1]), "friction", "law")
     typical, x = (data[name].variable.isel(law=0) for name in ("typical_force", "x"))

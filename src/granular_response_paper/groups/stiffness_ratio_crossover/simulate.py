@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from itertools import product
 from typing import Any, get_args
 
 import numpy as np
@@ -34,7 +33,7 @@ from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.stiffness_ratio_crossover.parameters import Parameters
-from granular_response_paper.records import axes, column, record, stacked, table, variables
+from granular_response_paper.records import axes, column, places, record, stacked, table, variables
 from granular_response_paper.tasks import computed
 
 BODIES: tuple[Body, ...] = get_args(Body)
@@ -127,7 +126,7 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
     resists some strain not at all. ``root`` and ``moduli_error`` are claims K2 and K3.
     """
     found, error = {}, {}
-    for (r, rotations), (k, ratio) in product(enumerate(ROTATIONS), enumerate(ratios.tolist())):
+    for (r, k), (rotations, ratio) in places(ROTATIONS, ratios):
         if ratio == 0.0:
             continue
         springs = Springs(0.0, 1.0, 0.0, ratio)
