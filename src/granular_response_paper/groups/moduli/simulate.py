@@ -217,12 +217,9 @@ def at_infinity(layers: FloatArray, values: FloatArray) -> FloatArray:
     NaN where there are not as many.
     """
     order = np.argsort(-layers)
-    return np.array(
-        [
-            np.polyfit(1.0 / layers[order[:k]], values[order[:k]], k - 1)[-1] if len(layers) >= k else np.nan
-            for k in (2, 3)
-        ]
-    )
+    inverse, values = 1.0 / layers[order], values[order]
+    fits = [np.polyfit(inverse[:k], values[:k], k - 1)[-1] if len(order) >= k else np.nan for k in (2, 3)]
+    return np.array(fits)
 
 
 def needed(layers: FloatArray, difference: FloatArray, tolerances: FloatArray, draws: int, seed: int) -> FloatArray:
@@ -232,16 +229,12 @@ def needed(layers: FloatArray, difference: FloatArray, tolerances: FloatArray, d
     interval is that of ``draws`` bootstrap draws over the realizations of each size. Infinite beyond ``FARTHEST`` times
     the largest size, and where the power does not fall; all nan with less than two sizes of three realizations.
     """
-    found = [one[np.isfinite(one)] for one in difference]
-    enough = np.array([one.size >= 3 for one in found])
+    enough = np.isfinite(difference).sum(axis=1) >= 3
     if enough.sum() < 2:
         return np.full((len(tolerances), 3), np.nan)
     generator, layers = np.random.default_rng(seed), layers[enough]
-    drawn = [
-        np.append(one.mean(), one[generator.integers(0, one.size, (draws, one.size))].mean(1))
-        for one in found
-        if one.size >= 3
-    ]
+    each = [one[np.isfinite(one)] for one in difference[enough]]
+    drawn = [np.append(one.mean(), one[generator.integers(0, one.size, (draws, one.size))].mean(1)) for one in each]
     slope, offset = np.polyfit(np.log(layers), np.log(np.stack(drawn)), 1)
     # logarithm of the size, at most that of FARTHEST, beyond which it counts as infinite; flat is infinite too
     farthest = np.log(FARTHEST * layers.max())
