@@ -8,8 +8,9 @@ realization, ...), so that each declared field becomes a variable.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from itertools import product
 from types import MappingProxyType
 from typing import Any, TypeVar, dataclass_transform, get_type_hints
 
@@ -111,3 +112,13 @@ def axes(**given: tuple[Iterable[Any], str]) -> dict[str, xr.Variable]:
         name: variable(name, values if isinstance(values, np.ndarray) else list(values), text)
         for name, (values, text) in given.items()
     }
+
+
+def parts(records: Mapping[Place, Any], name: str) -> dict[tuple[int, ...], Any]:
+    """What records have several of in one field: each by the place of its record and its own number there."""
+    return {(*place, k): part for place, one in records.items() for k, part in enumerate(getattr(one, name))}
+
+
+def places(*along: Sequence[Any] | NDArray[Any]) -> Iterator[tuple[tuple[int, ...], tuple[Any, ...]]]:
+    """Places in a grid and the values of its axes ``along`` there; the last place runs fastest."""
+    return zip(np.ndindex(*map(len, along)), product(*along), strict=True)

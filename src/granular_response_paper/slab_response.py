@@ -375,6 +375,11 @@ def reaches_floor(measures: Measures) -> Happening:
     return Happening(lambda state: measures.region(state).reaches_floor, REACHES_FLOOR, of_contacts=True)
 
 
+def two_peaks(measures: Measures) -> Happening:
+    """The response has two peaks: the crossover."""
+    return Happening(measures.double_peaked, TWO_PEAKS)
+
+
 def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[str, Happening]:
     """What is looked for along a load path, by name.
 
@@ -387,7 +392,7 @@ def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[st
             lambda state: abs(measures.centre(state) / linear - 1.0) > LINEARITY,
             f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {force:g}",
         ),
-        "crossover": Happening(measures.double_peaked, TWO_PEAKS),
+        "crossover": two_peaks(measures),
         "reaches_floor": reaches_floor(measures),
         "third_peak": Happening(
             lambda state: measures.third_peak(state) > 0.0,

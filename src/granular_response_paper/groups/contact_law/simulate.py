@@ -17,7 +17,7 @@ from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.contact_law.parameters import Parameters
-from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.records import axes, column, places, record, table
 from granular_response_paper.slab_response import LoadPath, Measures
 from granular_response_paper.tasks import computed
 
@@ -57,16 +57,10 @@ def compute(scene: Scene, law: str, forces: tuple[float, ...]) -> Outcome:
         # contacts are stiffer under more force: the paper's time step is just too long for them
         changes = {"contact.law": "hertz", "contact.normal_stiffness": stiffness, "protocol.time_step": "auto"}
         path = LoadPath.of(scene.updated(changes))
-    measures = Measures(path)
-    states = path.through(forces)
-    return Outcome(
-        np.array([measures.response(state) for state in states]),
-        np.array([measures.opened(state) for state in states]),
-        np.array([state.certificate.force_residual for state in states]),
-        force,
-        stiffness,
-        measures.x,
-    )
+    measures, states = Measures(path), path.through(forces)
+    found = [(measures.response(state), measures.opened(state), state.certificate.force_residual) for state in states]
+    response, opened, residual = (np.array(each) for each in zip(*found, strict=True))
+    return Outcome(response, opened, residual, force, stiffness, measures.x)
 
 
 def typical_force(rest: State) -> float:
@@ -77,30 +71,19 @@ def typical_force(rest: State) -> float:
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Dataset ``responses``."""
-    scenes = [parameters.base.updated({"contact.friction": mu}) for mu in parameters.friction]
-    tasks = {
-        (f, k): partial(compute, scene, law, parameters.forces)
-        for f, scene in enumerate(scenes)
-        for k, law in enumerate(LAWS)
-    }
+    p = parameters
+    scenes = [p.base.updated({"contact.friction": mu}) for mu in p.friction]
+    tasks = {place: partial(compute, scene, law, p.forces) for place, (scene, law) in places(scenes, LAWS)}
     # the longest first
     data = table(computed(tasks, "slabs", work=lambda place: place[::-1]), "friction", "law")
-    response = data["floor_response"].values
-    data["difference"] = variable(
-        ("friction", "force"),
-        np.abs(response[:, 1] - response[:, 0]).max(axis=-1) / np.abs(response[:, 0]).max(axis=-1),
-        "largest difference of the responses by the two laws, per largest response by the linear one",
+    typical, x = (data[name].variable.isel(law=0) for name in ("typical_force", "x"))
+    linear, hertz = np.moveaxis(data["floor_response"].values, 1, 0)
+    apart = np.abs(hertz - linear).max(axis=-1) / np.abs(linear).max(axis=-1)
+    largest = "largest difference of the responses by the two laws, per largest response by the linear one"
+    coordinates = axes(
+        friction=(p.friction, "coefficient of friction between disks"),
+        law=(LAWS, "contact law"),
+        force=(p.forces, f"applied force {WEIGHTS}"),
     )
-    linear = {name: data[name].variable.isel(law=0) for name in ("typical_force", "x")}
-    data = (
-        data.assign(typical_force=linear["typical_force"])
-        .drop_vars("x")
-        .assign_coords(
-            axes(
-                friction=(parameters.friction, "coefficient of friction between disks"),
-                law=(LAWS, "contact law"),
-                force=(parameters.forces, f"applied force {WEIGHTS}"),
-            )
-        )
-    )
-    return labelled({"responses": data.assign_coords(x=linear["x"].isel(friction=0))}, parameters.base)
+    data = data.drop_vars("x").assign(typical_force=typical, difference=variable(("friction", "force"), apart, largest))
+    return labelled({"responses": data.assign_coords(coordinates | {"x": x.isel(friction=0)})}, p.base)

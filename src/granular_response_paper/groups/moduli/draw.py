@@ -66,11 +66,15 @@ def _mean_and_spread(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
 
 def _moduli(data: xr.Dataset) -> Figure:
     """(a) bulk and (b) shear modulus against coordination, affine and relaxed; (c) horizontal over vertical."""
-    figure, ((bulk, shear, shape),) = style.figure(1, 3, width="double", height=3.2)
+    figure, (panels,) = style.figure(1, 3, width="double", height=3.2)
     a, b, c, d = (data["moduli"].sel(modulus=name) for name in "abcd")
-    panels = ((bulk, 0.25 * (a + b + 2.0 * c)), (shear, 0.125 * (a + b - 2.0 * c) + 0.25 * d), (shape, a / b))
+    shown = {
+        r"bulk modulus $(a + b + 2c)\,/\,4k_N$": 0.25 * (a + b + 2.0 * c),
+        r"shear modulus $(a + b - 2c + 2d)\,/\,8k_N$": 0.125 * (a + b - 2.0 * c) + 0.25 * d,
+        r"$a\,/\,b$, horizontal over vertical": a / b,
+    }
     cases = materials(data["polydispersity"], data["friction"])
-    for axes, modulus in panels:
+    for axes, (label, modulus) in zip(panels, shown.items(), strict=True):
         for case, (_, look) in enumerate(cases):
             across, beside = _mean_and_spread(data["coordination"].isel(case=case))
             look = look | {"markeredgewidth": 0.8, "markersize": 4.5, "capsize": 2, "linewidth": 0.7}
@@ -78,12 +82,9 @@ def _moduli(data: xr.Dataset) -> Figure:
                 mean, spread = _mean_and_spread(modulus.isel(case=case).sel(following=following))
                 face = look["color"] if filled else "white"
                 axes.errorbar(across, mean, spread, beside, markerfacecolor=face, markeredgecolor=look["color"], **look)
-        axes.set(xlabel="coordination number $z$", ylim=(0.0, None))
-    bulk.set_ylabel(r"bulk modulus $(a + b + 2c)\,/\,4k_N$")
-    shear.set_ylabel(r"shear modulus $(a + b - 2c + 2d)\,/\,8k_N$")
-    shape.set_ylabel(r"$a\,/\,b$, horizontal over vertical")
-    shape.axhline(1.0, color=style.FAINT, linewidth=0.6, zorder=0)
-    titles((bulk, shear, shape))
+        axes.set(xlabel="coordination number $z$", ylabel=label, ylim=(0.0, None))
+    panels[2].axhline(1.0, color=style.FAINT, linewidth=0.6, zorder=0)
+    titles(panels)
     keys = [Line2D([], [], **look | {"linestyle": "none", "markersize": 4.5}) for _, look in cases]
     plain: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": style.BLACK, "markersize": 4.5}
     keys += [Line2D([], [], markerfacecolor="white", **plain), Line2D([], [], **plain)]
@@ -95,11 +96,10 @@ def _moduli(data: xr.Dataset) -> Figure:
 def _responses(data: xr.Dataset) -> Figure:
     """Mean response of the largest packings of each case over that of the slabs of their moduli."""
     cases = materials(data["polydispersity"], data["friction"])
-    columns = 3
-    rows = -(-len(cases) // columns)
-    figure, panels = style.figure(rows, columns, width="double", height=0.5 + 1.9 * rows, sharex=True, sharey=True)
-    place = data["place"].values
-    for case, axes in zip(range(len(cases)), panels.ravel(), strict=False):
+    rows = -(-len(cases) // 3)
+    figure, panels = style.figure(rows, 3, width="double", height=0.5 + 1.9 * rows, sharex=True, sharey=True)
+    place, texts = data["place"].values, []
+    for case, ((name, _), axes) in enumerate(zip(cases, panels.flat, strict=False)):
         one = data.isel(case=case, size=int(np.nanargmax(data["layers"].values[case])), smoothing=0)
         mean, spread = _mean_and_spread(one["response"])
         axes.fill_between(place, mean - spread, mean + spread, color=style.COLOURS[0], alpha=0.2, linewidth=0.0)
@@ -111,8 +111,8 @@ def _responses(data: xr.Dataset) -> Figure:
             axes.plot(place, one["predicted"].sel(solid=solid).mean("realization"), label=label, **look)
         zero(axes)
         axes.set_xlim(place[0], place[-1])
-    layers = np.nanmax(data["layers"].values, axis=1)
-    titles(panels.flat, [f"{name}, {most:g} layers" for (name, _), most in zip(cases, layers, strict=True)])
+        texts.append(f"{name}, {float(one['layers']):g} layers")
+    titles(panels.flat, texts)
     outer(panels, style.SCALED_POSITION, style.PRESSURE)
     figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
@@ -165,23 +165,20 @@ def _lattice(data: xr.Dataset) -> Figure:
         label_ends(axes, names)
     closed.set_ylabel("moduli $/\\,k_N$")
     for index, body in enumerate(data["body"].values):
-        for rotations, filled in (("free", True), ("suppressed", False)):
+        colour = style.COLOURS[index]
+        dot = style.marked_line(index) | {"linestyle": "none", "markersize": 5, "markeredgewidth": 0.8}
+        for rotations, name, face in (("free", "rotations", colour), ("suppressed", "no rotations", "white")):
             one = data.sel(body=body, rotations=rotations)
-            colour = style.COLOURS[index]
-            expected = {"color": colour, "linewidth": 0.7, "linestyle": style.LINE_STYLES[index]}
-            turn.axhline(float(one["turn_closed_form"]), **expected)
-            face = colour if filled else "white"
-            label = f"{body}, {'rotations' if filled else 'no rotations'}"
-            dot = style.marked_line(index) | {"linestyle": "none", "markersize": 5, "markeredgewidth": 0.8}
-            turn.plot([0.0], [float(one["turn"])], markerfacecolor=face, markeredgecolor=colour, label=label, **dot)
+            turn.axhline(one["turn_closed_form"], color=colour, linewidth=0.7, linestyle=style.LINE_STYLES[index])
+            dot |= {"markerfacecolor": face, "markeredgecolor": colour, "label": f"{body}, {name}"}
+            turn.plot([0.0], [float(one["turn"])], **dot)
     look = style.marked_line(3) | {"linestyle": "none", "markersize": 4.5}
     turn.plot(1.0 / data["layers"].values, data["turn_response"], label="lattices under a small force", **look)
-    steps = np.append(0.0, 1.0 / data["layers"].values.max())
-    ends = [
-        float(data["turn_limit"].sel(estimate="line")),
-        float(data["turn_response"][int(np.argmax(data["layers"].values))]),
-    ]
-    turn.plot(steps, ends, color=look["color"], linewidth=0.7, linestyle=(0, (1.2, 1.2)))
+    largest = data.isel(size=int(np.argmax(data["layers"].values)))
+    ends = [float(data["turn_limit"].sel(estimate="line")), float(largest["turn_response"])]
+    turn.plot(
+        [0.0, 1.0 / float(largest["layers"])], ends, color=look["color"], linewidth=0.7, linestyle=(0, (1.2, 1.2))
+    )
     turn.set(xlabel="1 / layers", ylabel=f"${style.STIFFNESS_RATIO}$ where two peaks end")
     turn.set_xlim(-0.006, None)
     titles((closed, opened, turn), ("horizontal contacts closed", "open", "end of two peaks"))

@@ -11,11 +11,14 @@ two by the closed form's moduli, by measured ones, and in lattices themselves.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import astuple
 from functools import partial
-from itertools import product
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from granular_response.observe.floor import floor_disks, smoothed_response
 from granular_response.scene import Packing, Scene
@@ -34,7 +37,7 @@ from granular_response.theory.slab import Floor, Slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.moduli.parameters import Parameters
 from granular_response_paper.parameters import material
-from granular_response_paper.records import axes, column, labels, record, stacked, table, variables
+from granular_response_paper.records import axes, column, labels, places, record, stacked, table, variables
 from granular_response_paper.survey.crossover import CONFIDENCE
 from granular_response_paper.survey.packings import measured
 from granular_response_paper.tasks import computed
@@ -115,20 +118,18 @@ def compute(scene: Scene, margin: float, width: float, wide: float) -> Outcome:
     """
     problem = Problem.from_scene(scene)
     rest = rest_state(problem)
-    packing, stiffness = problem.packing, problem.stiffness
-    answers = [strained(problem, rest, how, margin=margin) for how in FOLLOWING]
-    alone = strained(problem, rest, "free", margin=margin, prestress=False)
-    matrices = np.stack([answer.moduli for answer in answers]) / stiffness
-    height = slab_height(rest, packing)
+    count, period, stiffness = rest.contact_count(), problem.packing.width, problem.stiffness
+    matrices = np.stack([strained(problem, rest, how, margin=margin).moduli for how in FOLLOWING]) / stiffness
+    alone = strained(problem, rest, "free", margin=margin, prestress=False).moduli / stiffness
+    height = slab_height(rest, problem.packing)
     widths = np.array([width, wide * height])
     floor: Floor = "rough" if problem.wall_friction else "smooth"
-    each = responses(problem, rest, height, widths)
+    each, solids = responses(problem, rest, height, widths), symmetric(matrices)
     mean = each.mean(axis=0)
-    own = symmetric(matrices[-1])
-    solids = [*(symmetric(m) for m in matrices), nearest_isotropic(own)]
-    predicted = np.stack([prediction(solid, height, packing.width, floor, widths) for solid in solids])
+    solids = np.stack([*solids, nearest_isotropic(solids[-1])])
+    predicted = np.stack([prediction(solid, height, period, floor, widths) for solid in solids])
     return Outcome(
-        height, coordination(rest), at_limit(problem, rest), matrices, alone.moduli / stiffness, mean, predicted,
+        height, float(count[count >= 2].mean()), at_limit(problem, rest), matrices, alone, mean, predicted,
         apart(each, predicted[SOLIDS.index("free")]).mean(axis=0), apart(mean, predicted),
     )  # fmt: skip
 
@@ -139,25 +140,22 @@ def slab_height(rest: State, packing: Packing) -> float:
     return float((z[packing.row == rows].mean() - z[packing.row == 0].mean()) * (rows + 1) / rows)
 
 
-def coordination(rest: State) -> float:
-    """Mean number of contacts of the disks that bear something."""
-    count = rest.contact_count()
-    return float(count[count >= 2].mean())
+def on_floor(problem: Problem, rest: State) -> tuple[NDArray[np.intp], FloatArray]:
+    """Floor disks (k,), and the vertical forces (k, n) on them that unit forces downwards on one disk each add."""
+    disks = floor_disks([rest], np.flatnonzero(problem.packing.row == 0))
+    return disks, -influence(problem, rest, disks, sliding="stick")[:, :, 1]
 
 
 def responses(problem: Problem, rest: State, height: float, widths: FloatArray) -> FloatArray:
     """(load, width, place) smoothed floor responses to small forces on the disks of the top row, times height."""
-    packing = problem.packing
-    disks = floor_disks([rest], np.flatnonzero(packing.row == 0))
-    top = np.flatnonzero((packing.row == packing.row.max()) & (rest.contact_count() >= 2))
-    found = -influence(problem, rest, disks, sliding="stick")[:, top, 1]
-    period = packing.width
+    disks, found = on_floor(problem, rest)
+    row, period = problem.packing.row, problem.packing.width
     result = []
-    for k, disk in enumerate(top):
+    for disk in np.flatnonzero((row == row.max()) & (rest.contact_count() >= 2)):
         x = rest.position[disks, 0] - rest.position[disk, 0]
         x -= period * np.round(x / period)
         around = np.concatenate([x - period, x, x + period])
-        each = [smoothed_response(PLACES * height, around, np.tile(found[:, k], 3), width) for width in widths]
+        each = [smoothed_response(PLACES * height, around, np.tile(found[:, disk], 3), width) for width in widths]
         result.append(np.stack(each) * height)
     return np.stack(result)
 
@@ -186,20 +184,19 @@ def lattice_moduli(scene: Scene, margin: float) -> FloatArray:
     """(following, 4) moduli over k_N of a lattice."""
     problem = Problem.from_scene(scene)
     rest = rest_state(problem)
-    found = [symmetric(strained(problem, rest, how, margin=margin, prestress=False).moduli) for how in FOLLOWING]
-    return np.stack(found) / problem.stiffness
+    found = [strained(problem, rest, how, margin=margin, prestress=False).moduli for how in FOLLOWING]
+    return symmetric(np.stack(found)) / problem.stiffness
 
 
 def middle_curvature(scene: Scene) -> FloatArray:
     """() second difference of a lattice's response on the floor disks beside that below the load, per largest."""
     problem = Problem.from_scene(scene)
-    rest = rest_state(problem)
-    packing = problem.packing
-    disks = floor_disks([rest], np.flatnonzero(packing.row == 0))
+    rest, packing = rest_state(problem), problem.packing
+    disks, found = on_floor(problem, rest)
     top = packing.n - packing.row_count[-1] + packing.row_count[-1] // 2
-    found = -influence(problem, rest, disks, sliding="stick")[:, top, 1]
     below = int(np.argmin(np.abs(rest.position[disks, 0] - rest.position[top, 0])))
-    return np.asarray((found[below - 1] - 2.0 * found[below] + found[below + 1]) / found.max())
+    left, middle, right = found[below - 1 : below + 2, top]
+    return np.asarray((left - 2.0 * middle + right) / found[:, top].max())
 
 
 def root(x: FloatArray, y: FloatArray) -> float:
@@ -208,10 +205,10 @@ def root(x: FloatArray, y: FloatArray) -> float:
     if not change.size:
         return float("nan")
     first = int(np.clip(change[0] - 1, 0, max(len(x) - 4, 0)))
-    part = slice(first, first + 4)
     # x as a function of y: monotonous where a sign changes once
-    u, v = y[part], x[part]
-    return float(sum(v[i] * np.prod([-u[j] / (u[i] - u[j]) for j in range(len(u)) if j != i]) for i in range(len(u))))
+    u, v = y[first : first + 4], x[first : first + 4]
+    others = [np.delete(u, i) for i in range(len(u))]
+    return float(sum(v * [np.prod(-other / (one - other)) for one, other in zip(u, others, strict=True)]))
 
 
 def at_infinity(layers: FloatArray, values: FloatArray) -> FloatArray:
@@ -220,12 +217,9 @@ def at_infinity(layers: FloatArray, values: FloatArray) -> FloatArray:
     NaN where there are not as many.
     """
     order = np.argsort(-layers)
-    result = np.full(len(ESTIMATES), np.nan)
-    for k in range(len(ESTIMATES)):
-        use = order[: k + 2]
-        if len(use) == k + 2:
-            result[k] = np.polyfit(1.0 / layers[use], values[use], k + 1)[-1]
-    return result
+    inverse, values = 1.0 / layers[order], values[order]
+    fits = [np.polyfit(inverse[:k], values[:k], k - 1)[-1] if len(order) >= k else np.nan for k in (2, 3)]
+    return np.array(fits)
 
 
 def needed(layers: FloatArray, difference: FloatArray, tolerances: FloatArray, draws: int, seed: int) -> FloatArray:
@@ -235,19 +229,15 @@ def needed(layers: FloatArray, difference: FloatArray, tolerances: FloatArray, d
     interval is that of ``draws`` bootstrap draws over the realizations of each size. Infinite beyond ``FARTHEST`` times
     the largest size, and where the power does not fall; all nan with less than two sizes of three realizations.
     """
-    each = [one[np.isfinite(one)] for one in difference]
-    use = [k for k, one in enumerate(each) if one.size >= 3]
-    if len(use) < 2:
+    enough = np.isfinite(difference).sum(axis=1) >= 3
+    if enough.sum() < 2:
         return np.full((len(tolerances), 3), np.nan)
-    generator = np.random.default_rng(seed)
-    drawn = [
-        np.concatenate([[each[k].mean()], each[k][generator.integers(0, each[k].size, (draws, each[k].size))].mean(1)])
-        for k in use
-    ]
-    logarithm = np.log(layers[use])
-    slope, offset = np.polyfit(logarithm, np.log(np.stack(drawn)), 1)
+    generator, layers = np.random.default_rng(seed), layers[enough]
+    each = [one[np.isfinite(one)] for one in difference[enough]]
+    drawn = [np.append(one.mean(), one[generator.integers(0, one.size, (draws, one.size))].mean(1)) for one in each]
+    slope, offset = np.polyfit(np.log(layers), np.log(np.stack(drawn)), 1)
     # logarithm of the size, at most that of FARTHEST, beyond which it counts as infinite; flat is infinite too
-    farthest = np.log(FARTHEST * layers[use].max())
+    farthest = np.log(FARTHEST * layers.max())
     flat = slope > -1e-2
     place = np.where(flat, np.inf, (np.log(tolerances)[:, None] - offset) / np.where(flat, -1.0, slope))
     size = np.where(place > farthest, np.inf, np.exp(np.minimum(place, farthest)))
@@ -257,13 +247,7 @@ def needed(layers: FloatArray, difference: FloatArray, tolerances: FloatArray, d
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``packings`` and ``lattice``."""
-    # the largest first: two workers then end together
-    outcomes = measured(
-        parameters, "packings", packings, task, Outcome, work=lambda at: parameters.cases[at[0]].layers[at[1]]
-    )
-    ideal = computed(_lattice_tasks(parameters), "lattices")
-    datasets = {"packings": _packings(parameters, outcomes), "lattice": _lattice(parameters, ideal)}
-    return labelled(datasets, parameters.base)
+    return labelled({"packings": _packings(parameters), "lattice": _lattices(parameters)}, parameters.base)
 
 
 def packings(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, int], Disordered]:
@@ -276,62 +260,33 @@ def packings(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, 
     }
 
 
+def _slab(parameters: Parameters, layers: int, disks_per_row: int, spacing: float | str, others: Mapping) -> Scene:
+    """The base scene with periodic sides, of this size and lattice constant, with ``others`` changed."""
+    size = {"packing.sides": "periodic", "packing.layers": layers, "packing.disks_per_row": disks_per_row}
+    return parameters.base.updated({**size, "packing.lattice_constant": spacing, **others})
+
+
 def task(parameters: Parameters, one: Disordered) -> partial[Outcome]:
     """One of these packings."""
-    scene = parameters.base.updated(
-        material(one.polydispersity, one.realization, one.friction)
-        | {
-            "packing.sides": "periodic",
-            "packing.layers": one.layers,
-            "packing.disks_per_row": parameters.disks_per_layer * one.layers,
-            "packing.lattice_constant": TOUCHING_LARGEST,
-        }
-    )
-    return partial(compute, scene, parameters.margin, parameters.width, parameters.wide)
+    p, changes = parameters, material(one.polydispersity, one.realization, one.friction)
+    scene = _slab(p, one.layers, p.disks_per_layer * one.layers, TOUCHING_LARGEST, changes)
+    return partial(compute, scene, p.margin, p.width, p.wide)
 
 
-def _lattice_tasks(parameters: Parameters) -> dict[tuple[str, int, int], partial[FloatArray]]:
-    """``moduli`` with contacts closed and open, by ratio; then ``bends`` of responses, by size and ratio."""
-    group = parameters.lattice
-
-    def scene(spacing: float, layers: int, row: int, ratio: float) -> Scene:
-        return parameters.base.updated(
-            {
-                "packing.sides": "periodic",
-                "packing.layers": layers,
-                "packing.disks_per_row": row,
-                "packing.lattice_constant": spacing,
-                "contact.friction": group.friction,
-                "contact.stiffness_ratio": ratio,
-                "wall.friction": 0.0,
-            }
-        )
-
-    tasks: dict[tuple[str, int, int], partial[FloatArray]] = {}
-    for (k, spacing), (r, ratio) in product(enumerate((group.closed, group.open)), enumerate(group.stiffness_ratios)):
-        strip = scene(spacing, group.layers, NARROW, ratio)
-        tasks["moduli", k, r] = partial(lattice_moduli, strip, parameters.margin)
-    for (k, layers), (r, ratio) in product(enumerate(group.responding), enumerate(group.responding_ratios)):
-        tasks["bends", k, r] = partial(
-            middle_curvature, scene(group.open, layers, parameters.disks_per_layer * layers, ratio)
-        )
-    return tasks
-
-
-def _packings(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outcome]) -> xr.Dataset:
+def _packings(parameters: Parameters) -> xr.Dataset:
     cases = parameters.cases
+    # the largest first: two workers then end together
+    outcomes = measured(parameters, "packings", packings, task, Outcome, work=lambda at: cases[at[0]].layers[at[1]])
     found = table(outcomes, "case", "size", "realization").rename(matrices="stiffness")
     layers = stacked({(c,): case.layers for c, case in enumerate(cases)}, float)
     surveyed = np.nan_to_num(stacked({(c,): case.further for c, case in enumerate(cases)}, float))
-    of = {"one": found["single"].values, "mean": found["difference"].values[:, :, :, SOLIDS.index("free")]}
+    loads = {"one": found["single"].values, "mean": found["difference"].values[:, :, :, SOLIDS.index("free")]}
+    differences = np.moveaxis(np.stack(list(loads.values())), (1, 0, 4), (0, 1, 2))
     tolerances = np.array(parameters.tolerances)
-    sizes_needed = [
-        [
-            [needed(layers[c], values[c, ..., w], tolerances, parameters.draws, parameters.seed) for w in range(2)]
-            for values in of.values()
-        ]
-        for c in range(len(cases))
-    ]
+    sizes_needed = {
+        at: needed(layers[at[0]], differences[at], tolerances, parameters.draws, parameters.seed)
+        for at in np.ndindex(differences.shape[:3])
+    }
     matrices, alone = found["stiffness"].values, found["springs_alone"].values
     prestress = symmetric(matrices[..., -1, :, :] - alone)
     mirrored, added, below = (
@@ -344,58 +299,67 @@ def _packings(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outco
         surveyed=("case size", surveyed, "realizations that are the survey's"),
         moduli=("case size realization following modulus", symmetric(matrices), mirrored),
         prestress=("case size realization modulus", prestress, added),
-        needed=("case loads smoothing tolerance end", sizes_needed, below),
+        needed=("case loads smoothing tolerance end", stacked(sizes_needed), below),
     )
     components = ["xx", "zz", "xz"]
-    return (
-        found.drop_vars("springs_alone")
-        .assign(derived)
-        .assign_coords(
-            labels("case", cases, polydispersity="polydispersity", friction=FRICTION)
-            | axes(
-                following=(FOLLOWING, "how displacements and rotations follow the strain"),
-                solid=(SOLIDS, "moduli of the elastic slab"),
-                modulus=("abcd", "modulus of eq. (6)"),
-                stress=(components, "component of the stress"),
-                strain=(components, "component of the strain"),
-                smoothing=([f"{parameters.width:g} radii", f"{parameters.wide:.3g} heights"], "w of the Gaussian"),
-                loads=(of, "one load, or the mean over the loads of a packing"),
-                tolerance=(tolerances, "difference to the elastic slab"),
-                end=(["value", "low", "high"], "value, and the 95 % interval of the bootstrap"),
-                place=(PLACES, "distance from the load over the height of the slab"),
-            )
-        )
+    coordinates = axes(
+        following=(FOLLOWING, "how displacements and rotations follow the strain"),
+        solid=(SOLIDS, "moduli of the elastic slab"),
+        modulus=("abcd", "modulus of eq. (6)"),
+        stress=(components, "component of the stress"),
+        strain=(components, "component of the strain"),
+        smoothing=([f"{parameters.width:g} radii", f"{parameters.wide:.3g} heights"], "w of the Gaussian"),
+        loads=(loads, "one load, or the mean over the loads of a packing"),
+        tolerance=(tolerances, "difference to the elastic slab"),
+        end=(["value", "low", "high"], "value, and the 95 % interval of the bootstrap"),
+        place=(PLACES, "distance from the load over the height of the slab"),
+    )
+    named = labels("case", cases, polydispersity="polydispersity", friction=FRICTION)
+    return found.drop_vars("springs_alone").assign(derived).assign_coords(named | coordinates)
+
+
+def _lattices(parameters: Parameters) -> xr.Dataset:
+    p, group = parameters, parameters.lattice
+    ratios, near = np.array(group.stiffness_ratios), np.array(group.responding_ratios)
+
+    def scene(spacing: float, layers: int, row: int, ratio: float) -> Scene:
+        springs = {"contact.friction": group.friction, "contact.stiffness_ratio": ratio, "wall.friction": 0.0}
+        return _slab(p, layers, row, spacing, springs)
+
+    tasks: dict[tuple[Any, ...], partial[FloatArray]] = {
+        ("moduli", *place): partial(lattice_moduli, scene(spacing, group.layers, NARROW, ratio), p.margin)
+        for place, (spacing, ratio) in places((group.closed, group.open), group.stiffness_ratios)
+    }
+    tasks |= {
+        ("bends", *place): partial(middle_curvature, scene(group.open, layers, p.disks_per_layer * layers, ratio))
+        for place, (layers, ratio) in places(group.responding, group.responding_ratios)
+    }
+    answers = computed(tasks, "lattices")
+    own, bends = (
+        stacked({(k, r): one for (of, k, r), one in answers.items() if of == what}) for what in ("moduli", "bends")
+    )
+    expected = stacked(
+        {
+            place: astuple(lattice.moduli(Springs(closed, 1.0, closed * ratio, ratio), rotations))
+            for place, (closed, ratio, rotations) in places((1.0, 0.0), ratios, ROTATIONS)
+        }
     )
 
+    def turn(body: Body, rotations: Rotations) -> float:
+        solids = [Moduli(*m) for m in own[1, :, FOLLOWING.index(rotations)]]
+        if body == "half plane":
+            return root(ratios, np.array([-solid.peak_criterion for solid in solids]))
+        return root(ratios, np.array([Slab(1.0, solid, "smooth").curvature_below_force() for solid in solids]))
 
-def _lattice(parameters: Parameters, answers: dict[tuple[str, int, int], FloatArray]) -> xr.Dataset:
-    group = parameters.lattice
-    ratios, near = np.array(group.stiffness_ratios), np.array(group.responding_ratios)
-    measured = stacked({(k, r): one for (what, k, r), one in answers.items() if what == "moduli"})
-    bends = stacked({(k, r): one for (what, k, r), one in answers.items() if what == "bends"})
-    expected = np.empty((2, len(ratios), len(ROTATIONS), 4))
-    for k, horizontal in enumerate((1.0, 0.0)):
-        for r, ratio in enumerate(ratios):
-            for t, rotations in enumerate(ROTATIONS):
-                solid = lattice.moduli(Springs(horizontal, 1.0, horizontal * ratio, ratio), rotations)
-                expected[k, r, t] = solid.a, solid.b, solid.c, solid.d
-    turns, theory = np.empty((len(BODIES), len(ROTATIONS))), np.empty((len(BODIES), len(ROTATIONS)))
-    for b, body in enumerate(BODIES):
-        for t, rotations in enumerate(ROTATIONS):
-            theory[b, t] = crossover.stiffness_ratio(body, rotations)
-            solids = [Moduli(*m) for m in measured[1, :, FOLLOWING.index(rotations)]]
-            sign = [
-                -s.peak_criterion if body == "half plane" else Slab(1.0, s, "smooth").curvature_below_force()
-                for s in solids
-            ]
-            turns[b, t] = root(ratios, np.array(sign))
+    turns = [[turn(body, rotations) for rotations in ROTATIONS] for body in BODIES]
+    theory = [[crossover.stiffness_ratio(body, rotations) for rotations in ROTATIONS] for body in BODIES]
     found = np.array([root(near, bend) for bend in bends])
     limits = at_infinity(np.array(group.responding), found)
     bend = "second difference of the response below the load, per largest response"
     limit = "the same for infinitely many layers, from these by polynomials in 1 / layers"
     return xr.Dataset(
         variables(
-            moduli=("contacts stiffness_ratio following modulus", measured, "moduli over k_N, as measured"),
+            moduli=("contacts stiffness_ratio following modulus", own, "moduli over k_N, as measured"),
             closed_form=("contacts stiffness_ratio rotations modulus", expected, "moduli over k_N, eqs. (7)-(10)"),
             turn=("body rotations", turns, "k_T / k_N at which two peaks end, by measured moduli"),
             turn_closed_form=("body rotations", theory, "the same by the closed form"),

@@ -9,16 +9,17 @@ the contacts of a lattice of equal disks stick, ``B = sqrt(3)/4 k_R`` and ``G = 
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 from scipy.optimize import linprog, minimize_scalar
-from scipy.sparse import coo_array, eye_array, hstack, vstack
+from scipy.sparse import block_array, csr_array, diags_array, eye_array
 from scipy.spatial import cKDTree
 
 from granular_response.observe import stress as coarse
+from granular_response.observe.events import bisect_event
 from granular_response.observe.floor import floor_force
 from granular_response.observe.peaks import central_dip
 from granular_response.scene import Packing, PilePacking, Scene
@@ -29,15 +30,9 @@ from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.rolling_resistance.parameters import Parameters
-from granular_response_paper.records import axes, column, record, table
-from granular_response_paper.slab_response import (
-    TWO_PEAKS,
-    Happening,
-    LoadPath,
-    Measures,
-    first_opening,
-    half_maximum_width,
-)
+from granular_response_paper.groups.rolling_resistance.parameters import Slab as SlabParameters
+from granular_response_paper.records import axes, column, parts, places, record, table
+from granular_response_paper.slab_response import LoadPath, Measures, first_opening, half_maximum_width, two_peaks
 from granular_response_paper.tasks import computed
 
 CASES = ("supported", "free", "resisting")
@@ -93,6 +88,7 @@ def settle(scene: Scene) -> Pile:
 def threshold(parameters: Parameters, layers: int, rolling: float, ramp: float) -> Threshold:
     """Halves the range of friction. A pile that finds no stable equilibrium is not held."""
 
+    @cache
     def held(friction: float) -> Pile | None:
         try:
             pile = settle(unsupported(parameters.pile, layers, friction, rolling, ramp))
@@ -100,16 +96,11 @@ def threshold(parameters: Parameters, layers: int, rolling: float, ramp: float) 
             return None
         return pile if pile.moved <= parameters.moved else None
 
-    low, high = parameters.least_friction, parameters.most_friction
-    if (last := held(high)) is None:
-        return Threshold(float("nan"), float("nan"), np.empty(0), np.empty(0), high, float("nan"))
-    while high - low > parameters.tolerance:
-        middle = 0.5 * (low + high)
-        if pile := held(middle):
-            high, last = middle, pile
-        else:
-            low = middle
-    return Threshold(**vars(last), low=low if low > parameters.least_friction else 0.0, high=high)
+    least, most = parameters.least_friction, parameters.most_friction
+    if held(most) is None:
+        return Threshold(float("nan"), float("nan"), np.empty(0), np.empty(0), most, float("nan"))
+    found = bisect_event(lambda mu: held(mu) is not None, least, most, parameters.tolerance, at_low=False, at_high=True)
+    return Threshold(**vars(held(found.high)), low=found.low if found.low > least else 0.0, high=found.high)
 
 
 def balance(layers: int, rolling: float, most: float, tolerance: float) -> Balance:
@@ -120,45 +111,27 @@ def balance(layers: int, rolling: float, most: float, tolerance: float) -> Balan
     """
     packing = PilePacking(layers=layers).build()
     pairs = cKDTree(packing.position).query_pairs(2.0 + 1e-6, output_type="ndarray")
-    floor, n = np.flatnonzero(packing.row == 0), packing.n
-    first, second, p = np.concatenate([pairs[:, 0], floor]), pairs[:, 1], len(pairs)
-    normal = np.tile([0.0, 1.0], (len(first), 1))
+    floor, n, p = np.flatnonzero(packing.row == 0), packing.n, len(pairs)
+    first, second, m = np.concatenate([pairs[:, 0], floor]), pairs[:, 1], p + len(floor)
+    normal = np.tile([0.0, 1.0], (m, 1))
     normal[:p] = 0.5 * (packing.position[first[:p]] - packing.position[second])
-    m, ones, arm = len(first), np.ones(len(first)), np.where(np.arange(len(first)) < p, 0.5, 1.0)
-    # equation (x, z, turn), unknown (normal, tangential, rolling force), its part on the first disk, on the second
-    terms = [
-        (0, 0, normal[:, 0], -1.0), (1, 0, normal[:, 1], -1.0), (0, 1, -normal[:, 1], -1.0), (1, 1, normal[:, 0], -1.0),
-        (2, 1, -ones, 1.0), (2, 2, arm, -1.0),
-    ]  # fmt: skip
-    value = np.concatenate([np.concatenate([on, sign * on[:p]]) for _, _, on, sign in terms])
-    row = np.concatenate([k * n + np.concatenate([first, second]) for k, *_ in terms])
-    place = np.concatenate([k * m + np.concatenate([np.arange(m), np.arange(p)]) for _, k, *_ in terms])
-    equations = coo_array((value, (row, place)), shape=(3 * n, 3 * m)).tocsr()
-    weight, one, none = np.repeat([0.0, 1.0, 0.0], n), eye_array(m), coo_array((m, m))
+    on_first = csr_array((np.ones(m), (first, np.arange(m))), (n, m))
+    on_second = csr_array((np.ones(p), (second, np.arange(p))), (n, m))
+    apart, one = on_first - on_second, eye_array(m)
+    x, z, arm = (diags_array(along) for along in (*normal.T, np.where(np.arange(m) < p, 0.5, 1.0)))
+    # forces along x, along z, and turns of the disks by normal, tangential and rolling forces
+    equations = block_array(
+        [[apart @ x, -apart @ z, None], [apart @ z, apart @ x, None], [None, -on_first - on_second, apart @ arm]]
+    )
+    weight, bounds = np.repeat([0.0, 1.0, 0.0], n), [(0.0, None)] * m + [(None, None)] * (2 * m)
 
     def possible(friction: float) -> bool:
-        limits = vstack(
-            [hstack([-friction * one, sign * one, none]) for sign in (1.0, -1.0)]
-            + [hstack([-rolling * one, none, sign * one]) for sign in (1.0, -1.0)]
-        )
-        bounds = [(0.0, None)] * m + [(None, None)] * (2 * m)
+        tangential = [[-friction * one, sign * one, None] for sign in (1.0, -1.0)]
+        limits = block_array(tangential + [[-rolling * one, None, sign * one] for sign in (1.0, -1.0)])
         found = linprog(np.zeros(3 * m), limits, np.zeros(4 * m), equations, weight, bounds, method="highs")
         return int(found.status) == 0
 
-    low, high = 0.0, most
-    while high - low > tolerance:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if possible(middle) else (middle, high)
-    return Balance(low)
-
-
-@record
-class Slab:
-    """A slab under a growing force."""
-
-    x: FloatArray = column(f"position from the loaded disk {RADII}", "floor_disk")
-    opening: FloatArray = column(f"force of the first opening, before and after {WEIGHTS}", "end")
-    crossover: FloatArray = column(f"force from which on there are two peaks, before and after {WEIGHTS}", "end")
+    return Balance(bisect_event(possible, 0.0, most, tolerance, at_low=False, at_high=True).low)
 
 
 @record
@@ -196,63 +169,70 @@ class Turned(Fit):
     moment_error: float = column("largest lack of moments above a line, torque and couples included, per torque")
 
 
-def respond(parameters: Parameters, scene: Scene, forces: tuple[float, ...]) -> tuple[Slab, list[Loaded], list[Turned]]:
-    """The slab, under each force that is shown and under each torque on the loaded disk alone.
+@record
+class Slab:
+    """A slab under a growing force, under each force that is shown, and under each torque on the loaded disk alone."""
 
-    ``scene`` has one load, of unit force; stresses are those that the load adds. Raises what the solvers raise.
-    """
+    x: FloatArray = column(f"position from the loaded disk {RADII}", "floor_disk")
+    opening: FloatArray = column(f"force of the first opening, before and after {WEIGHTS}", "end")
+    crossover: FloatArray = column(f"force from which on there are two peaks, before and after {WEIGHTS}", "end")
+    loaded: tuple[Loaded, ...]
+    turned: tuple[Turned, ...]
+
+
+def respond(parameters: Parameters, slab: SlabParameters, rolling: float) -> Slab:
+    """One slab; stresses are those that the load adds. Raises what the solvers raise."""
+    scene = parameters.base.updated({"contact.friction": slab.friction, "contact.rolling_friction": rolling})
     path, width = LoadPath.of(scene), parameters.stress_width
-    measures = Measures(path)
-    path.through(sorted({*forces, *parameters.shown_forces}))
-    asked = first_opening(measures), Happening(measures.double_peaked, TWO_PEAKS)
-    events = [np.array(path.first(forces, happening)) for happening in asked]
-    rest, packing, top = path.rest, path.problem.packing, path.rest.position[measures.loaded_disk]
+    measures, problem, rest = Measures(path), path.problem, path.rest
+    path.through(sorted({*slab.forces, *parameters.shown_forces}))
+    opening, crossover = (np.array(path.first(slab.forces, of(measures))) for of in (first_opening, two_peaks))
+    packing, top = problem.packing, rest.position[measures.loaded_disk]
     lines = coarse.grid_points(top[0] + measures.x, np.linspace(0.0, top[1], parameters.heights))
     inner = coarse.grid_points(top[0] + measures.x[measures.interior], np.arange(width, top[1] - width, 0.5 * width))
+
+    def under(state: State) -> Loaded:
+        response = measures.response(state)
+        stress = coarse.coarse_grained_stress(coarse.load_forces(rest, state), lines, width)
+        couple = np.linalg.norm(_couple_stress(problem, rest, state, lines, width), axis=-1)
+        across, needed = moments(problem, state, state.position[:, 0] < (top[0] + measures.x[1:-1])[:, None])
+        largest = float(np.abs(across).max())
+        return Loaded(
+            *fit(problem, rest, state, inner, width),
+            floor_response=response,
+            width=half_maximum_width(measures.x, response),
+            couple_stress=couple.max(axis=1),
+            vertical_stress=np.abs(stress[..., 1, 1]).max(axis=1),
+            moment_error=float(np.abs(across - needed).max()) / largest if largest else float("nan"),
+        )
+
     rows = np.arange(packing.row.max() + 1)[::-1]
     above = packing.row > rows[1:, None]
     height = [rest.position[packing.row == row, 1].mean() for row in rows]
     depth = top[1] - 0.5 * np.add(height[:-1], height[1:])
-    loaded, turned = [], []
-    for state in map(path.at, parameters.shown_forces):
-        response = measures.response(state)
-        stress = coarse.coarse_grained_stress(coarse.load_forces(rest, state), lines, width)
-        couple = np.linalg.norm(_couple_stress(path.problem, rest, state, lines, width), axis=-1).max(axis=1)
-        left = state.position[:, 0] < (top[0] + measures.x[1:-1])[:, None]
-        across, needed = moments(path.problem, state, left)
-        largest = float(np.abs(across).max())
-        lack = float(np.abs(across - needed).max()) / largest if largest else float("nan")
-        loaded.append(
-            Loaded(
-                *fit(path.problem, rest, state, inner, width),
-                floor_response=response,
-                width=half_maximum_width(measures.x, response),
-                couple_stress=couple,
-                vertical_stress=np.abs(stress[..., 1, 1]).max(axis=1),
-                moment_error=lack,
-            )
-        )
     twist = LoadPath.of(scene.updated({"loads.0.force": [0.0, 0.0], "loads.0.torque": 1.0}), rest)
-    for torque, state in zip(parameters.torques, twist.through(parameters.torques), strict=True):
+    before, _ = moments(twist.problem, rest, above)
+
+    def turned(torque: float, state: State) -> Turned:
         across, needed = moments(twist.problem, state, above)
-        before, _ = moments(twist.problem, rest, above)
         couple = (before - across) / torque
         moment = above @ (_turning(packing, state) - _turning(packing, rest)) / torque
-        turned.append(
-            Turned(
-                *fit(twist.problem, rest, state, inner, width),
-                depth,
-                couple,
-                np.diff(moment, prepend=0.0),
-                *decay(scene, depth, couple),
-                moment_error=float(np.abs(across - needed).max(initial=0.0)) / torque,
-            )
+        return Turned(
+            *fit(twist.problem, rest, state, inner, width),
+            depth,
+            couple,
+            np.diff(moment, prepend=0.0),
+            *decay(scene, depth, couple),
+            moment_error=float(np.abs(across - needed).max(initial=0.0)) / torque,
         )
-    return Slab(measures.x, *events), loaded, turned
+
+    torques = parameters.torques
+    twisted = tuple(map(turned, torques, twist.through(torques)))
+    return Slab(measures.x, opening, crossover, tuple(map(under, map(path.at, parameters.shown_forces))), twisted)
 
 
 def fit(problem: Problem, rest: State, loaded: State, points: FloatArray, width: float) -> tuple[float, float, float]:
-    """Modulus, part of the squares that is left, and length of :class:`Fit`, by the stress at ``points`` (..., 2)."""
+    """The numbers of :class:`Fit` by the stress at ``points`` (..., 2)."""
     contact = problem.scene.contact
     couple = _couple_stress(problem, rest, loaded, points, width)
     gradient = _gradient(rest.position, loaded.angle - rest.angle, points, width)
@@ -342,46 +322,49 @@ def _cross(arm: FloatArray, force: FloatArray) -> FloatArray:
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``thresholds``, ``piles``, ``slabs`` and ``torques``."""
     p, pile, rolling = parameters, parameters.pile, parameters.rolling_frictions
-    tries: dict[tuple[int, ...], partial[Threshold]] = {}
-    piles: dict[tuple[int, ...], partial[Pile]] = {}
-    balances, slabs = {}, {}
-    for n, size in enumerate(p.layers):
-        for k, mu in enumerate(rolling):
-            tries |= {(n, k, r): partial(threshold, p, size, mu, ramp) for r, ramp in enumerate(p.ramps)}
-            balances[n, k] = partial(balance, size, mu, p.most_friction, 0.25 * p.tolerance)
-        scenes = [pile.updated({"packing.layers": size})]
-        scenes += [unsupported(pile, size, pile.contact.friction, mu) for mu in (min(rolling), max(rolling))]
-        piles |= {(n, k): partial(settle, scene) for k, scene in enumerate(scenes)}
-    for n, slab in enumerate(p.slabs):
-        for k, mu in enumerate(p.slab_rolling_frictions):
-            scene = p.base.updated({"contact.friction": slab.friction, "contact.rolling_friction": mu})
-            slabs[n, k] = partial(respond, p, scene, slab.forces)
+    tries = {place: partial(threshold, p, *one) for place, one in places(p.layers, rolling, p.ramps)}
+    balances = {
+        place: partial(balance, size, mu, p.most_friction, 0.25 * p.tolerance)
+        for place, (size, mu) in places(p.layers, rolling)
+    }
+    slabs = {place: partial(respond, p, *one) for place, one in places(p.slabs, p.slab_rolling_frictions)}
+
+    def scene(size: int, mu: float | None) -> Scene:
+        if mu is None:
+            return pile.updated({"packing.layers": size})
+        return unsupported(pile, size, pile.contact.friction, mu)
+
+    cases = {place: scene(*one) for place, one in places(p.layers, (None, min(rolling), max(rolling)))}
+    held = table(computed(tries, "tries", work=lambda place: place[0]), "layers", "rolling_friction", "ramp")
+    least = table(computed(balances, "balances", work=lambda place: place[0]), "layers", "rolling_friction")
+    settled = table(computed({at: partial(settle, one) for at, one in cases.items()}, "piles"), "layers", "case")
+    found, along = computed(slabs, "slabs"), ("friction", "rolling_friction")
+    loaded, turned = table(parts(found, "loaded"), *along, "load"), table(parts(found, "turned"), *along, "torque")
     sizes = axes(layers=(p.layers, "number of layers"))
-    of_rolling = axes(rolling_friction=(rolling, "coefficient of rolling friction"))
-    of_ramps = axes(ramp=(p.ramps, "time over which gravity grows, in sqrt(R/g); 0: at once"))
-    cases = axes(case=(CASES, "with side walls; without; without, and with the largest rolling friction"))
+    of_piles = axes(
+        rolling_friction=(rolling, "coefficient of rolling friction"),
+        ramp=(p.ramps, "time over which gravity grows, in sqrt(R/g); 0: at once"),
+    )
     of_slabs = axes(
         friction=([slab.friction for slab in p.slabs], "coefficient of friction between disks"),
         rolling_friction=(p.slab_rolling_frictions, "coefficient of rolling friction between disks"),
     )
-    of_torques = axes(torque=(p.torques, "torque in mean disk weights times mean radius, counter-clockwise"))
+    of_cases = axes(case=(CASES, "with side walls; without; without, and with the largest rolling friction"))
+    torques = axes(torque=(p.torques, "torque in mean disk weights times mean radius, counter-clockwise"))
+    heights = np.linspace(0.0, 1.0, p.heights)
     of_loads = axes(
-        load=(p.shown_forces, f"force {WEIGHTS}"),
-        z=(np.linspace(0.0, 1.0, p.heights), "height above the floor per that of the loaded disk"),
+        load=(p.shown_forces, f"force {WEIGHTS}"), z=(heights, "height above the floor per that of the loaded disk")
     )
-    held = table(computed(tries, "tries", work=lambda place: place[0]), "layers", "rolling_friction", "ramp")
-    least = table(computed(balances, "balances", work=lambda place: place[0]), "layers", "rolling_friction")
-    found = {
-        "thresholds": held.merge(least).assign_coords(sizes | of_rolling | of_ramps),
-        "piles": table(computed(piles, "piles"), "layers", "case").assign_coords(sizes | cases),
-    }
-    responses = computed(slabs, "slabs")
-    along = "friction", "rolling_friction"
-    loaded = {(*at, k): one for at, (_, shown, _) in responses.items() for k, one in enumerate(shown)}
-    turned = {(*at, k): one for at, (*_, shown) in responses.items() for k, one in enumerate(shown)}
-    of_slab = table({at: slab for at, (slab, *_) in responses.items()}, *along)
-    found_slabs = {
-        "slabs": of_slab.merge(table(loaded, *along, "load")).assign_coords(of_slabs | of_loads),
-        "torques": table(turned, *along, "torque").assign_coords(of_slabs | of_torques),
-    }
-    return labelled(found, pile) | labelled(found_slabs, p.base)
+    return labelled(
+        {
+            "thresholds": held.merge(least).assign_coords(sizes | of_piles),
+            "piles": settled.assign_coords(sizes | of_cases),
+        },
+        pile,
+    ) | labelled(
+        {
+            "slabs": table(found, *along).merge(loaded).assign_coords(of_slabs | of_loads),
+            "torques": turned.assign_coords(of_slabs | torques),
+        },
+        p.base,
+    )

@@ -39,8 +39,7 @@ def crossover(data: Data, words: Bounds) -> Finding:
 
 @CLAIMS.measures("K1b")
 def independent(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "response")
-    study = study.sortby("stiffness_ratio")
+    study = data.get(GROUP, "response").sortby("stiffness_ratio")
     ratio = study["stiffness_ratio"].values
     response = study["floor_response"].transpose("stiffness_ratio", "floor_disk").values
     usual = int(np.argmin(np.abs(ratio - 0.8)))

@@ -13,9 +13,8 @@ of the energy whatever ``method`` says.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
-from itertools import product
 from typing import Any, get_args
 
 import numpy as np
@@ -34,7 +33,7 @@ from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.stiffness_ratio_crossover.parameters import Parameters
-from granular_response_paper.records import axes, column, record, stacked, table, variables
+from granular_response_paper.records import axes, column, places, record, stacked, table, variables
 from granular_response_paper.tasks import computed
 
 BODIES: tuple[Body, ...] = get_args(Body)
@@ -83,9 +82,12 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     base, force, tolerance = parameters.base, parameters.force, parameters.tolerance
     ratios = np.array(parameters.ratios)
     results = computed({ratio: partial(measure, base, ratio, force) for ratio in ratios.tolist()}, "stiffness ratios")
-    measured = [result for result, _ in results.values()]
+    measured, methods = zip(*results.values(), strict=True)
 
-    brackets = _brackets(ratios, measured)
+    ended, central = ([happened(one) for one in measured] for _, happened in EVENTS.values())
+    # the last stretch of ratios with the maximum at the centre; there may be others below it
+    begun = [all(central[k:]) for k in range(len(central))]
+    brackets = {name: slab.first_change(ratios, has) for name, has in zip(EVENTS, (ended, begun), strict=True)}
     searches = {
         name: partial(narrow, name, base, force, low, high, tolerance)
         for name, (low, high) in brackets.items()
@@ -97,18 +99,14 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     ).drop_vars("friction")
     events["low"].attrs["long_name"] = "stiffness ratio before the event"
 
-    response = slab.measured_along("stiffness_ratio", measured).assign_coords(axes(stiffness_ratio=(ratios, RATIO)))
-    methods = [method for _, method in results.values()]
     further = variables(
         force=("", force, f"applied force {WEIGHTS}"),
         methods=("stiffness_ratio", methods, "method that found the loaded state"),
     )
-    response = response.assign(further)
-    packing = base.packing.build()
-    elastic = elastic_bodies(
-        np.union1d(ratios, ELASTIC_RATIOS), measured[0]["x"].values, packing.row_count.size, packing.width
-    )
-    return labelled({"response": response, "elastic": elastic, "events": events}, base)
+    response = slab.measured_along("stiffness_ratio", measured).assign_coords(axes(stiffness_ratio=(ratios, RATIO)))
+    packing, x = base.packing.build(), measured[0]["x"].values
+    elastic = elastic_bodies(np.union1d(ratios, ELASTIC_RATIOS), x, packing.row_count.size, packing.width)
+    return labelled({"response": response.assign(further), "elastic": elastic, "events": events}, base)
 
 
 @record
@@ -128,7 +126,7 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
     resists some strain not at all. ``root`` and ``moduli_error`` are claims K2 and K3.
     """
     found, error = {}, {}
-    for (r, rotations), (k, ratio) in product(enumerate(ROTATIONS), enumerate(ratios.tolist())):
+    for (r, k), (rotations, ratio) in places(ROTATIONS, ratios):
         if ratio == 0.0:
             continue
         springs = Springs(0.0, 1.0, 0.0, ratio)
@@ -159,11 +157,3 @@ def _profile(moduli: Moduli, body: Body, x: FloatArray, layers: int, width: floa
         return half_plane.pressure(x[:, None] + node, np.sqrt(3.0) * layers, moduli) @ weight
     floor: Floor = "smooth" if body == "smooth floor" else "rough"
     return response_of_layers(x, layers=layers, moduli=moduli, floor=floor, width=width)
-
-
-def _brackets(ratios: FloatArray, measured: Sequence[xr.Dataset]) -> dict[str, tuple[float, float]]:
-    """Where on the axis each event lies."""
-    ended, central = ([happened(one) for one in measured] for _, happened in EVENTS.values())
-    # the last stretch of ratios with the maximum at the centre; there may be others below it
-    begun = [all(central[k:]) for k in range(len(central))]
-    return dict(zip(EVENTS, (slab.first_change(ratios, ended), slab.first_change(ratios, begun)), strict=True))

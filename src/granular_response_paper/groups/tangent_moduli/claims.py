@@ -16,8 +16,8 @@ CLAIMS = Claims(GROUP)
 def _slabs(data: Data) -> dict[str, xr.Dataset]:
     """Slabs by friction, without steps that are not there."""
     found = data.get(GROUP, "slabs")
-    each = {f"friction {float(mu):g}": found.isel(slab=k) for k, mu in enumerate(found["friction"])}
-    return {name: one.isel(step=np.isfinite(one["force"].values)) for name, one in each.items()}
+    known = np.isfinite(found["force"].values)
+    return {f"friction {float(mu):g}": found.isel(slab=k, step=known[k]) for k, mu in enumerate(found["friction"])}
 
 
 def _crossover(slab: xr.Dataset) -> Quantity:

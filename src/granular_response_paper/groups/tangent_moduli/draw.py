@@ -31,19 +31,12 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     figure, panels = style.figure(2, 3, width="double", height=4.6)
     maps, (responses, differences, reaches) = panels
     texts, highest = [], 0.0
-    looks = list(family(range(slabs.sizes["slab"]), of="friction"))
-    for axes, (k, _) in zip(maps, looks, strict=False):
-        one = _shown(slabs.isel(slab=k))
-        filled = _map(axes, one)
-        texts.append(f"{_friction(one)}, {style.equals(style.F_EXT, float(one['force']), style.WEIGHT)}")
-    for axes in maps[len(texts) :]:
-        axes.set_axis_off()
-    maps[0].set_ylabel(style.HEIGHT)
-    figure.colorbar(filled, ax=maps, label="$r$", ticks=(-0.5, 0, 0.5, 1), pad=0.01, aspect=12)
-    for k, look in looks:
-        slab = slabs.isel(slab=k)
-        slab = slab.isel(step=np.isfinite(slab["force"].values))
+    for k, look in family(range(slabs.sizes["slab"]), of="friction"):
+        slab = slabs.isel(slab=k, step=np.isfinite(slabs["force"].values[k]))
         one, line = _shown(slab), {"color": look["color"]}
+        if k < len(maps):
+            filled = _map(maps[k], one)
+            texts.append(f"{_friction(one)}, {style.equals(style.F_EXT, float(one['force']), style.WEIGHT)}")
         x = one["x"].values
         inside = np.abs(x) <= REACH
         predicted = one["predicted"].isel(width=0, loads=0).values
@@ -57,6 +50,10 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
         reaches.plot(force, slab["reach"].isel(width=0, loads=0), **look | {"markersize": 4.0})
         for axes in (differences, reaches):
             axes.axvline(crossover, **line, linestyle="--", linewidth=0.8)
+    for axes in maps[len(texts) :]:
+        axes.set_axis_off()
+    maps[0].set_ylabel(style.HEIGHT)
+    figure.colorbar(filled, ax=maps, label="$r$", ticks=(-0.5, 0, 0.5, 1), pad=0.01, aspect=12)
     responses.set(xlabel=style.POSITION, ylabel="floor force per added force", ylim=(0.0, 1.25 * highest))
     differences.set(ylabel="largest difference (%)", ylim=(0.0, None))
     reaches.set(ylabel="depth of $r < 0$ / height", ylim=(-0.03, 1.05))
@@ -71,9 +68,8 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def _shown(slab: xr.Dataset) -> xr.Dataset:
     """The step whose map is drawn: the first at the force to be shown or above it, or the last one."""
-    force = slab["force"].values
-    above = np.flatnonzero(force >= float(slab["shown"]))
-    return slab.isel(step=above[0] if above.size else int(np.isfinite(force).sum()) - 1)
+    above = np.flatnonzero(slab["force"].values >= float(slab["shown"]))
+    return slab.isel(step=above[0] if above.size else -1)
 
 
 def _friction(slab: xr.Dataset) -> str:

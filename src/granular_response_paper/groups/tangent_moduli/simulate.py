@@ -41,8 +41,8 @@ from granular_response.state import FLOOR, SLIDING, FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.theory.moduli import peak_criterion
 from granular_response_paper.datasets import labelled
-from granular_response_paper.records import axes, column, labels, record, table
-from granular_response_paper.slab_response import TWO_PEAKS, Happening, LoadPath, Measures
+from granular_response_paper.records import axes, column, labels, parts, places, record, table
+from granular_response_paper.slab_response import LoadPath, Measures, two_peaks
 from granular_response_paper.tasks import computed
 
 from .parameters import Parameters
@@ -91,10 +91,8 @@ class Solid:
         """Raises SolveError for a contact that is no edge."""
         corner = state.position[corners]
         area = _area(corner)
-        after, before = np.roll(corner, -1, axis=1), np.roll(corner, -2, axis=1)
-        slope = (
-            np.stack([after[..., 1] - before[..., 1], before[..., 0] - after[..., 0]], -1) / (2 * area)[:, None, None]
-        )
+        opposite = np.roll(corner, -1, axis=1) - np.roll(corner, -2, axis=1)
+        slope = opposite[..., ::-1] * [1.0, -1.0] / (2.0 * area)[:, None, None]
         strain = np.zeros((len(corners), 3, 3, 2))
         strain[:, 0, :, 0], strain[:, 1, :, 1] = slope[..., 0], slope[..., 1]
         strain[:, 2] = slope[..., ::-1] / SHEAR
@@ -119,9 +117,7 @@ class Solid:
         u = moved.reshape(-1, self.system.problem.n)[:2].T
         strain = np.einsum("tai,ti->ta", self.strain_of, u[self.corners].reshape(-1, 6))
         force = added_forces(self.system, self.trial, moved)[0]
-        xx, zz, xz, zx = (
-            self.stress_of @ (force[:, a] * self.branch[:, b]) for a, b in ((0, 0), (1, 1), (0, 1), (1, 0))
-        )
+        xx, xz, zx, zz = (self.stress_of @ (force[:, :, None] * self.branch[:, None]).reshape(-1, 4)).T
         return strain, np.stack([xx, zz, (xz + zx) / SHEAR], axis=-1), (xz - zx) / SHEAR
 
     def averages(self, width: float) -> sp.csr_array:
@@ -134,31 +130,21 @@ class Solid:
 
     def answer(self, moduli: FloatArray, disk: int) -> FloatArray:
         """(2 n,) displacements under a unit force downwards on a disk, with ``moduli`` (t, 3, 3)."""
-        n, walls = self.system.problem.n, self._walls
+        n, wall_disk = self.system.problem.n, self.system.wall_disk
+        walls = self.system.split(self.trial.tangent)[1][:, :2, :2]
         stiffness = np.einsum("tai,tab,tbj,t->tij", self.strain_of, moduli, self.strain_of, self.area)
-        parts = (stiffness, (self.corners[..., None] + [0, n]).reshape(-1, 6)), (-walls, self._at_walls)
-        data = np.concatenate([matrix.ravel() for matrix, _ in parts])
-        row = np.concatenate([np.repeat(at, at.shape[1], axis=1).ravel() for _, at in parts])
-        column = np.concatenate([np.tile(at, at.shape[1]).ravel() for _, at in parts])
+        blocks = (stiffness, (self.corners[..., None] + [0, n]).reshape(-1, 6)), (-walls, wall_disk[:, None] + [0, n])
+        data = np.concatenate([block.ravel() for block, _ in blocks])
+        row = np.concatenate([np.repeat(at, at.shape[1], axis=1).ravel() for _, at in blocks])
+        across = np.concatenate([np.tile(at, at.shape[1]).ravel() for _, at in blocks])
         load = np.zeros(2 * n)
         load[n + disk] = -1.0
-        return np.asarray(splu(sp.csc_array((data, (row, column)), (2 * n, 2 * n))).solve(load))
+        return np.asarray(splu(sp.csc_array((data, (row, across)), (2 * n, 2 * n))).solve(load))
 
     def floor_forces(self, moved: FloatArray) -> FloatArray:
         """(n,) what displacements (dof,) add to the vertical floor force on each disk; the floor is smooth."""
-        force = np.einsum("wb,wb->w", self._walls[:, 1], moved[self._at_walls])
-        on_floor = force * (self.system.wall == FLOOR)
-        return np.asarray(np.bincount(self.system.wall_disk, on_floor, self.system.problem.n), dtype=float)
-
-    @property
-    def _walls(self) -> FloatArray:
-        """(w, 2, 2) what displacements add to the forces of smooth walls."""
-        return self.system.split(self.trial.tangent)[1][:, :2, :2]
-
-    @property
-    def _at_walls(self) -> NDArray[np.intp]:
-        """(w, 2) the displacements of the disks at walls."""
-        return np.asarray(self.system.wall_disk[:, None] + [0, self.system.problem.n], dtype=np.intp)
+        force = added_forces(self.system, self.trial, moved)[1][:, 1] * (self.system.wall == FLOOR)
+        return np.asarray(np.bincount(self.system.wall_disk, force, self.system.problem.n), dtype=float)
 
 
 def fitted(strain: FloatArray, stress: FloatArray) -> tuple[FloatArray, float]:
@@ -201,7 +187,7 @@ class Step:
     criterion: FloatArray = column("r by body forces, least width", "triangle")
     sliding: FloatArray = column(f"centres of sliding contacts of disks {RADII}", "contact", "axis")
     tangent_error: float = column("largest lack of K against the next equilibrium, per largest force")
-    fits: tuple[Fit, ...] = ()
+    fits: dict[tuple[int, ...], Fit]
 
 
 @record
@@ -211,7 +197,7 @@ class Outcome:
     x: FloatArray = column(f"position from the loaded disk {RADII}", "floor_disk")
     crossover: FloatArray = column(f"force from which on there are two peaks, before and after {WEIGHTS}", "end")
     corners: FloatArray = column(f"corners of the triangles on the lattice {RADII}", "triangle", "corner", "axis")
-    steps: tuple[Step, ...] = ()
+    steps: tuple[Step, ...]
 
 
 def loads(problem: Problem, state: State, waves: tuple[int, int]) -> dict[str, list[FloatArray]]:
@@ -241,7 +227,7 @@ def respond(parameters: Parameters, friction: float, forces: tuple[float, ...]) 
     path = LoadPath.of(p.base.updated({"contact.friction": friction}))
     measures, problem = Measures(path), path.problem
     path.through(forces)
-    crossover = np.array(path.first(forces, Happening(measures.double_peaked, TWO_PEAKS)))
+    crossover = np.array(path.first(forces, two_peaks(measures)))
     packing, loaded, inside, disks = problem.packing, measures.loaded_disk, measures.interior, measures.disks
     corners, middle = triangles(packing.position), np.array([path.rest.position[loaded, 0], 0.0])
 
@@ -261,23 +247,24 @@ def respond(parameters: Parameters, friction: float, forces: tuple[float, ...]) 
             name: [np.stack(one, axis=-1) for one in zip(*map(solid.fields, map(answer, family)), strict=True)]
             for name, family in loads(problem, state, p.waves).items()
         }
-        fits, criteria = [], []
-        for width, name in product(p.widths, LOADS):
+        fits, criteria = {}, []
+        for place, (width, name) in places(p.widths, LOADS):
             mean = solid.averages(width)
-            averaged = ((mean @ one.reshape(len(corners), -1)).reshape(one.shape) for one in fields[name])
-            strain, stress, turning = averaged
+            strain, stress, turning = (
+                (mean @ one.reshape(len(corners), -1)).reshape(one.shape) for one in fields[name]
+            )
             moduli, left = fitted(strain, stress)
             criteria.append(peak_criterion(moduli[:, 0, 0], moduli[:, 1, 1], moduli[:, 0, 1], moduli[:, 2, 2]))
             predicted = solid.floor_forces(solid.answer(moduli, loaded))[disks]
             part = np.linalg.norm(turning) / np.hypot(np.linalg.norm(turning), np.linalg.norm(stress))
             depth = reached(criteria[-1], solid, packing.row, middle[0], measures.lattice_constant)
             difference = np.abs(smooth(predicted) - smooth(measured)).max() / largest
-            fits.append(Fit(predicted, difference, double(predicted), left, part, depth))
+            fits[place] = Fit(predicted, difference, double(predicted), left, part, depth)
         pairs, slides = state.pairs, np.abs(state.pairs.status) == SLIDING
         centre = state.position[pairs.first] - 0.5 * state.pair_separation() - middle
         grown = (floor_force(after, disks) - floor_force(state, disks)) / (after.load_factor - state.load_factor)
         error = np.abs(grown - measured).max() / measured.max()
-        return Step(state.load_factor, measured, double(measured), criteria[0], centre[slides], error, tuple(fits))
+        return Step(state.load_factor, measured, double(measured), criteria[0], centre[slides], error, fits)
 
     steps = tuple(step(*path.through([force, force * (1.0 + STEP)])) for force in forces)
     return Outcome(measures.x, crossover, packing.position[corners] - middle, steps)
@@ -287,9 +274,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Dataset ``slabs``."""
     p, slabs = parameters, parameters.slabs
     found = computed({(k,): partial(respond, p, s.friction, s.forces) for k, s in enumerate(slabs)}, "slabs")
-    steps = {(k, n): step for (k,), one in found.items() for n, step in enumerate(one.steps)}
-    places = list(product(range(len(p.widths)), range(len(LOADS))))
-    fits = {(*at, *place): fit for at, step in steps.items() for place, fit in zip(places, step.fits, strict=True)}
+    steps = parts(found, "steps")
+    fits = {(*at, *place): fit for at, step in steps.items() for place, fit in step.fits.items()}
     slab = table(found, "slab")
     slab["corners"] = slab["corners"].isel(slab=0)
     tables = (slab, table(steps, "slab", "step"), table(fits, "slab", "step", "width", "loads"))

@@ -12,13 +12,12 @@ from typing import get_args
 import numpy as np
 import xarray as xr
 
-from granular_response.store.variables import variable
 from granular_response.theory import crossover, half_plane, lattice, rays
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab
 from granular_response_paper.groups.theory.parameters import Parameters
-from granular_response_paper.records import axes
+from granular_response_paper.records import axes, variables
 
 #: Lattices whose moduli are measured: equal bonds, normal springs alone, no horizontal ones, all different.
 SPRINGS = (
@@ -32,100 +31,72 @@ SPRINGS = (
 ROTATIONS = get_args(lattice.Rotations)
 BODIES = get_args(crossover.Body)
 
-_BETA = np.linspace(0.0, 1.0, 101)
+TURNING = axes(rotations=(ROTATIONS, "whether the disks turn"))
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``predictions``, ``peak_criterion`` and ``moduli``; fractions of a second."""
-    return {
-        "predictions": _predictions(parameters),
-        "peak_criterion": _peak_criterion(),
-        "moduli": _moduli(),
-    }
+    return {"predictions": _predictions(parameters), "peak_criterion": _peak_criterion(), "moduli": _moduli()}
 
 
-def _predictions(values: Parameters) -> xr.Dataset:
-    x = np.linspace(-values.half_width, values.half_width, values.points)
-    poisson_ratio = lattice.poisson_ratio(1.0, values.stiffness_ratio)
+def _predictions(p: Parameters) -> xr.Dataset:
+    x = np.linspace(-p.half_width, p.half_width, p.points)
+    poisson_ratio = lattice.poisson_ratio(1.0, p.stiffness_ratio)
     solid = Moduli.isotropic(poisson_ratio)
+    rough, smooth = (Slab(1.0, solid, floor).floor_pressure(x) for floor in ("rough", "smooth"))
+    ray = {"angle": np.radians(p.ray_angle), "diffusion_length": p.diffusion_length}
+    hyperbolic = [depth * rays.pressure(x * depth, depth, **ray) for depth in p.depths]
     pressure = "floor pressure times slab height / force"
-    hyperbolic = [
-        depth
-        * rays.pressure(
-            x * depth,
-            depth,
-            angle=np.radians(values.ray_angle),
-            diffusion_length=values.diffusion_length,
-        )
-        for depth in values.depths
-    ]
+    below = half_plane.pressure(x, 1.0, solid), "pressure times depth / force in a half plane, same depth"
+    width = "squared width of a ray over depth, in mean disk radii"
     return xr.Dataset(
-        {
-            "slab_rough": variable("x", Slab(1.0, solid, "rough").floor_pressure(x), f"{pressure}, rough floor"),
-            "slab_smooth": variable("x", Slab(1.0, solid, "smooth").floor_pressure(x), f"{pressure}, smooth floor"),
-            "half_plane": variable(
-                "x",
-                half_plane.pressure(x, 1.0, solid),
-                "pressure times depth / force in a half plane, same depth",
-            ),
-            "rays": variable(("depth", "x"), np.stack(hyperbolic), f"{pressure}, two diffusing rays"),
-            "poisson_ratio": variable((), poisson_ratio, "two-dimensional Poisson ratio of the elastic slab"),
-            "ray_angle": variable((), values.ray_angle, "angle of the rays to the vertical in degrees"),
-            "diffusion_length": variable(
-                (), values.diffusion_length, "squared width of a ray over depth, in mean disk radii"
-            ),
-        },
-        coords=axes(
-            x=(x, "distance from the force in slab heights"), depth=(values.depths, "slab height in mean disk radii")
+        variables(
+            slab_rough=("x", rough, f"{pressure}, rough floor"),
+            slab_smooth=("x", smooth, f"{pressure}, smooth floor"),
+            half_plane=("x", *below),
+            rays=("depth x", hyperbolic, f"{pressure}, two diffusing rays"),
+            poisson_ratio=("", poisson_ratio, "two-dimensional Poisson ratio of the elastic slab"),
+            ray_angle=("", p.ray_angle, "angle of the rays to the vertical in degrees"),
+            diffusion_length=("", p.diffusion_length, width),
         ),
+        axes(x=(x, "distance from the force in slab heights"), depth=(p.depths, "slab height in mean disk radii")),
     )
 
 
 def _peak_criterion() -> xr.Dataset:
-    names = ("rotations", "beta")
-    criterion = [[lattice.peak_criterion(beta, rotations) for beta in _BETA] for rotations in ROTATIONS]
+    beta = np.linspace(0.0, 1.0, 101)
+    criterion = [[lattice.peak_criterion(one, rotations) for one in beta] for rotations in ROTATIONS]
+    root = [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS]
     ratio = [[crossover.stiffness_ratio(body, rotations) for body in BODIES] for rotations in ROTATIONS]
+    turn = "k_2t/k_2n at which the pressure below the force turns into a minimum"
     return xr.Dataset(
-        {
-            "criterion": variable(names, criterion, "r of the lattice without horizontal springs; two peaks if < 0"),
-            "root": variable(
-                "rotations", [lattice.peak_criterion_root(r) for r in ROTATIONS], "k_2t/k_2n at which r = 0"
-            ),
-            "root_closed_form": variable("rotations", [2.0 * np.sqrt(7.0) - 5.0, 3.0 / 11.0], "the same, closed form"),
-            "crossover": variable(
-                ("rotations", "body"),
-                ratio,
-                "k_2t/k_2n at which the pressure below the force turns into a minimum",
-            ),
-        },
-        coords=axes(
-            beta=(_BETA, "k_2t/k_2n"),
-            rotations=(ROTATIONS, "whether the disks turn"),
-            body=(BODIES, "elastic body that carries the force"),
+        variables(
+            criterion=("rotations beta", criterion, "r of the lattice without horizontal springs; two peaks if < 0"),
+            root=("rotations", root, "k_2t/k_2n at which r = 0"),
+            root_closed_form=("rotations", [2.0 * np.sqrt(7.0) - 5.0, 3.0 / 11.0], "the same, closed form"),
+            crossover=("rotations body", ratio, turn),
         ),
+        axes(beta=(beta, "k_2t/k_2n")) | TURNING | axes(body=(BODIES, "elastic body that carries the force")),
     )
 
 
 def _moduli() -> xr.Dataset:
-    component = ["xx", "zz", "xz"]
-    formula = [[lattice.moduli(springs, r).matrix() for springs in SPRINGS] for r in ROTATIONS]
-    measured = [[lattice.measured_moduli(springs, r) for springs in SPRINGS] for r in ROTATIONS]
+    formula = [[lattice.moduli(springs, rotations).matrix() for springs in SPRINGS] for rotations in ROTATIONS]
+    measured = [[lattice.measured_moduli(springs, rotations) for springs in SPRINGS] for rotations in ROTATIONS]
     error = np.abs(np.subtract(measured, formula)).max(axis=(2, 3)) / np.max(formula, axis=(2, 3))
-    dims = ("rotations", "case", "stress", "strain")
+    component, spring = ["xx", "zz", "xz"], ["k1n", "k2n", "k1t", "k2t"]
+    springs = [[getattr(one, name) for name in spring] for one in SPRINGS]
+    tensor = "rotations case stress strain"
     return xr.Dataset(
-        {
-            "formula": variable(dims, formula, "modulus of eqs. (7)-(10), or with free rotations"),
-            "measured": variable(dims, measured, "modulus of the strained periodic lattice, relaxed"),
-            "error": variable(dims[:2], error, "largest difference of the two / largest modulus"),
-            "springs": variable(
-                ("case", "spring"),
-                [[s.k1n, s.k2n, s.k1t, s.k2t] for s in SPRINGS],
-                "stiffness of the lattice's springs",
-            ),
-        },
-        coords=axes(
-            rotations=(ROTATIONS, "whether the disks turn"),
-            spring=(["k1n", "k2n", "k1t", "k2t"], "spring of Fig. 11"),
+        variables(
+            formula=(tensor, formula, "modulus of eqs. (7)-(10), or with free rotations"),
+            measured=(tensor, measured, "modulus of the strained periodic lattice, relaxed"),
+            error=("rotations case", error, "largest difference of the two / largest modulus"),
+            springs=("case spring", springs, "stiffness of the lattice's springs"),
+        ),
+        TURNING
+        | axes(
+            spring=(spring, "spring of Fig. 11"),
             stress=(component, "stress component"),
             strain=(component, "strain component (tensor)"),
         ),
