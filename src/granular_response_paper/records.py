@@ -117,3 +117,9 @@ def axes(**given: tuple[Iterable[Any], str]) -> dict[str, xr.Variable]:
         name: variable(name, values if isinstance(values, np.ndarray) else list(values), text)
         for name, (values, text) in given.items()
     }
+
+
+def table_along(records: Mapping[Place, Any] | Sequence[Any], /, **given: tuple[Iterable[Any], str]) -> xr.Dataset:
+    """A :func:`table` with its :func:`axes`: those of the places first, then those of fields."""
+    leading = len(next(iter(records))) if isinstance(records, Mapping) else 1
+    return table(records, *list(given)[:leading]).assign_coords(axes(**given))
