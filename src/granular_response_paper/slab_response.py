@@ -53,19 +53,9 @@ NARROW = 1e-6
 
 #: The parts of a state that a picture of its contact network and its response need.
 PICTURE = (
-    "position",
-    "angle",
-    "contact_disk",
-    "contact_partner",
-    "contact_status",
-    "contact_normal_force",
-    "contact_tangential_force",
-    "wall_disk",
-    "wall_index",
-    "wall_status",
-    "wall_normal_force",
-    "load_factor",
-)
+    "position", "angle", "contact_disk", "contact_partner", "contact_status", "contact_normal_force",
+    "contact_tangential_force", "wall_disk", "wall_index", "wall_status", "wall_normal_force", "load_factor",
+)  # fmt: skip
 
 
 def wall_margin(width: float) -> float:
@@ -339,10 +329,10 @@ class Event:
 
 def first_change(values: Sequence[float] | FloatArray, happened: Iterable[bool]) -> tuple[float, float]:
     """The last of ``values`` before the first True and its own; see :class:`Event` for the ends."""
-    for k, yes in enumerate(happened):
-        if yes:
-            return (float(values[k - 1]) if k else 0.0), float(values[k])
-    return float(values[-1]), float("nan")
+    k = next((k for k, yes in enumerate(happened) if yes), None)
+    if k is None:
+        return float(values[-1]), np.nan
+    return float(values[k - 1]) if k else 0.0, float(values[k])
 
 
 def linear_end(force: FloatArray, response: FloatArray, tolerance: float) -> tuple[float, float]:
@@ -353,7 +343,7 @@ def linear_end(force: FloatArray, response: FloatArray, tolerance: float) -> tup
     """
     known = np.isfinite(response)
     if not known.any():
-        return float("nan"), float("nan")
+        return np.nan, np.nan
     return first_change(force[known], np.abs(response[known] / response[0] - 1.0) > tolerance)
 
 
@@ -437,14 +427,12 @@ def states_picture(
 ) -> xr.Dataset:
     """What pictures of the contact network need of ``states``: the variables ``of`` them or, for None, all."""
     packing = problem.packing
-    states = common_candidates(states, packing.radius)
-    dataset = states_dataset(states, dimension)
+    dataset = states_dataset(common_candidates(states, packing.radius), dimension)
     dataset = dataset[list(of)] if of else dataset
     dataset["axis"].attrs.update(long_name="axis labels", units="1")
-    force = np.array([abs(state.load_factor) for state in states])
     return dataset.assign(
         variables(
-            force=(dimension, force, f"applied force {WEIGHTS}"),
+            force=(dimension, [abs(state.load_factor) for state in states], f"applied force {WEIGHTS}"),
             radius=("disk", packing.radius, f"disk radius {RADII}"),
             width=("", packing.width, f"distance of the side walls {RADII}"),
             loaded_disk=("", int(problem.load_disk[0]), "index of the loaded disk"),

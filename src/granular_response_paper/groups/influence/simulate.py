@@ -48,8 +48,7 @@ class Outcome:
 def compute(scene: Scene, separations: tuple[int, ...], margin: float, fitted: tuple[float, ...]) -> Outcome:
     """One packing. Raises what ``rest_state`` raises."""
     problem = Problem.from_scene(scene)
-    rest = rest_state(problem)
-    packing = problem.packing
+    rest, packing = rest_state(problem), problem.packing
     disks = floor_disks([rest], np.flatnonzero(packing.row == 0))
     found = influence(problem, rest, disks, sliding="stick")[:, :, 1]
     height, difference = differences(found, rest, packing, separations, margin)
@@ -110,14 +109,9 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         for r in range(case.realizations):
             scene = parameters.base.updated(material(case.polydispersity, r, case.friction))
             tasks[c, r] = partial(compute, scene, parameters.separations, parameters.margin, parameters.fitted)
-    found = table(computed(tasks, "packings"), "case", "realization").assign_coords(
-        labels(
-            "case",
-            parameters.cases,
-            polydispersity="polydispersity",
-            friction="friction between disks and of the walls",
-        )
-    )
+    texts = {"polydispersity": "polydispersity", "friction": "friction between disks and of the walls"}
+    found = table(computed(tasks, "packings"), "case", "realization")
+    found = found.assign_coords(labels("case", parameters.cases, **texts))
     of_packings = ["position", "radius", "total"]
     saint_venant = found.drop_vars(of_packings).assign_coords(
         axes(
