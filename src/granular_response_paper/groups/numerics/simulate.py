@@ -9,7 +9,7 @@ static finish unless that is what is measured.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -78,14 +78,26 @@ def stopped(scene: Scene, stop_energies: Sequence[float]) -> list[Errors]:
 
 
 @record
-class Restarted:
-    """A statically finished frictionless state, put back into the dynamics."""
+class Readings:
+    """What is read of dynamics that goes on under a constant load."""
 
-    kinetic_energy: FloatArray = column("kinetic energy per disk after a restart of a finished state", "reading")
+    mean_acceleration: FloatArray = column(ACCELERATION, "reading")
+    kinetic_energy: FloatArray = column("kinetic energy per disk", "reading")
 
 
-def restart(scene: Scene, force: float, steps: int) -> Restarted:
-    """From rest under ``force``."""
+def go_on(problem: Problem, state: State, load: float, steps: int, every: int) -> Readings:
+    """From ``state``, at ``every`` so many steps."""
+    dynamics = Dynamics(problem, state, problem.scene.protocol.integrator, resolve_time_step(problem))
+    dynamics.set_ramps(load=(load, load, 0.0))
+    found = []
+    for _ in range(steps // every):
+        dynamics.advance(every)
+        found.append((dynamics.mean_acceleration(), dynamics.kinetic_energy()))
+    return Readings(*np.array(found).T)
+
+
+def restart(scene: Scene, force: float, steps: int) -> Readings:
+    """A statically finished frictionless state under ``force``, put back into the dynamics from rest."""
     problem = Problem.from_scene(scene)
     state = rest_state(problem)
     problem = problem.with_loads(state.position)
@@ -94,7 +106,13 @@ def restart(scene: Scene, force: float, steps: int) -> Restarted:
     still = replace(
         state, velocity=np.zeros_like(state.velocity), angular_velocity=np.zeros_like(state.angular_velocity)
     )
-    return Restarted(np.array(_read(problem, still, force, steps, READ_EVERY, Dynamics.kinetic_energy)))
+    return go_on(problem, still, force, steps, READ_EVERY)
+
+
+def swing(scene: Scene, steps: int, read_every: int) -> Readings:
+    """What a run does that goes on after its stop."""
+    problem, _, loaded = rest_and_loaded(scene)
+    return go_on(problem, loaded, 1.0, steps, read_every)
 
 
 @record
@@ -118,20 +136,6 @@ def respond(scene: Scene) -> Response:
     response = floor_response(rest, loaded, _bottom(problem.packing), _total(problem))
     names = ("network_fixed_steps", "sliding_contacts", "mean_acceleration", "loose_disks", "kinetic_energy")
     return Response(response, np.nan, *(float(getattr(loaded.reached, name)) for name in names))
-
-
-@record
-class Swung:
-    """What a run does that goes on after its stop."""
-
-    mean_acceleration: FloatArray = column(ACCELERATION, "reading")
-    kinetic_energy: FloatArray = column("kinetic energy per disk", "reading")
-
-
-def swing(scene: Scene, steps: int, read_every: int) -> Swung:
-    problem, _, loaded = rest_and_loaded(scene)
-    both = _read(problem, loaded, 1.0, steps, read_every, lambda d: (d.mean_acceleration(), d.kinetic_energy()))
-    return Swung(*np.array(both).T)
 
 
 @record
@@ -189,19 +193,6 @@ def _total(problem: Problem) -> float:
     return float(np.abs(problem.load[:, 1]).sum())
 
 
-def _read(
-    problem: Problem, state: State, load: float, steps: int, every: int, read: Callable[[Dynamics], Any]
-) -> list[Any]:
-    """What is read of the dynamics that goes on from ``state`` under a constant load, at ``every`` so many steps."""
-    dynamics = Dynamics(problem, state, problem.scene.protocol.integrator, resolve_time_step(problem))
-    dynamics.set_ramps(load=(load, load, 0.0))
-    found = []
-    for _ in range(steps // every):
-        dynamics.advance(every)
-        found.append(read(dynamics))
-    return found
-
-
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``stop_energy``, ``restart``, ``at_rest``, ``swing``, ``time_step``, ``integrators``, ``damping`` and
     ``disorder``.
@@ -222,16 +213,16 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
             friction=(asked.frictions, "coefficient of friction between disks"),
             stop_kinetic_energy=(asked.stop_energies, "kinetic energy per disk at which the dynamics stops"),
         ),
-        "restart": table_along(
-            found["restart"], load=(asked.restart.forces, f"load of the restarted state {WEIGHTS}")
-        ).assign_coords(step=_readings(READ_EVERY, found["restart"], "time steps since the restart")),
+        "restart": _readings(
+            found["restart"], READ_EVERY, load=(asked.restart.forces, f"load of the restarted state {WEIGHTS}")
+        ).drop_vars("mean_acceleration"),
         "time_step": _responses(found["time_step"], x, time_step=(asked.time_steps, "time step in sqrt(radius/g)")),
         "integrators": _responses(found["integrators"], x, integrator=(asked.integrators, "integrator")),
         "damping": table_along(
             found["damping"], damping_ratio=(asked.damping.ratios, "dashpot over its critical value, nu / (2 sqrt(k))")
         ),
-        "swing": table_along(found["swing"], stop_rule=(STOP_RULES, "rule by which the run had stopped")).assign_coords(
-            step=_readings(asked.swing.read_every, found["swing"], "time steps since the stop")
+        "swing": _readings(
+            found["swing"], asked.swing.read_every, stop_rule=(STOP_RULES, "rule by which the run had stopped")
         ),
         "disorder": table_along(
             found["disorder"],
@@ -239,6 +230,9 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
             x=(grid, from_load),
         ),
     }
+    datasets["restart"]["kinetic_energy"].attrs["long_name"] += " after a restart of a finished state"
+    for name, begin in (("restart", "restart"), ("swing", "stop")):
+        datasets[name]["step"].attrs["long_name"] += f" since the {begin}"
     datasets["at_rest"] = datasets["time_step"].drop_vars(["floor_response", "difference"]).isel(time_step=0)
     for dataset in datasets.values():
         dataset["force"] = variable((), asked.force, f"applied force {WEIGHTS}")
@@ -247,8 +241,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
 def _grid(asked: Parameters) -> FloatArray:
     """Distances from the loaded disk at which disordered slabs are compared (radii)."""
-    half = asked.disorder.spacing * np.arange(round(asked.disorder.reach / asked.disorder.spacing) + 1)
-    return np.concatenate([-half[:0:-1], half])
+    count = round(asked.disorder.reach / asked.disorder.spacing)
+    return asked.disorder.spacing * np.arange(-count, count + 1, dtype=np.float64)
 
 
 def _with_friction(asked: Parameters) -> Scene:
@@ -295,8 +289,10 @@ def _tasks(asked: Parameters, grid: FloatArray) -> Mapping[str, list[partial[Any
     }
 
 
-def _readings(every: int, found: Sequence[Restarted | Swung], text: str) -> xr.Variable:
-    return variable("reading", every * np.arange(1, found[0].kinetic_energy.size + 1), text)
+def _readings(found: Sequence[Readings], every: int, **along: tuple[Sequence[Any], str]) -> xr.Dataset:
+    """With the step of each."""
+    step = variable("reading", every * np.arange(1, found[0].kinetic_energy.size + 1), "time steps")
+    return table_along(found, **along).assign_coords(step=step)
 
 
 def _responses(found: Sequence[Response], x: xr.Variable, **along: tuple[Sequence[Any], str]) -> xr.Dataset:
