@@ -98,8 +98,8 @@ def decay(height: FloatArray, difference: FloatArray, apart: float, fitted: tupl
     use = np.flatnonzero((ratio >= fitted[0]) & (ratio <= fitted[1]) & (difference > 0.0))
     if use.size < 4:
         return np.full(len(FITS), np.nan)
-    x, y = np.log(ratio), np.log(difference, where=difference > 0.0, out=np.zeros_like(difference))
-    return np.array([-np.polyfit(x[rows], y[rows], 1)[0] for rows in (use, use[1:], use[:-1])])
+    x, y = np.log(ratio[use]), np.log(difference[use])
+    return np.array([-np.polyfit(x[rows], y[rows], 1)[0] for rows in (slice(None), slice(1, None), slice(-1))])
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
