@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -80,9 +81,9 @@ class LoadPath:
 
     @classmethod
     def of(cls, scene: Scene, rest: State | None = None, packing: Packing | None = None) -> LoadPath:
-        """The path of ``scene``, settled under gravity unless its ``rest`` state is given.
+        """The path of ``scene``, or of ``packing`` in place of its own, settled under gravity unless ``rest`` is given.
 
-        ``packing`` replaces the one that the scene describes. Raises what ``rest_state`` raises.
+        Raises what ``rest_state`` raises.
         """
         problem = Problem.from_scene(scene, packing)
         rest = rest_state(problem) if rest is None else rest
@@ -93,10 +94,7 @@ class LoadPath:
         return self.through([force])[0]
 
     def through(self, forces: Iterable[float]) -> list[State]:
-        """States at increasing ``forces``; known ones are not computed again.
-
-        Raises what ``loaded_states`` and ``follow`` raise.
-        """
+        """States at increasing ``forces``, each computed once. Raises what ``loaded_states`` and ``follow`` raise."""
         forces = [float(force) for force in forces]
         wanted = [force for force in forces if force not in self.known]
         self.method = self.problem.plan.load.method
@@ -275,16 +273,15 @@ class Measures:
 
     def scalars(self, state: State) -> Scalars:
         """Every number that is measured."""
-        x, response = self.x, self.response(state)
+        x, response, region, third = self.x, self.response(state), self.region(state), self.third_peak(state)
         largest = float(response[self.interior].max())
-        region = self.region(state)
         return Scalars(
             response_at_centre=self.centre(state),
             central_dip=self.dip(state),
             peak_count=peaks.peak_count(x, response, interior=self.interior),
             double_peaked=self.double_peaked(state),
-            third_peak=self.third_peak(state) > 0.0,
-            third_peak_prominence=self.third_peak(state) / largest,
+            third_peak=third > 0.0,
+            third_peak_prominence=third / largest,
             asymmetry=self.asymmetry(state),
             asymmetry_sign=asymmetry_sign(x, response),
             peak_height=largest,
@@ -336,10 +333,9 @@ def first_change(values: Sequence[float] | FloatArray, happened: Iterable[bool])
 
 
 def linear_end(force: FloatArray, response: FloatArray, tolerance: float) -> tuple[float, float]:
-    """Forces (k,) between which ``response`` (k,) first leaves the neighbourhood of its first value.
+    """Forces (k,) between which ``response`` (k,) is first off its first value by more than ``tolerance`` of it.
 
-    The part of it that is ``tolerance``. Last force before and first force after; the latter is nan if it never leaves.
-    Responses may be nan from some force on.
+    The latter is nan if it never is. Responses may be nan from some force on.
     """
     known = np.isfinite(response)
     if not known.any():
@@ -371,23 +367,16 @@ def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[st
     ``smallest`` is the state under the smallest force; ``asymmetry`` is that from which symmetry is lost.
     """
     linear, force = measures.centre(smallest), abs(smallest.load_factor)
+    off = f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {force:g}"
+    third = "the double-peaked floor response has a further peak at x = 0"
+    exceeds = f"along the load path, the asymmetry of the floor response exceeds {asymmetry:g}"
     return {
         "first_opening": first_opening(measures),
-        "linear_range": Happening(
-            lambda state: abs(measures.centre(state) / linear - 1.0) > LINEARITY,
-            f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {force:g}",
-        ),
+        "linear_range": Happening(lambda state: abs(measures.centre(state) / linear - 1.0) > LINEARITY, off),
         "crossover": Happening(measures.double_peaked, TWO_PEAKS),
         "reaches_floor": reaches_floor(measures),
-        "third_peak": Happening(
-            lambda state: measures.third_peak(state) > 0.0,
-            "the double-peaked floor response has a further peak at x = 0",
-        ),
-        "loss_of_symmetry_path": Happening(
-            lambda state: measures.asymmetry(state) > asymmetry,
-            f"along the load path, the asymmetry of the floor response exceeds {asymmetry:g}",
-            in_turn=True,
-        ),
+        "third_peak": Happening(lambda state: measures.third_peak(state) > 0.0, third),
+        "loss_of_symmetry_path": Happening(lambda state: measures.asymmetry(state) > asymmetry, exceeds, in_turn=True),
     }
 
 
@@ -462,8 +451,8 @@ def measured(measures: Measures, states: Sequence[State]) -> xr.Dataset:
 def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, xr.Dataset]], shape: tuple) -> xr.Dataset:
     """Measurements on a grid of ``dims``; nan where there are none.
 
-    ``parts`` are pairs of an index into the grid (for all of its dimensions, as numpy takes it) and what was
-    :func:`measured` there, on slabs with the same floor disks.
+    ``parts`` are pairs of an index into the whole grid, as numpy takes it, and what was :func:`measured` there, on
+    slabs with the same floor disks.
     """
     data = {}
     for name, values in parts[0][1].items():
@@ -476,6 +465,6 @@ def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, xr.Datase
 
 def measured_along(dimension: str, measured: Sequence[xr.Dataset]) -> xr.Dataset:
     """Measurements one after the other, along ``dimension``."""
-    ends = np.cumsum([one.sizes["state"] for one in measured])
-    parts = [(slice(end - one.sizes["state"], end), one) for end, one in zip(ends, measured, strict=True)]
-    return measured_dataset((dimension,), parts, (int(ends[-1]),))
+    ends = np.cumsum([0, *(one.sizes["state"] for one in measured)]).tolist()
+    parts = [(slice(*place), one) for place, one in zip(pairwise(ends), measured, strict=True)]
+    return measured_dataset((dimension,), parts, (ends[-1],))

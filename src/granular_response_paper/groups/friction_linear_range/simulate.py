@@ -51,8 +51,7 @@ def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = No
     states kept, where ``keep`` asks for it.
     """
     path = LoadPath.of(scene)
-    states = path.through(forces)
-    measures = Measures(path)
+    states, measures = path.through(forces), Measures(path)
     asked = slab.happenings(measures, states[0], asymmetry) if asymmetry else {}
     if not keep:
         asked = {name: what for name, what in asked.items() if name in ("first_opening", "linear_range")}
@@ -85,11 +84,7 @@ def narrow(scene: Scene, force: float, low: float, high: float, tolerance: float
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets of Figs. 6 to 9, 12 and 16.
-
-    Returns
-    -------
-    ``response`` (friction, force), ``states_mu_<friction>`` (at rest first), ``friction_axis`` (friction),
+    """Datasets ``response`` (friction, force), ``states_mu_<friction>`` (at rest first), ``friction_axis`` (friction),
     ``large_forces`` (force) with ``large_force_states``, ``events`` and ``lost``.
     """
     base, axis, given = parameters.base, parameters.friction_axis, parameters.dynamics

@@ -126,8 +126,8 @@ def settle(scene: Scene) -> State:
 def rest_asymmetry(position: FloatArray, rest: State, width: float) -> float:
     """Largest horizontal distance of a disk from where the rest state is symmetric, in radii.
 
-    ``position`` (n, 2) is the undeformed packing. The symmetric part of the displacements is their mean with
-    their mirror image in ``x = width / 2``.
+    The symmetric part of the displacements from the undeformed ``position`` (n, 2) is their mean with their mirror
+    image in ``x = width / 2``.
     """
     mirror = network.mirror_disks(position, 0.5 * width)
     shift = rest.position[:, 0] - position[:, 0]
@@ -142,11 +142,7 @@ def new_neighbours(position: FloatArray, rest: State) -> int:
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``response``, ``rest``, ``states``, ``events``, ``sizes``, ``regions``, ``widths`` and ``stiffness``.
-
-    SweepError
-        If a slab cannot be solved.
-    """
+    """Datasets ``response``, ``rest``, ``states``, ``events``, ``sizes``, ``regions``, ``widths`` and ``stiffness``."""
     asked = studies(parameters)
 
     def work(slab: Slab) -> tuple[float, ...]:  # the longest first
