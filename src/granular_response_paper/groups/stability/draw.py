@@ -47,11 +47,8 @@ RANDOM = ("certified", "uncertified", "not settled", "no equilibrium", "time ste
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``stability_steps`` (a panel for each property of the scene), ``stability_motion`` and ``stability_scenes``."""
-    return {
-        "stability_steps": _steps(datasets),
-        "stability_motion": _motion(datasets),
-        "stability_scenes": _scenes(datasets),
-    }
+    drawn = {"steps": _steps, "motion": _motion, "scenes": _scenes}
+    return {f"stability_{name}": figure(datasets) for name, figure in drawn.items()}
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:

@@ -74,10 +74,8 @@ def _time_steps(asked: given.TimeSteps, seed: int) -> Study:
     tasks = {}
     for name, values in asked.axes.items():
         for k, value in enumerate(values):
-            if name == "load":
-                changes: dict[str, Any] = {"loads": [{"disk": "top-centre", "force": [0.0, -value]}] if value else []}
-            else:
-                changes = {AXES[name][0]: value}
+            loads = [{"disk": "top-centre", "force": [0.0, -value]}] if value else []
+            changes = {AXES[name][0]: loads if name == "load" else value}
             scene = asked.scene.updated({**changes, "protocol.time_step": "auto"})  # safe to come to rest with
             tasks[name, k] = partial(time_steps.tried, scene, asked.integrators, asked.ratios, asked.steps, seed)
 
