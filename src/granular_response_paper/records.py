@@ -122,3 +122,15 @@ def parts(records: Mapping[Place, Any], name: str) -> dict[tuple[int, ...], Any]
 def places(*along: Sequence[Any] | NDArray[Any]) -> Iterator[tuple[tuple[int, ...], tuple[Any, ...]]]:
     """Places in a grid and the values of its axes ``along`` there; the last place runs fastest."""
     return zip(np.ndindex(*map(len, along)), product(*along), strict=True)
+
+
+def table_along(records: Mapping[Place, Any] | Sequence[Any], /, **given: tuple[Iterable[Any], str]) -> xr.Dataset:
+    """A :func:`table` with its :func:`axes`: those of the places first, then those of fields."""
+    leading = len(next(iter(records))) if isinstance(records, Mapping) else 1
+    return table(records, *list(given)[:leading]).assign_coords(axes(**given))
+
+
+def alike(data: xr.Dataset, dimension: str, *names: str) -> dict[tuple[Any, ...], xr.Dataset]:
+    """The parts of ``data`` along a dimension in which variables have the same values, by these, as they come first."""
+    keys = list(zip(*(data[name].values.tolist() for name in names), strict=True))
+    return {key: data.isel({dimension: [one == key for one in keys]}) for key in dict.fromkeys(keys)}

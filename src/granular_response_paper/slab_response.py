@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -53,19 +54,9 @@ NARROW = 1e-6
 
 #: The parts of a state that a picture of its contact network and its response need.
 PICTURE = (
-    "position",
-    "angle",
-    "contact_disk",
-    "contact_partner",
-    "contact_status",
-    "contact_normal_force",
-    "contact_tangential_force",
-    "wall_disk",
-    "wall_index",
-    "wall_status",
-    "wall_normal_force",
-    "load_factor",
-)
+    "position", "angle", "contact_disk", "contact_partner", "contact_status", "contact_normal_force",
+    "contact_tangential_force", "wall_disk", "wall_index", "wall_status", "wall_normal_force", "load_factor",
+)  # fmt: skip
 
 
 def wall_margin(width: float) -> float:
@@ -90,9 +81,9 @@ class LoadPath:
 
     @classmethod
     def of(cls, scene: Scene, rest: State | None = None, packing: Packing | None = None) -> LoadPath:
-        """The path of ``scene``, settled under gravity unless its ``rest`` state is given.
+        """The path of ``scene``, or of ``packing`` in place of its own, settled under gravity unless ``rest`` is given.
 
-        ``packing`` replaces the one that the scene describes. Raises what ``rest_state`` raises.
+        Raises what ``rest_state`` raises.
         """
         problem = Problem.from_scene(scene, packing)
         rest = rest_state(problem) if rest is None else rest
@@ -103,10 +94,7 @@ class LoadPath:
         return self.through([force])[0]
 
     def through(self, forces: Iterable[float]) -> list[State]:
-        """States at increasing ``forces``; known ones are not computed again.
-
-        Raises what ``loaded_states`` and ``follow`` raise.
-        """
+        """States at increasing ``forces``, each computed once. Raises what ``loaded_states`` and ``follow`` raise."""
         forces = [float(force) for force in forces]
         wanted = [force for force in forces if force not in self.known]
         self.method = self.problem.plan.load.method
@@ -285,16 +273,15 @@ class Measures:
 
     def scalars(self, state: State) -> Scalars:
         """Every number that is measured."""
-        x, response = self.x, self.response(state)
+        x, response, region, third = self.x, self.response(state), self.region(state), self.third_peak(state)
         largest = float(response[self.interior].max())
-        region = self.region(state)
         return Scalars(
             response_at_centre=self.centre(state),
             central_dip=self.dip(state),
             peak_count=peaks.peak_count(x, response, interior=self.interior),
             double_peaked=self.double_peaked(state),
-            third_peak=self.third_peak(state) > 0.0,
-            third_peak_prominence=self.third_peak(state) / largest,
+            third_peak=third > 0.0,
+            third_peak_prominence=third / largest,
             asymmetry=self.asymmetry(state),
             asymmetry_sign=asymmetry_sign(x, response),
             peak_height=largest,
@@ -339,21 +326,20 @@ class Event:
 
 def first_change(values: Sequence[float] | FloatArray, happened: Iterable[bool]) -> tuple[float, float]:
     """The last of ``values`` before the first True and its own; see :class:`Event` for the ends."""
-    for k, yes in enumerate(happened):
-        if yes:
-            return (float(values[k - 1]) if k else 0.0), float(values[k])
-    return float(values[-1]), float("nan")
+    k = next((k for k, yes in enumerate(happened) if yes), None)
+    if k is None:
+        return float(values[-1]), np.nan
+    return float(values[k - 1]) if k else 0.0, float(values[k])
 
 
 def linear_end(force: FloatArray, response: FloatArray, tolerance: float) -> tuple[float, float]:
-    """Forces (k,) between which ``response`` (k,) first leaves the neighbourhood of its first value.
+    """Forces (k,) between which ``response`` (k,) is first off its first value by more than ``tolerance`` of it.
 
-    The part of it that is ``tolerance``. Last force before and first force after; the latter is nan if it never leaves.
-    Responses may be nan from some force on.
+    The latter is nan if it never is. Responses may be nan from some force on.
     """
     known = np.isfinite(response)
     if not known.any():
-        return float("nan"), float("nan")
+        return np.nan, np.nan
     return first_change(force[known], np.abs(response[known] / response[0] - 1.0) > tolerance)
 
 
@@ -386,23 +372,16 @@ def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[st
     ``smallest`` is the state under the smallest force; ``asymmetry`` is that from which symmetry is lost.
     """
     linear, force = measures.centre(smallest), abs(smallest.load_factor)
+    off = f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {force:g}"
+    third = "the double-peaked floor response has a further peak at x = 0"
+    exceeds = f"along the load path, the asymmetry of the floor response exceeds {asymmetry:g}"
     return {
         "first_opening": first_opening(measures),
-        "linear_range": Happening(
-            lambda state: abs(measures.centre(state) / linear - 1.0) > LINEARITY,
-            f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {force:g}",
-        ),
+        "linear_range": Happening(lambda state: abs(measures.centre(state) / linear - 1.0) > LINEARITY, off),
         "crossover": two_peaks(measures),
         "reaches_floor": reaches_floor(measures),
-        "third_peak": Happening(
-            lambda state: measures.third_peak(state) > 0.0,
-            "the double-peaked floor response has a further peak at x = 0",
-        ),
-        "loss_of_symmetry_path": Happening(
-            lambda state: measures.asymmetry(state) > asymmetry,
-            f"along the load path, the asymmetry of the floor response exceeds {asymmetry:g}",
-            in_turn=True,
-        ),
+        "third_peak": Happening(lambda state: measures.third_peak(state) > 0.0, third),
+        "loss_of_symmetry_path": Happening(lambda state: measures.asymmetry(state) > asymmetry, exceeds, in_turn=True),
     }
 
 
@@ -442,14 +421,12 @@ def states_picture(
 ) -> xr.Dataset:
     """What pictures of the contact network need of ``states``: the variables ``of`` them or, for None, all."""
     packing = problem.packing
-    states = common_candidates(states, packing.radius)
-    dataset = states_dataset(states, dimension)
+    dataset = states_dataset(common_candidates(states, packing.radius), dimension)
     dataset = dataset[list(of)] if of else dataset
     dataset["axis"].attrs.update(long_name="axis labels", units="1")
-    force = np.array([abs(state.load_factor) for state in states])
     return dataset.assign(
         variables(
-            force=(dimension, force, f"applied force {WEIGHTS}"),
+            force=(dimension, [abs(state.load_factor) for state in states], f"applied force {WEIGHTS}"),
             radius=("disk", packing.radius, f"disk radius {RADII}"),
             width=("", packing.width, f"distance of the side walls {RADII}"),
             loaded_disk=("", int(problem.load_disk[0]), "index of the loaded disk"),
@@ -479,8 +456,8 @@ def measured(measures: Measures, states: Sequence[State]) -> xr.Dataset:
 def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, xr.Dataset]], shape: tuple) -> xr.Dataset:
     """Measurements on a grid of ``dims``; nan where there are none.
 
-    ``parts`` are pairs of an index into the grid (for all of its dimensions, as numpy takes it) and what was
-    :func:`measured` there, on slabs with the same floor disks.
+    ``parts`` are pairs of an index into the whole grid, as numpy takes it, and what was :func:`measured` there, on
+    slabs with the same floor disks.
     """
     data = {}
     for name, values in parts[0][1].items():
@@ -493,6 +470,6 @@ def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, xr.Datase
 
 def measured_along(dimension: str, measured: Sequence[xr.Dataset]) -> xr.Dataset:
     """Measurements one after the other, along ``dimension``."""
-    ends = np.cumsum([one.sizes["state"] for one in measured])
-    parts = [(slice(end - one.sizes["state"], end), one) for end, one in zip(ends, measured, strict=True)]
-    return measured_dataset((dimension,), parts, (int(ends[-1]),))
+    ends = np.cumsum([0, *(one.sizes["state"] for one in measured)]).tolist()
+    parts = [(slice(*place), one) for place, one in zip(pairwise(ends), measured, strict=True)]
+    return measured_dataset((dimension,), parts, (ends[-1],))

@@ -104,17 +104,13 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
     largest = float(max(fields.max(), lattice.max()))
     furthest = float(np.abs(fields - lattice)[..., np.abs(x) <= half].max())
     norm, signed = root_norm(largest), root_norm(furthest, signed=True)
-    for index, field in enumerate([*fields, lattice]):
-        axes = panels[index, 0]
+    for axes, field in zip(panels[:, 0], [*fields, lattice], strict=True):
         image = draw_field(axes, x, z, np.clip(field, 0.0, None), norm=norm, levels=largest * np.array(LEVELS))
-    for index, field in enumerate(fields):
-        axes = panels[index, 1]
+    levels = sorted(sign * level * furthest for sign in (-1.0, 1.0) for level in DIFFERENCE_LEVELS)
+    for axes, off in zip(panels[:-1, 1], fields - lattice, strict=True):
         # white where there is no difference; lines tell the sign without colours, broken where it is negative
-        off = field - lattice
         change = draw_field(axes, x, z, off, norm=signed, cmap=style.SIGNED)
-        levels = [sign * level * furthest for sign in (-1.0, 1.0) for level in DIFFERENCE_LEVELS]
-        lines = sorted(level for level in levels if off.min() < level < off.max())
-        if lines:
+        if lines := [level for level in levels if off.min() < level < off.max()]:
             axes.contour(x, z, off, lines, colors=style.MUTED, linewidths=0.5)
     drawn = [*panels[:, 0], *panels[:-1, 1]]
     titles(drawn, [*names, "harmonic lattice", *(f"{name}, minus ({last})" for name in names)])

@@ -30,7 +30,7 @@ from granular_response.store.result import added_forces_dataset, certificates_da
 from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response_paper.datasets import labelled, stress_components
 from granular_response_paper.groups.friction_fields.parameters import Parameters
-from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.slab_response import LoadPath
 from granular_response_paper.tasks import computed
 
@@ -98,28 +98,18 @@ class Loaded:
 def load(scene: Scene, force: float, profile_force: float | None) -> Loaded:
     """Settle a slab and load it, by the ``profile_force`` from rest too; raises what the solvers raise."""
     path = LoadPath.of(scene)
-    loaded = path.at(force)
-    profile = None
-    if profile_force is not None:
-        literal = scene
-        if scene.contact.friction > 0.0:
-            literal = literal.updated({"protocol.method": "dynamics"})
-        profile = LoadPath.of(literal, path.rest).at(profile_force)
-    return Loaded(path.rest, loaded, profile, int(path.problem.load_disk[0]))
+    literal = scene.updated({"protocol.method": "dynamics"}) if scene.contact.friction > 0.0 else scene
+    profile = None if profile_force is None else LoadPath.of(literal, path.rest).at(profile_force)
+    return Loaded(path.rest, path.at(force), profile, int(path.problem.load_disk[0]))
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``forces``, ``stress`` and ``profiles``."""
     base, force, of_profiles = parameters.base, parameters.force, parameters.profiles
-    tasks = {
-        mu: partial(
-            load,
-            base.updated({"contact.friction": mu, "wall.friction": mu}),
-            force,
-            of_profiles.force if mu in of_profiles.frictions else None,
-        )
-        for mu in parameters.frictions
-    }
+    tasks = {}
+    for mu in parameters.frictions:
+        scene = base.updated({"contact.friction": mu, "wall.friction": mu})
+        tasks[mu] = partial(load, scene, force, of_profiles.force if mu in of_profiles.frictions else None)
     results = computed(tasks, "frictions")
 
     packing = base.packing.build()
@@ -154,27 +144,20 @@ def harmonic_lattice(
     first, second = pairs[:, 0], pairs[:, 1]
     branch = position[first] - position[second]
     half = 0.5 * float(packing.lattice_constant or 2.0)
-    tolerance = 1e-6
-    touching = (
-        np.flatnonzero(position[:, 1] < half + tolerance),
-        np.flatnonzero(position[:, 0] < half + tolerance),
-        np.flatnonzero(position[:, 0] > packing.width - half - tolerance),
-    )
-    wall_disk = np.concatenate(touching)
-    wall = np.repeat([FLOOR, LEFT_WALL, RIGHT_WALL], [len(disks) for disks in touching])
+    (x, z), within = position.T, half + 1e-6
+    which, wall_disk = np.nonzero([z < within, x < within, x > packing.width - within])
+    wall = np.array([FLOOR, LEFT_WALL, RIGHT_WALL])[which]
     normal = branch / np.linalg.norm(branch, axis=1, keepdims=True)
 
-    def compression(disks: NDArray, other: NDArray | None, direction: FloatArray) -> sp.csr_array:
-        """Maps displacements [x | z] to the changes of the distances along ``direction``."""
-        row = np.arange(len(disks))
-        entries = [(disks, direction)] if other is None else [(disks, direction), (other, -direction)]
-        rows = np.concatenate([row for _ in entries for _ in range(2)])
-        columns = np.concatenate([d + axis * n for d, _ in entries for axis in range(2)])
-        values = np.concatenate([v[:, axis] for _, v in entries for axis in range(2)])
-        return sp.csr_array((values, (rows, columns)), shape=(len(disks), 2 * n))
+    def compression(*ends: tuple[NDArray, FloatArray]) -> sp.csr_array:
+        """Maps displacements [x | z] to the changes of distances, given disks and directions at the ends of these."""
+        count = len(ends[0][0])
+        parts = [(np.arange(count), disks + axis * n, along[:, axis]) for disks, along in ends for axis in range(2)]
+        rows, columns, values = map(np.concatenate, zip(*parts, strict=True))
+        return sp.csr_array((values, (rows, columns)), shape=(count, 2 * n))
 
-    bonds = compression(first, second, normal)
-    holds = compression(wall_disk, None, WALL_NORMAL[wall])
+    bonds = compression((first, normal), (second, -normal))
+    holds = compression((wall_disk, WALL_NORMAL[wall]))
     stiffness = normal_stiffness * (bonds.T @ bonds) + wall_stiffness * (holds.T @ holds)
     external = np.zeros(2 * n)
     external[n + loaded_disk] = -1.0
@@ -191,20 +174,18 @@ def harmonic_lattice(
 def axis_measures(rest: State, loaded: State, loaded_disk: int) -> tuple[float, float]:
     """``axis_angle`` (degrees) and ``axis_share`` of the vertical below the load (claim S1).
 
-    Taken over the oblique contacts within ``ON_AXIS`` of it, from the third row gap below the load down. The
-    NaN where there are none. The
-    forces of a vertical chain point along it: an angle near zero. Without friction they keep the 30 degrees
-    of the lattice. The share is that of the vertical force between two rows, averaged over the row gaps.
+    Taken over the oblique contacts within ``ON_AXIS`` of it, from the third row gap below the load down; NaN where
+    there are none. The forces of a vertical chain point along it: an angle near zero. Without friction they keep the
+    30 degrees of the lattice. The share is that of the vertical force between two rows, averaged over the row gaps.
     """
     force = np.abs(pair_force_difference(rest, loaded))
     offset = contact_centre(rest) - rest.position[loaded_disk]
     row = -offset[:, 1] / (2.0 * ROW_SPACING)
-    gaps = np.arange(2.5, row.max(), 1.0)
     magnitude = np.linalg.norm(force, axis=1)
     angle = np.degrees(np.arctan2(force[:, 0], force[:, 1]))
     total = weighted = 0.0
     shares = []
-    for gap in gaps:
+    for gap in np.arange(2.5, row.max(), 1.0):
         here = np.abs(row - gap) < 0.25
         axis = here & (np.abs(offset[:, 0]) <= ON_AXIS)
         total += magnitude[axis].sum()
@@ -221,17 +202,14 @@ def _stress_dataset(
     packing, force = base.packing.build(), parameters.force
     w, spacing = parameters.stress_width, parameters.stress_spacing
     middle = packing.position[disk]
-    half = min(parameters.stress_half_width, 0.5 * packing.width)
-    steps = int(half / spacing)
+    steps = int(min(parameters.stress_half_width, 0.5 * packing.width) / spacing)
     x = spacing * np.arange(-steps, steps + 1)
     z = np.arange(0.0, float(packing.position[:, 1].max()) + 1.0 + 0.5 * spacing, spacing)
     points = coarse.grid_points(x + middle[0], z)
     pairs = list(zip(rest, loaded, strict=True))
     fields = np.stack([coarse.coarse_grained_stress(coarse.load_forces(a, b), points, w) / force for a, b in pairs])
-    wall = base.resolved_wall.normal_stiffness
-    reference = coarse.coarse_grained_stress(
-        harmonic_lattice(packing, disk, base.contact.normal_stiffness, wall), points, w
-    )
+    springs = harmonic_lattice(packing, disk, base.contact.normal_stiffness, base.resolved_wall.normal_stiffness)
+    reference = coarse.coarse_grained_stress(springs, points, w)
     distance = np.linalg.norm(points - middle, axis=-1)
     near, far = distance <= NEAR, distance > NEAR
     antisymmetric, pressure = coarse.antisymmetric_part(fields), coarse.pressure(fields)
@@ -251,35 +229,33 @@ def _stress_dataset(
         for (a, b), of_fields in zip(pairs, measured, strict=True)
     ]
     of = "of the added forces per applied force, in 1/mean radius, compression positive"
-    return (
-        table(scalars, "friction")
-        .assign(stress_components(("friction", "z", "x"), fields, of))
-        .assign(
-            stress_zz_lattice=variable(("z", "x"), elastic, f"stress component zz of the harmonic lattice {of}"),
-            stress_width=variable((), w, f"width w of the coarse-graining Gaussian {RADII}"),
-            force=variable((), force, f"applied force {WEIGHTS}"),
-            load_height=variable((), middle[1], f"height of the loaded disk before gravity {RADII}"),
-        )
-        .assign_coords(axes(x=(x, f"distance from the loaded disk {RADII}"), z=(z, f"height above the floor {RADII}")))
+    further = variables(
+        stress_zz_lattice=("z x", elastic, f"stress component zz of the harmonic lattice {of}"),
+        stress_width=("", w, f"width w of the coarse-graining Gaussian {RADII}"),
+        force=("", force, f"applied force {WEIGHTS}"),
+        load_height=("", middle[1], f"height of the loaded disk before gravity {RADII}"),
     )
+    places = axes(x=(x, f"distance from the loaded disk {RADII}"), z=(z, f"height above the floor {RADII}"))
+    stress = stress_components(("friction", "z", "x"), fields, of)
+    return table(scalars, "friction").assign(stress | further).assign_coords(places)
 
 
 def _profiles_dataset(packing: Packing, results: Sequence[Loaded], rows: Sequence[float], force: float) -> xr.Dataset:
-    found, states = {}, []
-    for k, one in enumerate(results):
-        assert one.profile is not None
-        states.append(one.profile)
-        # dynamics may have listed candidates anew on the way
-        rest, loaded = common_candidates([one.rest, one.profile], packing.radius)
-        for r, row in enumerate(rows):
-            found[k, r] = Profile.of(*force_profile(rest, loaded, one.loaded_disk, row_depth(float(row))))
     depth = [row_depth(float(row)) for row in rows]
+    found, states = {}, [one.profile for one in results if one.profile is not None]
+    for k, (one, state) in enumerate(zip(results, states, strict=True)):
+        # dynamics may have listed candidates anew on the way
+        rest, loaded = common_candidates([one.rest, state], packing.radius)
+        for r, below in enumerate(depth):
+            found[k, r] = Profile.of(*force_profile(rest, loaded, one.loaded_disk, below))
     return (
         table(found, "friction", "row")
         .assign(force=variable((), force, f"applied force {WEIGHTS}"))
         .assign_coords(
-            axes(row=(np.array(rows, dtype=float), "rows below the loaded disk"))
-            | {"depth": variable("row", depth, f"depth below the loaded disk {RADII}")}
+            variables(
+                row=("row", np.array(rows, dtype=float), "rows below the loaded disk"),
+                depth=("row", depth, f"depth below the loaded disk {RADII}"),
+            )
         )
         .merge(certificates_dataset(states, "friction"))
     )

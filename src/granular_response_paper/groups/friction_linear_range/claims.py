@@ -40,8 +40,7 @@ def at_force(
         found = _events(data, event, friction)
         readings = preparations.readings(data, event, found, wanted, own)
         if event == "crossover":
-            visible = asked.dips_from(_curve(data, friction, "central_dip"), "force", words)
-            readings.insert(1, Reading(asked.VISIBLE, *wanted(visible)))
+            readings.insert(1, Reading(asked.VISIBLE, *wanted(_visible_from(data, friction, words))))
         return Finding(f"{text} {found[friction].text('mg')}", readings)
 
     return measure
@@ -51,6 +50,10 @@ for _id, _friction, _force in (("F1", 0.0, 0.75), ("F2", 0.2, 4.0), ("F3", 1.0, 
     CLAIMS.measures(_id)(
         at_force("first_opening", _friction, _force, what="first opening", text="opens at", first_sampled=True)
     )
+
+
+def _visible_from(data: Data, friction: float, words: Bounds) -> Quantity:
+    return asked.dips_from(_curve(data, friction, "central_dip"), "force", words)
 
 
 #: Ends of the linear range that other preparations have too, by event.
@@ -116,18 +119,14 @@ def _up_to_50(data: Data, name: str) -> xr.Dataset:
 @CLAIMS.measures("R2a")
 def single_peak(data: Data, words: Bounds) -> Finding:
     curves = {OWN: _up_to_50(data, "double_peaked"), **preparations.responses(data, 1.0)}
-    what = "forces up to 50 mg with two peaks"
-    double = {
-        way: int(np.count_nonzero(curve["double_peaked"].values[curve["force"].values <= 50.0] > 0.0))
-        for way, curve in curves.items()
-    }
-    size = curves[OWN].sizes["force"]
-    readings = [
-        Reading(way, asked.none_of(what, number), change="" if way == OWN else preparations.CHANGE)
-        for way, number in double.items()
-    ]
+    readings = []
+    for way, curve in curves.items():
+        double = curve["double_peaked"].values[curve["force"].values <= 50.0] > 0.0
+        none = asked.none_of("forces up to 50 mg with two peaks", int(double.sum()))
+        readings.append(Reading(way, none, change="" if way == OWN else preparations.CHANGE))
+    size, two = curves[OWN].sizes["force"], readings[0].conditions[0].found.value
     return Finding(
-        f"one peak at {size - double[OWN]} of {size} forces up to 50 mg",
+        f"one peak at {size - two:.0f} of {size} forces up to 50 mg",
         [*readings, *preparations.one_peak_at_15(data, 1.0, words)],
     )
 
@@ -195,20 +194,13 @@ def sharp(data: Data, words: Bounds) -> Finding:
 def sliding_drops(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     sliding, margins = runs["mobilised_contacts"].transpose("force", "margin").values, runs["margin"].values
-    cases = list(zip(margins.tolist(), sliding[first - 1], sliding[first], strict=True))
-    readings = [
-        Reading(
-            f"within {margin:.0%} of the Coulomb limit",
-            asked.lower("sliding contacts after per before", after / before, words, "marked"),
-        )
-        for margin, before, after in cases
-        if before > 0
-    ]
-    return Finding(
-        "contacts near the Coulomb limit before and after: "
-        + ", ".join(f"{before:.0f} and {after:.0f} (within {margin:.0%})" for margin, before, after in cases),
-        readings,
-    )
+    readings, texts = [], []
+    for margin, before, after in zip(margins.tolist(), sliding[first - 1], sliding[first], strict=True):
+        texts.append(f"{before:.0f} and {after:.0f} (within {margin:.0%})")
+        if before > 0:
+            fewer = asked.lower("sliding contacts after per before", after / before, words, "marked")
+            readings.append(Reading(f"within {margin:.0%} of the Coulomb limit", fewer))
+    return Finding("contacts near the Coulomb limit before and after: " + ", ".join(texts), readings)
 
 
 @CLAIMS.measures("R6b")
@@ -252,14 +244,13 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
 
 @CLAIMS.measures("R8a")
 def floor_earlier(data: Data, words: Bounds) -> Finding:
-    found = _events(data, "reaches_floor", 1.0, 0.2)
-
-    def smaller(one: Quantity, other: Quantity) -> list[Condition]:
-        return [Condition("force at friction 1 per that at 0.2", one.per(other), most=1.0, strict=True)]
-
+    event, what = "reaches_floor", "force at friction 1 per that at 0.2"
+    found = _events(data, event, 1.0, 0.2)
     return Finding(
         f"at the floor from {found[1.0].text('mg')} (friction 1) and {found[0.2].text('mg')} (friction 0.2)",
-        preparations.readings(data, "reaches_floor", found, smaller),
+        preparations.readings(
+            data, event, found, lambda one, other: [Condition(what, one.per(other), most=1.0, strict=True)]
+        ),
     )
 
 
@@ -283,13 +274,10 @@ def crossover_rises(data: Data, words: Bounds) -> Finding:
     for mu in np.sort(data.get(GROUP, "response")["friction"].values).tolist():
         curve = _curve(data, mu, "double_peaked")
         found[mu] = asked.first(curve, "force", curve["double_peaked"].values > 0.0)
-        visible.append(asked.dips_from(_curve(data, mu, "central_dip"), "force", words))
-
-    def rise(*ends: Quantity) -> list[Condition]:
-        return [asked.rises("crossover force", ends)]
-
-    readings = preparations.readings(data, "crossover", found, rise)
-    readings.insert(1, Reading(asked.VISIBLE, *rise(*visible)))
+        visible.append(_visible_from(data, mu, words))
+    what = "crossover force"
+    readings = preparations.readings(data, "crossover", found, lambda *ends: [asked.rises(what, ends)])
+    readings.insert(1, Reading(asked.VISIBLE, asked.rises(what, visible)))
     texts = asked.listed({f"{mu:g}": end for mu, end in found.items()}, unit="mg")
     return Finding("two peaks from, by friction: " + texts, readings)
 
@@ -312,14 +300,13 @@ def smaller_region(data: Data, words: Bounds) -> Finding:
 
 @CLAIMS.measures("R11")
 def floor_later(data: Data, words: Bounds) -> Finding:
-    found = _events(data, "reaches_floor", 0.0, 0.2)
-
-    def later(early: Quantity, late: Quantity) -> list[Condition]:
-        return [asked.higher("force with friction per without", late.per(early), words, "marked")]
-
+    event, what = "reaches_floor", "force with friction per without"
+    found = _events(data, event, 0.0, 0.2)
     return Finding(
         f"at the floor from {found[0.2].text('mg')} (friction 0.2) and {found[0.0].text('mg')} (without)",
-        preparations.readings(data, "reaches_floor", found, later),
+        preparations.readings(
+            data, event, found, lambda early, late: [asked.higher(what, late.per(early), words, "marked")]
+        ),
     )
 
 

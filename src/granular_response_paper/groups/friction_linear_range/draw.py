@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
-from granular_response_paper.captions import WEIGHT, Caption, of_group, of_scene, panels
+from granular_response_paper.captions import WEIGHT, Caption, Value, of_group, of_scene, panels
 from granular_response_paper.panels import among, family, grey_limit, label_ends, titles, zero
 
 from .parameters import Parameters
@@ -62,58 +62,58 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    response, scene = datasets["response"], parameters.scene
+    response = datasets["response"]
     frictions = response["friction"].values.tolist()
+
+    def said(force: Value, friction: Value) -> dict[str, Value]:
+        return of_scene(parameters.scene, force=force, friction=friction)
+
+    def drawn(curves: xr.Dataset, wanted: Sequence[float]) -> list[float]:
+        return at_forces(curves, wanted)["force"].values.tolist()
+
     axis = among(datasets["friction_axis"]["friction"], AXIS_FRICTIONS)
     given = {
-        "fig06_linear_range": of_scene(scene, force=response["force"].values.tolist(), friction=frictions),
-        "fig12_friction_crossover": of_scene(scene, force=parameters.friction_axis.force, friction=axis),
+        "fig06_linear_range": said(response["force"].values.tolist(), frictions),
+        "fig12_friction_crossover": said(parameters.friction_axis.force, axis),
     }
     fields: dict[str, Any] = {"crossover": PAPER_CROSSOVER, "third": PAPER_THIRD_PEAK, "symmetric": PAPER_SYMMETRIC}
     fields["stops"] = "".join(
         f" µ = {end.friction:g} is computed up to {end.force:g} {WEIGHT} only." for end in parameters.ends
     )
     if np.isin(PROFILE_FRICTIONS, frictions).all():
-        force = at_forces(response.sel(friction=0.2), PROFILE_FORCES)["force"].values.tolist()
-        given["fig07_friction_response"] = of_scene(scene, force=force, friction=list(PROFILE_FRICTIONS))
+        given["fig07_friction_response"] = said(drawn(response.sel(friction=0.2), PROFILE_FORCES), PROFILE_FRICTIONS)
     if "large_forces" in datasets and LARGE_FRICTION in frictions:
         dynamic = datasets["large_forces"]
-        beyond = at_forces(dynamic, DYNAMIC_FORCES)["force"].values.tolist()
-        left = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)["force"].values.tolist()
-        given["fig16_large_forces"] = of_scene(
-            scene, force=sorted({*left, *beyond}), friction=[0.2, float(dynamic["friction"])]
-        )
+        beyond, left = drawn(dynamic, DYNAMIC_FORCES), drawn(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
+        given["fig16_large_forces"] = said(sorted({*left, *beyond}), [0.2, float(dynamic["friction"])])
         fields |= {"left": left, "beyond": beyond}
     found = of_group("friction_linear_range", given, **fields)
     for friction, stem in CONTACTS:
         if f"states_mu_{friction:g}" in datasets:
             shown = contact_forces(datasets[f"states_mu_{friction:g}"])
-            said = {stem: of_scene(scene, force=shown, friction=friction)}
-            found |= of_group("friction_linear_range", said, friction=friction, panels=panels(shown))
+            of_contacts = {"friction": friction, "panels": panels(shown)}
+            found |= of_group("friction_linear_range", {stem: said(shown, friction)}, **of_contacts)
     return found
 
 
 def _linear_range(response: xr.Dataset) -> Figure:
     """Fig. 6."""
-    figure, axes = style.figure(width="double", height=3.2)
-    panel = axes[0, 0]
-    frictions = response["friction"].values
+    figure, ((panel,),) = style.figure(width="double", height=3.2)
     ends = []
-    for friction, look in family(frictions, of="friction"):
+    for friction, look in family(response["friction"].values, of="friction"):
         curve = response["response_at_centre"].sel(friction=friction).dropna("force")
         panel.plot(curve["force"], curve, **look | {"markersize": 3.0})
-        ends.append(
-            (style.equals(style.FRICTION, friction), float(curve["force"][-1]), float(curve[-1]), look["color"])
-        )
+        end = float(curve["force"][-1]), float(curve[-1])
+        ends.append((style.equals(style.FRICTION, friction), *end, look["color"]))
     panel.set_xscale("log")
     panel.xaxis.set_major_formatter("{x:g}")
     panel.set(xlabel=style.FORCE, ylabel=style.RESPONSE_AT_CENTRE, ylim=(0.0, None))
     panel.set_xlim(right=2.0 * max(x for _, x, *_ in ends))
     label_ends(panel, ends)
     for friction, force in PAPER_OPENINGS.items():
-        name = f"paper, $\\mu = {friction:g}$: {force:g}"
         last = force == max(PAPER_OPENINGS.values())
-        style.paper_value(panel, force, name, side="behind" if last else "before", at=0.6 if last else 0.36)
+        text = f"paper, $\\mu = {friction:g}$: {force:g}"
+        style.paper_value(panel, force, text, side="behind" if last else "before", at=0.6 if last else 0.36)
     return figure
 
 
@@ -133,11 +133,11 @@ def _profiles(response: xr.Dataset) -> Figure:
 
 def _friction_axis(axis: xr.Dataset, response: xr.Dataset) -> Figure:
     """Fig. 12."""
-    figure, axes = style.figure(height=2.6)
+    figure, ((panel,),) = style.figure(height=2.6)
     curves = axis.sel(friction=among(axis["friction"], AXIS_FRICTIONS))
-    _plot_profiles(axes[0, 0], curves, "friction", response.isel(friction=-1, force=0))
-    axes[0, 0].set(ylabel=style.RESPONSE, ylim=(0.0, None))
-    axes[0, 0].legend(title=f"${style.FRICTION}$", loc="upper right", handlelength=2.8)
+    _plot_profiles(panel, curves, "friction", response.isel(friction=-1, force=0))
+    panel.set(ylabel=style.RESPONSE, ylim=(0.0, None))
+    panel.legend(title=f"${style.FRICTION}$", loc="upper right", handlelength=2.8)
     return figure
 
 
@@ -148,12 +148,9 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     one = response.sel(friction=LARGE_FRICTION)
     _plot_profiles(left, at_forces(one, LARGE_FORCES), "force", one.isel(force=0))
     _plot_profiles(right, at_forces(dynamic, DYNAMIC_FORCES), "force", response.isel(friction=-1, force=0))
-    paper = (
-        f"paper: two peaks from {PAPER_CROSSOVER:g}, third from {PAPER_THIRD_PEAK:g}",
-        f"paper: symmetric at {PAPER_SYMMETRIC:g}",
-    )
-    frictions = (LARGE_FRICTION, float(dynamic["friction"]))
-    titles(axes[0], [f"{style.equals(style.FRICTION, mu)}; {note}" for mu, note in zip(frictions, paper, strict=True)])
+    mu, other = (style.equals(style.FRICTION, friction) for friction in (LARGE_FRICTION, float(dynamic["friction"])))
+    peaks = f"{mu}; paper: two peaks from {PAPER_CROSSOVER:g}, third from {PAPER_THIRD_PEAK:g}"
+    titles(axes[0], (peaks, f"{other}; paper: symmetric at {PAPER_SYMMETRIC:g}"))
     zero(right)
     left.set_ylim(bottom=0.0)
     for panel in (left, right):
@@ -188,12 +185,10 @@ def _contacts(states: xr.Dataset, friction: float) -> Figure:
     """Figs. 8 and 9: the central third, one panel for each force."""
     stored, shown = states["force"].values, contact_forces(states)
     figure, axes = style.figure(1, len(shown), width="double", height=2.1)
-    rest = states.isel(state=0)
     handles: dict[str, Any] = {}
     for panel, force in zip(axes[0], shown, strict=True):
         loaded = states.isel(state=int(np.flatnonzero(stored == force)[0]))
-        drawn = draw_state_changes(panel, rest, loaded, loaded["contact_status"].values == SLIDING)
-        handles.update({name: line for name, line in drawn.items() if name not in handles})
+        handles |= draw_state_changes(panel, states.isel(state=0), loaded, loaded["contact_status"].values == SLIDING)
     mu = style.equals(style.FRICTION, friction)
     titles(axes[0], [f"{mu}, {style.equals(style.F_EXT, force, style.WEIGHT)}" for force in shown])
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), columnspacing=1.2)

@@ -25,7 +25,7 @@ from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.friction_linear_range.parameters import Parameters
-from granular_response_paper.records import axes, table
+from granular_response_paper.records import axes, table, variables
 from granular_response_paper.slab_response import LoadPath, Measures
 from granular_response_paper.tasks import computed
 
@@ -51,8 +51,7 @@ def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = No
     states kept, where ``keep`` asks for it.
     """
     path = LoadPath.of(scene)
-    states = path.through(forces)
-    measures = Measures(path)
+    states, measures = path.through(forces), Measures(path)
     asked = slab.happenings(measures, states[0], asymmetry) if asymmetry else {}
     if not keep:
         asked = {name: what for name, what in asked.items() if name in ("first_opening", "linear_range")}
@@ -85,11 +84,7 @@ def narrow(scene: Scene, force: float, low: float, high: float, tolerance: float
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets of Figs. 6 to 9, 12 and 16.
-
-    Returns
-    -------
-    ``response`` (friction, force), ``states_mu_<friction>`` (at rest first), ``friction_axis`` (friction),
+    """Datasets ``response`` (friction, force), ``states_mu_<friction>`` (at rest first), ``friction_axis`` (friction),
     ``large_forces`` (force) with ``large_force_states``, ``events`` and ``lost``.
     """
     base, axis, given = parameters.base, parameters.friction_axis, parameters.dynamics
@@ -97,21 +92,15 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
     axis_frictions = sorted(axis.frictions)
     on_axis = [paths[mu].measured.isel(state=[paths[mu].forces.index(axis.force)]) for mu in axis_frictions]
-    double = [bool(measured["double_peaked"][0]) for measured in on_axis]
-    low, high = slab.first_change(axis_frictions, [not two for two in double])
+    one_peak = [not measured["double_peaked"][0] for measured in on_axis]
+    low, high = slab.first_change(axis_frictions, one_peak)
     further: dict[float | str, Callable[[], Any]] = {}
-    if double[0] and np.isfinite(high):
+    if np.isfinite(high) and not one_peak[0]:
         further["crossover"] = partial(narrow, base, axis.force, low, high, axis.tolerance)
-    shaken_scene = base.updated(
-        {
-            "contact.friction": given.friction,
-            "protocol.method": "dynamics",
-            "protocol.ramp_time": given.ramp_time,
-            "protocol.time_step": given.time_step,
-        }
-    )
+    ramp = {f"protocol.{name}": getattr(given, name) for name in ("ramp_time", "time_step")}
+    shaken = base.updated({"contact.friction": given.friction, "protocol.method": "dynamics", **ramp})
     for force in sorted(given.forces):
-        further[force] = partial(shake, shaken_scene, paths[given.friction].states[0], force)
+        further[force] = partial(shake, shaken, paths[given.friction].states[0], force)
     done = computed(further, "large forces")
     low, high = done.pop("crossover", (low, high))
 
@@ -121,26 +110,26 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     found.append(slab.Event("friction_crossover", float("nan"), low, high, text))
     datasets = {
         "response": _response_dataset(main),
-        "friction_axis": slab.measured_along("friction", on_axis).assign_coords(
-            axes(friction=(axis_frictions, FRICTION))
-        ),
+        "friction_axis": slab.measured_along("friction", on_axis)
+        .assign_coords(axes(friction=(axis_frictions, FRICTION)))
+        .assign(force=variable((), axis.force, APPLIED)),
         "lost": table([one for result in main.values() for one in result.lost], "lost", kind=slab.Lost),
     }
-    datasets["friction_axis"]["force"] = variable((), axis.force, APPLIED)
     for mu, result in main.items():
         if result.states[1:]:
             datasets[f"states_mu_{mu:g}"] = _picture(base, result.states)
     if done:
-        large = slab.measured_along("force", [measured for _, measured in done.values()])
-        large = large.assign_coords(axes(force=(done, APPLIED)))
-        large["friction"] = variable((), given.friction, FRICTION)
-        large["ramp_time"] = variable((), given.ramp_time, "duration of the load ramp in sqrt(radius/g)")
-        large["time_step"] = variable((), given.time_step, "time step in sqrt(radius/g)")
-        datasets["large_forces"] = large
-        rest = paths[given.friction].states[0]
-        datasets["large_force_states"] = _picture(base, [rest, *(state for state, _ in done.values())])
-        asymmetric = (large["asymmetry"].values > parameters.asymmetry).tolist()
-        ends = slab.first_change(large["force"].values, asymmetric)
+        states, measured = zip(*done.values(), strict=True)
+        large = slab.measured_along("force", measured).assign_coords(axes(force=(done, APPLIED)))
+        datasets["large_forces"] = large.assign(
+            variables(
+                friction=("", given.friction, FRICTION),
+                ramp_time=("", given.ramp_time, "duration of the load ramp in sqrt(radius/g)"),
+                time_step=("", given.time_step, "time step in sqrt(radius/g)"),
+            )
+        )
+        datasets["large_force_states"] = _picture(base, [paths[given.friction].states[0], *states])
+        ends = slab.first_change(large["force"].values, large["asymmetry"].values > parameters.asymmetry)
         text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {parameters.asymmetry:g}"
         found.append(slab.Event("loss_of_symmetry", given.friction, *ends, text))
     datasets["events"] = slab.events_dataset(found)
@@ -149,18 +138,18 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
 def _paths(parameters: Parameters) -> dict[float, partial[PathResult]]:
     """By friction: through all forces, and through that of the axis of friction alone for those of the axis alone."""
-    frictions, axis = parameters.frictions, parameters.friction_axis
+    axis = parameters.friction_axis
     further = {extra.friction: extra.forces for extra in parameters.extra_forces}
     largest = {end.friction: end.force for end in parameters.ends}
-    paths = {}
-    for mu in [*frictions, *(mu for mu in sorted(axis.frictions) if mu not in frictions)]:
-        scene = parameters.base.updated({"contact.friction": mu})
-        if mu not in frictions:
-            paths[mu] = partial(follow, scene, (axis.force,))
-            continue
+    scenes = {
+        mu: parameters.base.updated({"contact.friction": mu})
+        for mu in dict.fromkeys([*parameters.frictions, *sorted(axis.frictions)])
+    }
+    paths = {mu: partial(follow, scene, (axis.force,)) for mu, scene in scenes.items()}
+    for mu in parameters.frictions:
         forces = {axis.force, *parameters.forces, *further.get(mu, ())}
         reached = tuple(sorted(force for force in forces if force <= largest.get(mu, np.inf)))
-        paths[mu] = partial(follow, scene, reached, parameters.asymmetry, mu in parameters.states_of)
+        paths[mu] = partial(follow, scenes[mu], reached, parameters.asymmetry, mu in parameters.states_of)
     return paths
 
 

@@ -138,26 +138,22 @@ def _change(stiffness: float) -> str:
     return "" if np.isclose(stiffness, STIFFNESS) else "stiffness"
 
 
-def _deep_and_shallow(slabs: xr.Dataset, alike: str) -> list[tuple[int, int]]:
-    """Pairs of the thinnest slab and each deeper one, by their place; of the same width, as many disks in a row."""
+def _deep_and_shallow(slabs: xr.Dataset, same_width: bool) -> list[tuple[int, int]]:
+    """Pairs of the thinnest slab and each deeper one, by their place; of the same width with as many disks in a row."""
     layers, row = slabs["layers"].values, slabs["disks_per_row"].values
-    if alike == "width grows with depth":
-        return [(0, deep) for deep in np.flatnonzero(layers > layers[0]).tolist()]
+    deeper, thinnest = (np.flatnonzero(one).tolist() for one in (layers > layers[0], layers == layers[0]))
+    if not same_width:
+        return [(0, deep) for deep in deeper]
     # rows of one disk more or less: the lattice needs both numbers odd or both even
-    return [
-        (thin, deep)
-        for deep in np.flatnonzero(layers > layers[0]).tolist()
-        for thin in np.flatnonzero(layers == layers[0]).tolist()
-        if abs(row[deep] - row[thin]) <= 1
-    ]
+    return [(thin, deep) for deep in deeper for thin in thinnest if abs(row[deep] - row[thin]) <= 1]
 
 
 @CLAIMS.measures("F7")
 def deep_and_shallow(data: Data, words: Bounds) -> Finding:
     rows = []
-    for name, alike in (("sizes", "width grows with depth"), ("widths", "same width")):
+    for name in ("sizes", "widths"):  # of the first, the width grows with the depth
         for stiffness, slabs in _by_stiffness(data, name):
-            for pair in _deep_and_shallow(slabs, alike):
+            for pair in _deep_and_shallow(slabs, name == "widths"):
                 thin, deep = (Quantity.bracket(*slabs["crossover_bracket"].values[k]) for k in pair)
                 shapes = [f"{slabs['layers'].values[k]} x {slabs['disks_per_row'].values[k]}" for k in pair]
                 reading = Reading(

@@ -8,6 +8,7 @@ region of opened contacts reaches the floor (open marker). The band of ``fig05b_
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -64,14 +65,14 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     depths, stiffnesses = [n for n, _ in parameters.sizes], parameters.size_stiffnesses
     slab, shown = of_scene(parameters.scene), drawn(NETWORK_FORCES, "states")
     deep = {**slab, "normal_stiffness": stiffnesses, "packing": f"slabs of {values(depths)} layers"}
-    stiff = {**slab, "force": drawn(STIFFNESS_FORCES, "stiffness"), "normal_stiffness": parameters.stiffnesses}
+    of_stiffness = {"force": drawn(STIFFNESS_FORCES, "stiffness"), "normal_stiffness": parameters.stiffnesses}
     return of_group(
         "frictionless_crossover",
         {
             "fig03_frictionless_response": {**slab, "force": drawn(PROFILE_FORCES, "response")},
             "fig04_frictionless_contacts": {**slab, "force": shown},
             "fig05_teardrop": deep,
-            "fig05b_stiffness": stiff,
+            "fig05b_stiffness": slab | of_stiffness,
             "fig05c_depth_and_width": {**deep, "force": parameters.size_forces},
         },
         panels=panels(shown),
@@ -85,10 +86,18 @@ def nearest(stored: np.ndarray, wanted: Sequence[float]) -> list[int]:
     return sorted({int(np.argmin(np.abs(stored - value))) for value in wanted})
 
 
+def _by_stiffness(slabs: xr.Dataset) -> dict[float, xr.Dataset]:
+    """The slabs of each stiffness, the softest first."""
+    stiffness = slabs["normal_stiffness"].values
+    return {k: slabs.isel(slab=np.flatnonzero(stiffness == k)) for k in np.unique(stiffness).tolist()}
+
+
+def _stiffness_is(value: float) -> str:
+    return style.equals("k_N", value, style.STIFFNESS_UNIT)
+
+
 def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
-    figure, ((profiles, centre),) = style.figure(
-        1, 2, width="double", height=2.7, gridspec_kw={"width_ratios": [1.45, 1.0]}
-    )
+    figure, ((profiles, centre),) = style.figure(1, 2, width="double", height=2.7, width_ratios=[1.45, 1.0])
     data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
     x = data["x"].values
     chosen = nearest(data["force"].values, PROFILE_FORCES)
@@ -108,19 +117,13 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
         if np.isfinite(high):
             middle = float(0.5 * (low + high))
             centre.axvline(middle, color=style.MUTED, linewidth=0.6, linestyle=(0, (4, 2)), zorder=0)
-            last = at == events.sizes["event"] - 1  # close to the one before, so its name goes to the other side
+            # the last one is close to the one before, so its name goes to the other side
+            side, shift = ("left", 2.0) if at == events.sizes["event"] - 1 else ("right", -1.5)
             centre.annotate(
-                f"{EVENTS[str(name)]}, {middle:.2f}",
-                (middle, 1.0),
-                (2.0 if last else -1.5, -4.0),
-                xycoords=("data", "axes fraction"),
-                textcoords="offset points",
-                rotation=90,
-                ha="left" if last else "right",
-                va="top",
-                fontsize=7,
-                color=style.MUTED,
-            )
+                f"{EVENTS[str(name)]}, {middle:.2f}", (middle, 1.0), (shift, -4.0),
+                xycoords=("data", "axes fraction"), textcoords="offset points",
+                rotation=90, ha=side, va="top", fontsize=7, color=style.MUTED,
+            )  # fmt: skip
     style.paper_value(centre, PAPER_OPENING, f"paper: {PAPER_OPENING:g}", side="behind")
     centre.set_ylim(0.0, 1.65 * highest)
     centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)
@@ -136,11 +139,10 @@ def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
     rows = -(-len(chosen) // columns)
     figure, panels = style.figure(rows, columns, width="double", height=0.2 + 1.85 * rows)
     handles: dict[str, LineCollection] = {}
-    for at, axes in enumerate(panels.ravel()):
-        if at >= len(chosen):
-            axes.set_axis_off()
-            continue
-        one = states.isel(force=chosen[at])
+    for axes in panels.flat[len(chosen) :]:
+        axes.set_axis_off()
+    for axes, k in zip(panels.flat, chosen, strict=False):
+        one = states.isel(force=k)
         handles |= draw_state_changes(axes, rest.isel(state=0), one, one["contact_status"].values == SLIDING)
     forces = states["force"].values[chosen]
     titles(panels.flat, [style.equals(style.F_EXT, force, style.WEIGHT) for force in forces])
@@ -149,21 +151,17 @@ def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
 
 
 def _teardrop(sizes: xr.Dataset) -> Figure:
-    stiffnesses = np.unique(sizes["normal_stiffness"].values)
-    figure, panels = style.figure(len(stiffnesses), 2, width="double", height=0.3 + 2.2 * len(stiffnesses), sharex=True)
-    for row, stiffness in zip(panels, stiffnesses, strict=True):
-        slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
-        for axes, name, label in zip(
-            row, ("teardrop_depth", "teardrop_width"), (style.DEPTH, style.WIDTH), strict=True
-        ):
+    each = _by_stiffness(sizes)
+    figure, panels = style.figure(len(each), 2, width="double", height=0.3 + 2.2 * len(each), sharex=True)
+    for (deep, wide), slabs in zip(panels, each.values(), strict=True):
+        for axes, name, label in ((deep, "teardrop_depth", style.DEPTH), (wide, "teardrop_width", style.WIDTH)):
             _growth(axes, slabs, name, lambda one: f"{int(one['layers'])}")
             axes.set_ylabel(label)
     panels[0, 0].legend(title="layers", loc="upper left")
     for axes in panels[-1]:
         axes.set(xscale="log", xlabel=style.FORCE)
         axes.xaxis.set_major_formatter("{x:g}")
-    texts = [style.equals("k_N", stiffness, style.STIFFNESS_UNIT) for stiffness in stiffnesses for _ in range(2)]
-    titles(panels.flat, texts)
+    titles(panels.flat, [_stiffness_is(k) for k in each for _ in range(2)])
     return figure
 
 
@@ -236,23 +234,16 @@ def _stiffness(data: xr.Dataset) -> Figure:
 
 def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
     figure, ((box, profiles, events),) = style.figure(1, 3, width="double", height=3.2)
-    stiffnesses = np.unique(sizes["normal_stiffness"].values)
-    stiffest = widths.isel(slab=np.flatnonzero(widths["normal_stiffness"].values == stiffnesses[-1]))
-    _growth(box, stiffest, "teardrop_depth", lambda one: f"{int(one['layers'])} $\\times$ {int(one['disks_per_row'])}")
+    each = _by_stiffness(sizes)
+    (softest, slabs), stiffest = next(iter(each.items())), max(each)
+    in_box = _by_stiffness(widths)[stiffest]
+    _growth(box, in_box, "teardrop_depth", lambda one: f"{int(one['layers'])} $\\times$ {int(one['disks_per_row'])}")
     box.set(xlabel=style.FORCE, ylabel=style.DEPTH)
-    handles, names = box.get_legend_handles_labels()
-    figure.legend(
-        handles,
-        names,
-        title="(h) layers $\\times$ disks in a row",
-        loc="outside lower center",
-        ncols=5,
-        handlelength=3.0,
-    )
+    below: dict[str, Any] = {"loc": "outside lower center", "ncols": 5, "handlelength": 3.0}
+    figure.legend(*box.get_legend_handles_labels(), title="(h) layers $\\times$ disks in a row", **below)
 
-    softest = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffnesses[0]))
-    at_force = softest.isel(force=nearest(softest["force"].values, [COMPARED_FORCE])[0])
-    for at, look in family(range(softest.sizes["slab"]), of="length", marked=False, dashed=True):
+    at_force = slabs.isel(force=nearest(slabs["force"].values, [COMPARED_FORCE])[0])
+    for at, look in family(range(slabs.sizes["slab"]), of="length", marked=False, dashed=True):
         one = at_force.isel(slab=at)
         height = 2.0 + np.sqrt(3.0) * (float(one["layers"]) - 1.0)
         seen = np.abs(one["x"].values) <= 1.5 * height
@@ -262,19 +253,17 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
     profiles.set(xlabel=style.SCALED_POSITION, ylabel=label, xlim=(-1.5, 1.5))
     profiles.legend(title="layers", loc="upper right", handlelength=1.6, fontsize=7)
 
-    for stiffness, face in zip(stiffnesses, ("white", None), strict=False):  # colours as in (g)
-        slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
+    hollow = {"markeredgewidth": 0.8, "markerfacecolor": "white"}
+    for (stiffness, slabs), face in zip(each.items(), (hollow, {}), strict=False):  # colours as in (g)
         for at, name in list(enumerate(EVENTS))[1:]:
             bracket = slabs[f"{name}_bracket"].values
             known = np.isfinite(bracket).all(axis=1)
-            look = style.marked_line(at) | ({"markeredgewidth": 0.8, "markerfacecolor": face} if face else {})
-            label = f"{EVENTS[name]}, {style.equals('k_N', stiffness, style.STIFFNESS_UNIT)}"
-            events.plot(slabs["layers"].values[known], bracket[known].mean(axis=1), label=label, **look)
+            label = f"{EVENTS[name]}, {_stiffness_is(stiffness)}"
+            middle = bracket[known].mean(axis=1)
+            events.plot(slabs["layers"].values[known], middle, label=label, **style.marked_line(at) | face)
     events.set(xlabel="layers", ylabel=f"onset force, {style.FORCE}")
     events.set_ylim(0.0, 1.5 * events.get_ylim()[1])
     events.legend(fontsize=7, loc="upper left")
-    force = float(at_force["force"])
-    soft, stiff = (style.equals("k_N", k, style.STIFFNESS_UNIT) for k in (stiffnesses[0], stiffnesses[-1]))
-    load = f"{style.equals(style.F_EXT, force, style.WEIGHT)}, {soft}"
-    titles((box, profiles, events), (stiff, load, ""), stem="fig05c_depth_and_width")
+    load = f"{style.equals(style.F_EXT, float(at_force['force']), style.WEIGHT)}, {_stiffness_is(softest)}"
+    titles((box, profiles, events), (_stiffness_is(stiffest), load, ""), stem="fig05c_depth_and_width")
     return figure

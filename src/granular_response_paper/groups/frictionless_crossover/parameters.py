@@ -13,13 +13,9 @@ from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, o
 
 _FRICTIONLESS = UNIT_LOAD.updated({"contact.friction": 0.0})
 
+_Shape = tuple[Annotated[int, Field(strict=True, ge=2)], Annotated[int, Field(strict=True, ge=7)]]
 Shapes = Annotated[
-    tuple[
-        tuple[Annotated[int, Field(strict=True, ge=2)], Annotated[int, Field(strict=True, ge=7)]],
-        ...,
-    ],
-    Field(min_length=1),
-    allowed("must be a list of [layers, disks_per_row], from 2 and 7 on"),
+    tuple[_Shape, ...], Field(min_length=1), allowed("must be a list of [layers, disks_per_row], from 2 and 7 on")
 ]
 
 
@@ -45,8 +41,8 @@ class Parameters(SceneGroup):
     @model_validator(mode="after")
     def _check(self) -> Parameters:
         if len(self.compared_stiffnesses) != 2 or not set(self.compared_stiffnesses) <= set(self.stiffnesses):
-            key = ("compared_stiffnesses",)
-            raise Problem("must be two of stiffnesses", key=key, value=list(self.compared_stiffnesses))
+            given = list(self.compared_stiffnesses)
+            raise Problem("must be two of stiffnesses", key=("compared_stiffnesses",), value=given)
         if self.region_layers < min(layers for layers, _ in self.sizes):
             raise Problem("must be layers of one of sizes", key=("region_layers",), value=self.region_layers)
         return self

@@ -14,13 +14,12 @@ their rows (``new_neighbours``); the rest state then depends on the fall and is 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.observe import network
 from granular_response.scene import Scene
@@ -32,8 +31,8 @@ from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper import slab_response
 from granular_response_paper.groups.frictionless_crossover.parameters import Parameters
-from granular_response_paper.records import axes, column, record, stacked, table
-from granular_response_paper.slab_response import TWO_PEAKS, Event, Happening
+from granular_response_paper.records import axes, column, record, stacked, table, variables
+from granular_response_paper.slab_response import TWO_PEAKS, Event, Happening, LoadPath, Measures
 from granular_response_paper.tasks import computed
 
 #: What is not kept of the measurements: it is about friction.
@@ -60,11 +59,6 @@ class Slab:
     disks_per_row: int = column("disks in the bottom row")
     normal_stiffness: float = column("normal stiffness of contacts of disks in mean weights per mean radius")
 
-    @property
-    def disks(self) -> int:
-        """Nearly."""
-        return self.layers * self.disks_per_row
-
     def scene(self, base: Scene) -> Scene:
         """``base`` with this slab."""
         return base.updated(
@@ -76,28 +70,17 @@ class Slab:
 
 
 @record
-class Rest:
-    """What tells how a slab rests."""
+class Outcome:
+    """What a task leaves behind."""
 
     rest_asymmetry: float = column(
         f"largest horizontal distance of a disk at rest from its place in a symmetric state {RADII}"
     )
     new_neighbours: int = column("pairs touching at rest that are no lattice neighbours")
-
-
-@record
-class Outcome:
-    """What a task leaves behind."""
-
     forces: tuple[float, ...]
     measured: xr.Dataset
-    events: list[Event]  #: of EVENTS
-    crossovers: list[Event]  #: by the dips of the task
-    at_rest: Rest
-    problem: Problem
-    rest: State
-    states: tuple[State, ...]  #: at the forces, if they are kept
-    regions: NDArray[np.bool_] | None  #: (force, pair) pairs of the region of opened contacts
+    events: list[Event]  #: of EVENTS, then the crossover by each dip of the task
+    pictures: dict[str, xr.Dataset]  #: ``rest`` and ``states`` at the forces, if they are kept
 
 
 def solve(
@@ -108,35 +91,28 @@ def solve(
     ``tolerance`` is the width of the brackets of events, per force at which they happen; ``dips`` are those of which
     the crossover is looked for.
     """
-    path = slab_response.LoadPath.of(scene, settle(scene))
-    states = path.through(forces)
-    measures = slab_response.Measures(path)
+    path = LoadPath.of(scene, settle(scene))
+    states, rest, packing = path.through(forces), path.rest, path.problem.packing
+    measures = Measures(path)
     happened = (
         lambda state: measures.region(state).count > 0,
         measures.double_peaked,
         lambda state: measures.region(state).reaches_floor,
     )
     asked = {name: Happening(has, text) for has, (name, text) in zip(happened, EVENTS.items(), strict=True)}
-    of_dips = {f"dip {dip:g}": Happening(_exceeds(measures, dip), "a dip at x = 0") for dip in dips}
-    packing = path.problem.packing
-    rest, *kept = common_candidates([path.rest, *(states if keep_states else ())], packing.radius)
+
+    def exceeds(dip: float) -> Happening:
+        return Happening(lambda state: measures.dip(state) > dip, "a dip at x = 0")
+
+    asked |= {f"dip {dip:g}": exceeds(dip) for dip in dips}
     return Outcome(
-        forces=forces,
-        measured=slab_response.measured(measures, states),
-        events=slab_response.locate(path, forces, asked, tolerance),
-        crossovers=slab_response.locate(path, forces, of_dips, tolerance),
-        at_rest=Rest(
-            rest_asymmetry(packing.position, path.rest, packing.width), new_neighbours(packing.position, path.rest)
-        ),
-        problem=path.problem,
-        rest=rest,
-        states=tuple(kept),
-        regions=np.stack([measures.region(s).contacts for s in states]) if keep_states else None,
+        rest_asymmetry(packing.position, rest, packing.width),
+        new_neighbours(packing.position, rest),
+        forces,
+        slab_response.measured(measures, states),
+        slab_response.locate(path, forces, asked, tolerance),
+        pictures(path, states, measures) if keep_states else {},
     )
-
-
-def _exceeds(measures: slab_response.Measures, dip: float) -> Callable[[State], bool]:
-    return lambda state: measures.dip(state) > dip
 
 
 def settle(scene: Scene) -> State:
@@ -150,8 +126,8 @@ def settle(scene: Scene) -> State:
 def rest_asymmetry(position: FloatArray, rest: State, width: float) -> float:
     """Largest horizontal distance of a disk from where the rest state is symmetric, in radii.
 
-    ``position`` (n, 2) is the undeformed packing. The symmetric part of the displacements is their mean with
-    their mirror image in ``x = width / 2``.
+    The symmetric part of the displacements from the undeformed ``position`` (n, 2) is their mean with their mirror
+    image in ``x = width / 2``.
     """
     mirror = network.mirror_disks(position, 0.5 * width)
     shift = rest.position[:, 0] - position[:, 0]
@@ -166,112 +142,111 @@ def new_neighbours(position: FloatArray, rest: State) -> int:
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``response``, ``rest``, ``states``, ``events``, ``sizes``, ``regions``, ``widths`` and ``stiffness``.
+    """Datasets ``response``, ``rest``, ``states``, ``events``, ``sizes``, ``regions``, ``widths`` and ``stiffness``."""
+    asked = studies(parameters)
 
-    SweepError
-        If a slab cannot be solved.
-    """
-    asked = parameters
-    main, sizes, widths, stiff = slabs(asked)
-    # the longest first
-    outcomes = computed(tasks(asked), "slabs", work=lambda slab: (slab.disks, -slab.normal_stiffness))
-    first, followed = outcomes[main], [slab for slab in sizes if slab.layers <= asked.region_layers]
+    def work(slab: Slab) -> tuple[float, ...]:  # the longest first
+        return slab.layers * slab.disks_per_row, -slab.normal_stiffness
+
+    outcomes = computed(tasks(parameters), "slabs", work=work)
+    (main,), forces = asked["response"]
+    first = outcomes[main]
+    response = along("slab", outcomes, [main], forces).isel(slab=0).rename(floor_place="floor_disk")
     return {
-        "response": response(main, first, asked.forces),
-        "rest": slab_response.states_picture([first.rest], first.problem),
-        "states": pictures(first, asked.forces),
-        "events": slab_response.events_dataset(first.events),
-        "sizes": along("slab", sizes, outcomes, asked.size_forces),
-        "regions": along("slab", followed, outcomes, asked.region_forces)[list(REGION)],
-        "widths": along("slab", widths, outcomes, asked.size_forces),
-        "stiffness": stiffnesses(stiff, outcomes, asked.stiffness_forces, asked.compared_stiffnesses),
+        "response": response.drop_vars([f"{name}_bracket" for name in EVENTS]).assign_coords(
+            {name: first.measured[name].variable for name in ("floor_disk", "interior")}
+        ),
+        "rest": first.pictures["rest"],
+        "states": first.pictures["states"].isel(force=np.searchsorted(first.forces, forces)),
+        "events": slab_response.events_dataset(first.events[: len(EVENTS)]),
+        "sizes": along("slab", outcomes, *asked["sizes"]),
+        "regions": along("slab", outcomes, *asked["regions"])[list(REGION)],
+        "widths": along("slab", outcomes, *asked["widths"]),
+        "stiffness": stiffnesses(outcomes, *asked["stiffness"], parameters.compared_stiffnesses),
     }
 
 
-def slabs(parameters: Parameters) -> tuple[Slab, list[Slab], list[Slab], list[Slab]]:
-    """The slab whose states are kept, those of several depths, of several widths, and of several stiffnesses."""
+def studies(parameters: Parameters) -> dict[str, tuple[list[Slab], tuple[float, ...]]]:
+    """Slabs and the forces on them by dataset: the slab whose states are kept, then those of several depths, ..."""
     rows = parameters.scene.packing.build().row_count
     main = Slab(len(rows), int(rows[0]), parameters.scene.contact.normal_stiffness)
     sizes, widths = (
         [Slab(layers, across, stiffness) for stiffness in parameters.size_stiffnesses for layers, across in shapes]
         for shapes in (parameters.sizes, parameters.widths)
     )
-    return main, sizes, widths, [replace(main, normal_stiffness=stiffness) for stiffness in parameters.stiffnesses]
+    return {
+        "response": ([main], parameters.forces),
+        "sizes": (sizes, parameters.size_forces),
+        "widths": (widths, parameters.size_forces),
+        "regions": ([slab for slab in sizes if slab.layers <= parameters.region_layers], parameters.region_forces),
+        "stiffness": ([replace(main, normal_stiffness=k) for k in parameters.stiffnesses], parameters.stiffness_forces),
+    }
 
 
 def tasks(parameters: Parameters) -> dict[Slab, partial[Outcome]]:
-    """One task for each different slab, with all forces on it; open regions of not too deep ones at close forces."""
-    main, sizes, widths, stiff = slabs(parameters)
-    forces: dict[Slab, set[float]] = {main: set(parameters.forces)}
-    for slab in [*sizes, *widths]:
-        forces.setdefault(slab, set()).update(parameters.size_forces)
-    for slab in sizes:
-        if slab.layers <= parameters.region_layers:
-            forces[slab].update(parameters.region_forces)
-    for slab in stiff:
-        forces.setdefault(slab, set()).update(parameters.stiffness_forces)
+    """One task for each different slab, with all forces on it."""
+    asked = studies(parameters)
+    forces: dict[Slab, set[float]] = {}
+    for slabs, several in asked.values():
+        for slab in slabs:
+            forces.setdefault(slab, set()).update(several)
+    (main,), stiff = asked["response"][0], asked["stiffness"][0]
     return {
         slab: partial(
             solve,
             slab.scene(parameters.base),
-            tuple(sorted(several)),
+            tuple(sorted(of_slab)),
             parameters.tolerance if slab in (main, *stiff) else parameters.size_tolerance,
             DIPS if slab in stiff else (),
             slab == main,
         )
-        for slab, several in forces.items()
+        for slab, of_slab in forces.items()
     }
 
 
-def pictures(outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
-    """The states of a slab along ``force``, with the region of opened contacts in each."""
-    assert outcome.regions is not None
-    data = slab_response.states_picture(outcome.states, outcome.problem, "force")
-    data["teardrop"] = variable(
-        ("force", "contact"),
-        outcome.regions.astype(np.int8),
-        "1 for contacts of the connected region of opened contacts below the load",
+def pictures(path: LoadPath, states: Sequence[State], measures: Measures) -> dict[str, xr.Dataset]:
+    """``rest``, and ``states`` along ``force`` with the region of opened contacts in each."""
+    rest, *loaded = common_candidates([path.rest, *states], path.problem.packing.radius)
+    regions = np.stack([measures.region(state).contacts for state in states])
+    count, horizontal = regions.sum(axis=1), network.lattice_direction(rest) == network.HORIZONTAL
+    along = slab_response.states_picture(loaded, path.problem, "force").assign(
+        variables(
+            teardrop=(
+                "force contact",
+                regions.astype(np.int8),
+                "1 for contacts of the connected region of opened contacts below the load",
+            ),
+            teardrop_horizontal=(
+                "force",
+                np.where(count > 0, (regions & horizontal).sum(axis=1) / np.maximum(count, 1), np.nan),
+                "fraction of the region's contacts that are horizontal at rest; nan without a region",
+            ),
+        )
     )
-    horizontal = network.lattice_direction(outcome.rest) == network.HORIZONTAL
-    count = outcome.regions.sum(axis=1)
-    data["teardrop_horizontal"] = variable(
-        "force",
-        np.where(count > 0, (outcome.regions & horizontal).sum(axis=1) / np.maximum(count, 1), np.nan),
-        "fraction of the region's contacts that are horizontal at rest; nan without a region",
-    )
-    return data.isel(force=np.searchsorted(outcome.forces, forces))
+    return {"rest": slab_response.states_picture([rest], path.problem), "states": along}
 
 
 def stiffnesses(
-    slabs: Sequence[Slab], outcomes: Mapping[Slab, Outcome], forces: Sequence[float], compared: tuple[float, ...]
+    outcomes: Mapping[Slab, Outcome], slabs: Sequence[Slab], forces: Sequence[float], compared: tuple[float, ...]
 ) -> xr.Dataset:
     """As :func:`along`, and how much the response at x = 0 changes between two stiffnesses (Sec. IV.C)."""
-    data = along("normal_stiffness", slabs, outcomes, forces)
+    data = along("normal_stiffness", outcomes, slabs, forces)
     soft, stiff = (data["response_at_centre"].sel(normal_stiffness=k).values for k in compared)
-    data["response_change"] = variable(
-        "force",
-        soft / stiff - 1.0,
-        "relative change of the response at x = 0 from the second to the first of compared_stiffness",
+    text = "relative change of the response at x = 0 from the second to the first of compared_stiffness"
+    crossovers = [_brackets(outcomes[slab].events[len(EVENTS) :]) for slab in slabs]
+    between = f"forces {WEIGHTS} between which the dip at x = 0 comes to exceed this one; nan if not up to the first"
+    return data.assign(
+        variables(
+            response_change=("force", soft / stiff - 1.0, text),
+            crossovers=("normal_stiffness dip bracket", crossovers, between),
+            dip=("dip", DIPS, "dip at x = 0, per largest response, from which on there are two peaks"),
+            compared_stiffness=("compared", compared, "normal stiffnesses whose responses are compared"),
+        )
     )
-    data["crossovers"] = variable(
-        ("normal_stiffness", "dip", "bracket"),
-        [[(one.low, one.high) for one in outcomes[slab].crossovers] for slab in slabs],
-        f"forces {WEIGHTS} between which the dip at x = 0 comes to exceed this one; nan if not up to the first",
-    )
-    data["dip"] = variable("dip", DIPS, "dip at x = 0, per largest response, from which on there are two peaks")
-    data["compared_stiffness"] = variable("compared", compared, "normal stiffnesses whose responses are compared")
-    return data
-
-
-def response(slab: Slab, outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
-    """Measurements on one slab along ``force``."""
-    data = along("slab", [slab], {slab: outcome}, forces).isel(slab=0)
-    data = data.rename(floor_place="floor_disk").drop_vars([f"{name}_bracket" for name in EVENTS])
-    return data.assign_coords({name: outcome.measured[name].variable for name in ("floor_disk", "interior")})
 
 
 def along(
-    dimension: str, slabs: Sequence[Slab], outcomes: Mapping[Slab, Outcome], forces: Sequence[float]
+    dimension: str, outcomes: Mapping[Slab, Outcome], slabs: Sequence[Slab], forces: Sequence[float]
 ) -> xr.Dataset:
     """Measurements on slabs along ``dimension`` and ``force``, and the brackets of their events.
 
@@ -287,19 +262,20 @@ def along(
 
     places = {"floor_response": ("floor_place",)}
     data = {name: of(name, "force", *places.get(name, ())) for name in map(str, measured[0]) if name not in LEFT_OUT}
+    brackets = np.array([_brackets(one.events[: len(EVENTS)]) for one in each])
     for k, (name, text) in enumerate(EVENTS.items()):
-        data[f"{name}_bracket"] = variable(
-            (dimension, "bracket"),
-            [(one.events[k].low, one.events[k].high) for one in each],
-            f"forces {WEIGHTS} between which: {text}; nan if not up to the first",
-        )
-    return (
-        xr.Dataset(data)
-        .assign_coords(table(slabs, dimension).variables)
-        .assign_coords(table([one.at_rest for one in each], dimension).variables)
-        .assign_coords(
-            axes(force=(np.array(forces, float), f"applied force {WEIGHTS}"))
-            | {"x": of("x", "floor_place")}
-            | axes(bracket=(["low", "high"], "ends of a bracket"))
-        )
+        between = f"forces {WEIGHTS} between which: {text}; nan if not up to the first"
+        data[f"{name}_bracket"] = variable((dimension, "bracket"), brackets[:, k], between)
+    return xr.Dataset(data).assign_coords(
+        {
+            **table(slabs, dimension).variables,
+            **table(each, dimension).variables,
+            **axes(force=(np.array(forces, float), f"applied force {WEIGHTS}")),
+            "x": of("x", "floor_place"),
+            **axes(bracket=(["low", "high"], "ends of a bracket")),
+        }
     )
+
+
+def _brackets(events: Sequence[Event]) -> list[tuple[float, float]]:
+    return [(one.low, one.high) for one in events]

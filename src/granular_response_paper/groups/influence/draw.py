@@ -80,30 +80,26 @@ def _decay(data: xr.Dataset) -> Figure:
         ratio = (one["height"] / (one["spacing"] * float(one["separation"]))).mean("realization").values
         each = one["difference"].values
         each = each[np.isfinite(each).any(axis=1)]
-        if not len(each):  # no row is as far from the walls as the margin asks
-            continue
-        mean = each.mean(axis=0)
-        falls.plot(ratio, mean, label=name, **look)
+        if len(each):  # else no row is as far from the walls as the margin asks
+            mean = each.mean(axis=0)
+            falls.plot(ratio, mean, label=name, **look)
         if len(each) > 1:
             spread = each.std(axis=0, ddof=1)
             falls.fill_between(ratio, mean - spread, mean + spread, color=look["color"], alpha=0.15, linewidth=0.0)
+        each = one["exponent"].values
+        each = each[np.isfinite(each[:, 0])]
+        if len(each):
+            mean = each[:, 0].mean()
+            error = np.array([[mean - each.min()], [each.max() - mean]])  # of a lattice: the range over the fits
+            if len(each) > 1:
+                error = np.full((2, 1), 1.96 * each[:, 0].std(ddof=1) / np.sqrt(len(each)))
+            powers.errorbar([case], [mean], error, capsize=3, **look | {"linestyle": "none", "markersize": 5})
     ends = np.array(data.attrs["fitted"], float)
     falls.plot(ends, 0.5 * (ends / ends[0]) ** -2.0, color=style.BLACK, linewidth=0.9, linestyle=(0, (4, 2)))
     falls.annotate("elastic: power 2", (ends[0], 0.5), (2, 3), textcoords="offset points")
     style.logarithmic(falls)
     falls.set(xlabel="height / distance of the halves", ylabel="difference on the floor")
     falls.legend(loc="lower left")
-    for case, (_, look) in enumerate(cases):
-        each = data["exponent"].isel(case=case, separation=0).values
-        each = each[np.isfinite(each[:, 0])]
-        if not len(each):
-            continue
-        mean = each[:, 0].mean()
-        if len(each) > 1:
-            error = np.full((2, 1), 1.96 * each[:, 0].std(ddof=1) / np.sqrt(len(each)))
-        else:  # a lattice: the range over the fits
-            error = np.array([[mean - each.min()], [each.max() - mean]])
-        powers.errorbar([case], [mean], error, capsize=3, **look | {"linestyle": "none", "markersize": 5})
     powers.axhline(2.0, color=style.BLACK, linewidth=0.9, linestyle=(0, (4, 2)))
     zero(powers)
     powers.set_xticks(range(len(cases)), [name for name, _ in cases], rotation=30, ha="right")

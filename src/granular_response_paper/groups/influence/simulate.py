@@ -48,8 +48,7 @@ class Outcome:
 def compute(scene: Scene, separations: tuple[int, ...], margin: float, fitted: tuple[float, ...]) -> Outcome:
     """One packing. Raises what ``rest_state`` raises."""
     problem = Problem.from_scene(scene)
-    rest = rest_state(problem)
-    packing = problem.packing
+    rest, packing = rest_state(problem), problem.packing
     disks = floor_disks([rest], np.flatnonzero(packing.row == 0))
     found = influence(problem, rest, disks, sliding="stick")[:, :, 1]
     height, difference = differences(found, rest, packing, separations, margin)
@@ -99,8 +98,8 @@ def decay(height: FloatArray, difference: FloatArray, apart: float, fitted: tupl
     use = np.flatnonzero((ratio >= fitted[0]) & (ratio <= fitted[1]) & (difference > 0.0))
     if use.size < 4:
         return np.full(len(FITS), np.nan)
-    x, y = np.log(ratio), np.log(difference, where=difference > 0.0, out=np.zeros_like(difference))
-    return np.array([-np.polyfit(x[rows], y[rows], 1)[0] for rows in (use, use[1:], use[:-1])])
+    x, y = np.log(ratio[use]), np.log(difference[use])
+    return np.array([-np.polyfit(x[rows], y[rows], 1)[0] for rows in (slice(None), slice(1, None), slice(-1))])
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -110,14 +109,9 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         for r in range(case.realizations):
             scene = parameters.base.updated(material(case.polydispersity, r, case.friction))
             tasks[c, r] = partial(compute, scene, parameters.separations, parameters.margin, parameters.fitted)
-    found = table(computed(tasks, "packings"), "case", "realization").assign_coords(
-        labels(
-            "case",
-            parameters.cases,
-            polydispersity="polydispersity",
-            friction="friction between disks and of the walls",
-        )
-    )
+    texts = {"polydispersity": "polydispersity", "friction": "friction between disks and of the walls"}
+    found = table(computed(tasks, "packings"), "case", "realization")
+    found = found.assign_coords(labels("case", parameters.cases, **texts))
     of_packings = ["position", "radius", "total"]
     saint_venant = found.drop_vars(of_packings).assign_coords(
         axes(

@@ -9,7 +9,7 @@ static finish unless that is what is measured.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -19,7 +19,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.observe.floor import floor_disks, floor_force, floor_response, smoothed_response
-from granular_response.scene import Scene
+from granular_response.scene import Packing, Scene
 from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
@@ -29,7 +29,7 @@ from granular_response.store.variables import WEIGHTS, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.numerics.parameters import Parameters
-from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.records import column, record, table_along
 from granular_response_paper.tasks import computed
 
 #: Steps between two readings of the kinetic energy of a restarted state.
@@ -56,8 +56,9 @@ def stopped(scene: Scene, stop_energies: Sequence[float]) -> list[Errors]:
 
     def floor(energy: float, **finish: bool) -> tuple[FloatArray, FloatArray]:
         changes = {"stop_kinetic_energy": energy, **finish}
-        rest, loaded, disks = rest_and_loaded(scene.updated({"protocol": changes}))
-        return floor_force(rest, disks), floor_force(loaded, disks)
+        problem, *states = rest_and_loaded(scene.updated({"protocol": changes}))
+        rest, loaded = (floor_force(state, _bottom(problem.packing)) for state in states)
+        return rest, loaded
 
     exact, exactly = floor(min(stop_energies))
     true = exactly - exact
@@ -77,14 +78,26 @@ def stopped(scene: Scene, stop_energies: Sequence[float]) -> list[Errors]:
 
 
 @record
-class Restarted:
-    """A statically finished frictionless state, put back into the dynamics."""
+class Readings:
+    """What is read of dynamics that goes on under a constant load."""
 
-    kinetic_energy: FloatArray = column("kinetic energy per disk after a restart of a finished state", "reading")
+    mean_acceleration: FloatArray = column(ACCELERATION, "reading")
+    kinetic_energy: FloatArray = column("kinetic energy per disk", "reading")
 
 
-def restart(scene: Scene, force: float, steps: int) -> Restarted:
-    """From rest under ``force``."""
+def go_on(problem: Problem, state: State, load: float, steps: int, every: int) -> Readings:
+    """From ``state``, at ``every`` so many steps."""
+    dynamics = Dynamics(problem, state, problem.scene.protocol.integrator, resolve_time_step(problem))
+    dynamics.set_ramps(load=(load, load, 0.0))
+    found = []
+    for _ in range(steps // every):
+        dynamics.advance(every)
+        found.append((dynamics.mean_acceleration(), dynamics.kinetic_energy()))
+    return Readings(*np.array(found).T)
+
+
+def restart(scene: Scene, force: float, steps: int) -> Readings:
+    """A statically finished frictionless state under ``force``, put back into the dynamics from rest."""
     problem = Problem.from_scene(scene)
     state = rest_state(problem)
     problem = problem.with_loads(state.position)
@@ -93,7 +106,13 @@ def restart(scene: Scene, force: float, steps: int) -> Restarted:
     still = replace(
         state, velocity=np.zeros_like(state.velocity), angular_velocity=np.zeros_like(state.angular_velocity)
     )
-    return Restarted(np.array(_read(problem, still, force, steps, READ_EVERY, Dynamics.kinetic_energy)))
+    return go_on(problem, still, force, steps, READ_EVERY)
+
+
+def swing(scene: Scene, steps: int, read_every: int) -> Readings:
+    """What a run does that goes on after its stop."""
+    problem, _, loaded = rest_and_loaded(scene)
+    return go_on(problem, loaded, 1.0, steps, read_every)
 
 
 @record
@@ -101,6 +120,9 @@ class Response:
     """The response to one load by the paper's protocol, and what its stop criteria read."""
 
     floor_response: FloatArray = column("vertical floor force that the load adds, per applied force", "floor_disk")
+    difference: float = column(
+        "largest difference of the floor response from that of the first entry, per largest response"
+    )
     network_fixed_steps: float = column("time steps for which the contact network had not changed, at least")
     sliding_contacts: float = column("contacts at the Coulomb limit")
     mean_acceleration: float = column(ACCELERATION)
@@ -109,24 +131,11 @@ class Response:
 
 
 def respond(scene: Scene) -> Response:
-    rest, loaded, disks = rest_and_loaded(scene)
-    response = (floor_force(loaded, disks) - floor_force(rest, disks)) / abs(loaded.load_factor)
+    """Without its difference from another one."""
+    problem, rest, loaded = rest_and_loaded(scene)
+    response = floor_response(rest, loaded, _bottom(problem.packing), _total(problem))
     names = ("network_fixed_steps", "sliding_contacts", "mean_acceleration", "loose_disks", "kinetic_energy")
-    return Response(response, *(float(getattr(loaded.reached, name)) for name in names))
-
-
-@record
-class Swung:
-    """What a run does that goes on after its stop."""
-
-    mean_acceleration: FloatArray = column(ACCELERATION, "reading")
-    kinetic_energy: FloatArray = column("kinetic energy per disk", "reading")
-
-
-def swing(scene: Scene, steps: int, read_every: int) -> Swung:
-    problem, _, loaded = _by_dynamics(scene)
-    both = _read(problem, loaded, 1.0, steps, read_every, lambda d: (d.mean_acceleration(), d.kinetic_energy()))
-    return Swung(*np.array(both).T)
+    return Response(response, np.nan, *(float(getattr(loaded.reached, name)) for name in names))
 
 
 @record
@@ -141,11 +150,10 @@ def disordered(scene: Scene, stop_energy: float, x: Sequence[float], width: floa
     """Stopped early, and in equilibrium."""
 
     def response(scene: Scene) -> FloatArray:
-        problem, rest, loaded = _by_dynamics(scene)
-        disks = floor_disks([rest, loaded], np.flatnonzero(problem.packing.row == 0))
+        problem, rest, loaded = rest_and_loaded(scene)
+        disks = floor_disks([rest, loaded], _bottom(problem.packing))
         place = rest.position[disks, 0] - rest.position[problem.load_disk[0], 0]
-        found = floor_response(rest, loaded, disks, float(np.abs(problem.load[:, 1]).sum()))
-        return smoothed_response(x, place, found, width)
+        return smoothed_response(x, place, floor_response(rest, loaded, disks, _total(problem)), width)
 
     early = {"protocol.stop_kinetic_energy": stop_energy, "protocol.static_finish": False}
     return Disordered(response(scene.updated(early)), response(scene))
@@ -168,36 +176,21 @@ def damp(scene: Scene, time_step: float) -> Damped:
     return Damped(dynamics.time, np.int8(bool(state.reached.settled)), stability_limit(problem, "beeman"))
 
 
-def rest_and_loaded(scene: Scene) -> tuple[State, State, NDArray[np.intp]]:
-    """The packing at rest and under the scene's load, both by dynamics, and the disks of its lowest row.
-
-    The ``load_factor`` of the loaded state is the total force, so that responses are per applied force.
-    """
-    problem, rest, loaded = _by_dynamics(scene)
-    force = float(np.abs(problem.load[:, 1]).sum())
-    return rest, replace(loaded, load_factor=force), np.flatnonzero(problem.packing.row == 0)
-
-
-def _read(
-    problem: Problem, state: State, load: float, steps: int, every: int, read: Callable[[Dynamics], Any]
-) -> list[Any]:
-    """What is read of the dynamics that goes on from ``state`` under a constant load, at ``every`` so many steps."""
-    dynamics = Dynamics(problem, state, problem.scene.protocol.integrator, resolve_time_step(problem))
-    dynamics.set_ramps(load=(load, load, 0.0))
-    found = []
-    for _ in range(steps // every):
-        dynamics.advance(every)
-        found.append(read(dynamics))
-    return found
-
-
-def _by_dynamics(scene: Scene) -> tuple[Problem, State, State]:
-    """The problem with the scene's load, its state at rest and the loaded one."""
+def rest_and_loaded(scene: Scene) -> tuple[Problem, State, State]:
+    """The problem with the scene's load, its state at rest and the loaded one, both by dynamics."""
     problem = Problem.from_scene(scene.updated({"protocol.method": "dynamics"}))
     rest = rest_state(problem)
     problem = problem.with_loads(rest.position)
     (loaded,) = loaded_states(problem, rest, [1.0])[1]
     return problem, rest, loaded
+
+
+def _bottom(packing: Packing) -> NDArray[np.intp]:
+    return np.flatnonzero(packing.row == 0)
+
+
+def _total(problem: Problem) -> float:
+    return float(np.abs(problem.load[:, 1]).sum())
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -211,43 +204,35 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     found = {name: [done[name, k] for k in range(len(several))] for name, several in tasks.items()}
 
     packing = base.packing.build()
-    disks = np.flatnonzero(packing.row == 0)
-    x = variable(
-        "floor_disk",
-        packing.position[disks, 0] - 0.5 * packing.width,
-        "position from the loaded disk in mean disk radii",
-    )
-    steps, swings = ("time_step", asked.time_steps, "time step in sqrt(radius/g)"), found["swing"]
+    from_load = "position from the loaded disk in mean disk radii"
+    x = variable("floor_disk", packing.position[_bottom(packing), 0] - 0.5 * packing.width, from_load)
+    by_stop = {(f, e): one for f, several in enumerate(found["stop_energy"]) for e, one in enumerate(several)}
     datasets = {
-        "stop_energy": table(
-            {(f, e): one for f, several in enumerate(found["stop_energy"]) for e, one in enumerate(several)},
-            "friction",
-            "stop_kinetic_energy",
-        ).assign_coords(
-            axes(
-                friction=(asked.frictions, "coefficient of friction between disks"),
-                stop_kinetic_energy=(asked.stop_energies, "kinetic energy per disk at which the dynamics stops"),
-            )
+        "stop_energy": table_along(
+            by_stop,
+            friction=(asked.frictions, "coefficient of friction between disks"),
+            stop_kinetic_energy=(asked.stop_energies, "kinetic energy per disk at which the dynamics stops"),
         ),
-        "restart": table(found["restart"], "load")
-        .assign_coords(axes(load=(asked.restart.forces, f"load of the restarted state {WEIGHTS}")))
-        .assign_coords(step=_readings(READ_EVERY, found["restart"], "time steps since the restart")),
-        "time_step": _responses(*steps, x, found["time_step"]),
-        "integrators": _responses("integrator", asked.integrators, "integrator", x, found["integrators"]),
-        "damping": table(found["damping"], "damping_ratio").assign_coords(
-            axes(damping_ratio=(asked.damping.ratios, "dashpot over its critical value, nu / (2 sqrt(k))"))
+        "restart": _readings(
+            found["restart"], READ_EVERY, load=(asked.restart.forces, f"load of the restarted state {WEIGHTS}")
+        ).drop_vars("mean_acceleration"),
+        "time_step": _responses(found["time_step"], x, time_step=(asked.time_steps, "time step in sqrt(radius/g)")),
+        "integrators": _responses(found["integrators"], x, integrator=(asked.integrators, "integrator")),
+        "damping": table_along(
+            found["damping"], damping_ratio=(asked.damping.ratios, "dashpot over its critical value, nu / (2 sqrt(k))")
         ),
-        "swing": table(swings, "stop_rule").assign_coords(
-            axes(stop_rule=(STOP_RULES, "rule by which the run had stopped"))
-            | {"step": _readings(asked.swing.read_every, swings, "time steps since the stop")}
+        "swing": _readings(
+            found["swing"], asked.swing.read_every, stop_rule=(STOP_RULES, "rule by which the run had stopped")
         ),
-        "disorder": table(found["disorder"], "realization").assign_coords(
-            axes(
-                realization=(range(asked.disorder.realizations), "realization of the radii"),
-                x=(grid, "position from the loaded disk in mean disk radii"),
-            )
+        "disorder": table_along(
+            found["disorder"],
+            realization=(range(asked.disorder.realizations), "realization of the radii"),
+            x=(grid, from_load),
         ),
     }
+    datasets["restart"]["kinetic_energy"].attrs["long_name"] += " after a restart of a finished state"
+    for name, begin in (("restart", "restart"), ("swing", "stop")):
+        datasets[name]["step"].attrs["long_name"] += f" since the {begin}"
     datasets["at_rest"] = datasets["time_step"].drop_vars(["floor_response", "difference"]).isel(time_step=0)
     for dataset in datasets.values():
         dataset["force"] = variable((), asked.force, f"applied force {WEIGHTS}")
@@ -256,8 +241,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
 def _grid(asked: Parameters) -> FloatArray:
     """Distances from the loaded disk at which disordered slabs are compared (radii)."""
-    half = asked.disorder.spacing * np.arange(round(asked.disorder.reach / asked.disorder.spacing) + 1)
-    return np.concatenate([-half[:0:-1], half])
+    count = round(asked.disorder.reach / asked.disorder.spacing)
+    return asked.disorder.spacing * np.arange(-count, count + 1, dtype=np.float64)
 
 
 def _with_friction(asked: Parameters) -> Scene:
@@ -304,22 +289,16 @@ def _tasks(asked: Parameters, grid: FloatArray) -> Mapping[str, list[partial[Any
     }
 
 
-def _readings(every: int, found: Sequence[Restarted | Swung], text: str) -> xr.Variable:
-    return variable("reading", every * np.arange(1, found[0].kinetic_energy.size + 1), text)
+def _readings(found: Sequence[Readings], every: int, **along: tuple[Sequence[Any], str]) -> xr.Dataset:
+    """With the step of each."""
+    step = variable("reading", every * np.arange(1, found[0].kinetic_energy.size + 1), "time steps")
+    return table_along(found, **along).assign_coords(step=step)
 
 
-def _responses(
-    dimension: str, values: Sequence[Any], text: str, x: xr.Variable, found: Sequence[Response]
-) -> xr.Dataset:
-    """As :class:`Response` has it along ``dimension``, and how far responses are from the first."""
-    data = table(found, dimension)
-    response = data["floor_response"].values
-    difference = variable(
-        dimension,
-        np.abs(response - response[0]).max(axis=1) / np.abs(response[0]).max(),
-        "largest difference of the floor response from that of the first entry, per largest response",
-    )
-    first = {"floor_response": data["floor_response"].variable, "difference": difference}
-    return xr.Dataset(first | dict(data.drop_vars("floor_response").variables)).assign_coords(
-        axes(**{dimension: (values, text)}) | {"x": x}
-    )
+def _responses(found: Sequence[Response], x: xr.Variable, **along: tuple[Sequence[Any], str]) -> xr.Dataset:
+    """With how far they are from the first."""
+    first = found[0].floor_response
+    compared = [
+        replace(one, difference=np.abs(one.floor_response - first).max() / np.abs(first).max()) for one in found
+    ]
+    return table_along(compared, **along).assign_coords(x=x)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ...claims import asked
 from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
+from ...records import alike
 
 GROUP = "slab_comparison"
 CLAIMS = Claims(GROUP)
@@ -14,17 +13,11 @@ CLAIMS = Claims(GROUP)
 
 @CLAIMS.measures("A4")
 def large_systems(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "slabs")
-    columns = (study[name].values.tolist() for name in ("friction", "floor", "gravity", "disks_per_layer"))
-    cases = list(zip(*columns, strict=True))
-    layers, distance = study["layers"].values, study["distance"].values
+    cases = alike(data.get(GROUP, "slabs"), "slab", "friction", "floor", "gravity", "disks_per_layer")
     readings = []
-    for case in dict.fromkeys(cases):
-        here = np.array([one == case for one in cases])
-        order = np.argsort(layers[here])
-        CLAIMS.needs(order.size > 1, "slabs holds one depth of a case")
-        thin, deep = distance[here][order[0]], distance[here][order[-1]]
-        mu, floor, gravity, wide = case
+    for (mu, floor, gravity, wide), slabs in cases.items():
+        CLAIMS.needs(slabs.sizes["slab"] > 1, "slabs holds one depth of a case")
+        thin, *_, deep = slabs.sortby("layers")["distance"].values
         readings.append(
             Reading(
                 f"friction {mu:g}, {floor} floor, gravity {gravity}, {wide:g} disks a row per layer",

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.panels import titles, zero
+from granular_response_paper.records import alike
 
 from .parameters import Parameters
 
@@ -54,12 +55,6 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     return of_group("slab_comparison", {STEM: said})
 
 
-def _cases(data: xr.Dataset) -> list[tuple[tuple, np.ndarray]]:
-    """The cases in order of their first slab, each with its slabs."""
-    keys = list(zip(*(data[key].values.tolist() for key in _KEYS), strict=True))
-    return [(case, np.array([k for k, key in enumerate(keys) if key == case])) for case in dict.fromkeys(keys)]
-
-
 def _name(case: tuple) -> str:
     friction, floor, gravity, shape = case
     return f"µ = {friction:g}, {floor}, {shape:g} wide" + (", slow" if gravity == "slow" else "")
@@ -67,23 +62,22 @@ def _name(case: tuple) -> str:
 
 def _profiles(axes: Axes, data: xr.Dataset) -> None:
     """A thin and a deep slab of the first case on a smooth and the last one on a rough floor."""
-    cases = _cases(data)
-    first = {floor: slabs for case, slabs in reversed(cases) for floor in [case[1]]}
-    shown = [first[floor] for floor in FLOORS if floor in first]
-    for index, slabs in enumerate(shown):
-        friction, floor = float(data["friction"][slabs[0]]), str(data["floor"].values[slabs[0]])
-        for k, marker in zip((slabs[0], slabs[-1]), ("o.", "sx")[index], strict=True):
-            layers = int(data["layers"][k])
+    cases = alike(data, "slab", *_KEYS)
+    first = {case[1]: case for case in reversed(cases)}
+    for index, case in enumerate(first[floor] for floor in FLOORS if floor in first):
+        friction, floor, *_ = case
+        for k, marker in zip((0, -1), ("o.", "sx")[index], strict=True):
+            one = cases[case].isel(slab=k)
+            layers = int(one["layers"])
             height = np.sqrt(3.0) * layers
-            x = data["x"].values[k] / height
+            x = one["x"].values / height
             near = np.abs(x) <= 2.0
             # a floor disk covers a length of 2
-            pressure = 0.5 * height * data["floor_response"].values[k]
+            pressure = 0.5 * height * one["floor_response"].values
             look: dict[str, Any] = {"color": style.COLOURS[index], "linestyle": "none", "marker": marker, "zorder": 3}
             look |= {"markersize": 4.5, "markerfacecolor": "none"} if marker in "os" else {"markersize": 3.0}
-            name = f"µ = {friction:g}, {floor}, {layers} layers"
-            axes.plot(x[near], pressure[near], **look, label=name)
-        elastic = 0.5 * height * data["elastic"].values[k]
+            axes.plot(x[near], pressure[near], **look, label=f"µ = {friction:g}, {floor}, {layers} layers")
+        elastic = 0.5 * height * one["elastic"].values
         axes.plot(x[near], elastic[near], **style.line(index), label=f"elastic slab, {floor}")
     zero(axes)
     axes.set(xlabel=style.SCALED_POSITION, ylabel=style.PRESSURE, xlim=(-2.0, 2.0))
@@ -92,15 +86,15 @@ def _profiles(axes: Axes, data: xr.Dataset) -> None:
 
 def _distances(axes: Axes, data: xr.Dataset) -> None:
     """Distance against the number of layers, one line for each case."""
-    for index, (case, slabs) in enumerate(_cases(data)):
-        layers, distance = data["layers"].values[slabs], data["distance"].values[slabs]
+    for index, (case, slabs) in enumerate(alike(data, "slab", *_KEYS).items()):
+        layers, distance = slabs["layers"].values, slabs["distance"].values
         colour = style.COLOURS[FLOORS.index(case[1])]
         axes.plot(layers, distance, **style.marked_line(index, colour=colour), label=_name(case))
         for k in np.flatnonzero(np.diff(np.log(distance)) > 1.0) + 1:
             axes.annotate(
                 "row opened", (layers[k], distance[k]), (0, 5), textcoords="offset points", ha="center", fontsize=7
             )
-    layers = np.array([data["layers"].values.min(), data["layers"].values.max()], dtype=float)
+    layers = np.array([data["layers"].min(), data["layers"].max()], dtype=float)
     other = data["distance_other_floor"].values.min()
     axes.axhline(other, color=style.MUTED, linewidth=0.8, linestyle=(0, (2, 2)))
     look: dict[str, Any] = {"textcoords": "offset points", "fontsize": 8}
@@ -110,7 +104,7 @@ def _distances(axes: Axes, data: xr.Dataset) -> None:
     axes.plot(layers, guide, color=style.FAINT, linewidth=0.8, zorder=0)
     axes.annotate("$\\propto 1/n$", (layers[1], guide[1]), (0, -12), ha="right", **look)
     axes.set(xscale="log", yscale="log", xlabel="layers $n$", ylabel="distance / largest response")
-    ticks = sorted(set(data["layers"].values.tolist()))
+    ticks = np.unique(data["layers"].values)
     axes.set_xticks(ticks, [f"{n:g}" for n in ticks])
     axes.minorticks_off()
     axes.legend(**_BELOW)

@@ -20,13 +20,13 @@ from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.state import SLIDING, FloatArray, State
 from granular_response.store.result import certificates_dataset
-from granular_response.store.variables import RADII
+from granular_response.store.variables import RADII, variable
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.slab_comparison.parameters import Case, Parameters
-from granular_response_paper.records import column, record, table
+from granular_response_paper.records import column, labels, record, table
 from granular_response_paper.slab_response import LoadPath, Measures
 from granular_response_paper.tasks import computed
 
@@ -49,11 +49,6 @@ class Slab:
     open_at_rest: int = column("neighbours that do not touch at rest")
     opened: int = column("contacts that the force opens")
     sliding: int = column("contacts of disks that slide under the force")
-    layers: int = column("number of layers")
-    disks_per_layer: int = column("disks of a row per layer")
-    friction: float = column("coefficient of friction")
-    floor: str = column("smooth, or rough: friction on floor and walls too")
-    gravity: str = column("how gravity was applied")
 
 
 def compute(base: Scene, case: Case, layers: int, force: float) -> tuple[Slab, State]:
@@ -87,11 +82,6 @@ def compute(base: Scene, case: Case, layers: int, force: float) -> tuple[Slab, S
         open_at_rest=int(np.count_nonzero(neighbours & ~pairs.touching)),
         opened=int(np.count_nonzero(network.contact_changes(pairs, full.pairs).opened)),
         sliding=int(np.count_nonzero(full.pairs.status == SLIDING)),
-        layers=layers,
-        disks_per_layer=case.disks_per_layer,
-        friction=case.friction,
-        floor=case.floor,
-        gravity=case.gravity,
     )
     return slab, full
 
@@ -99,13 +89,19 @@ def compute(base: Scene, case: Case, layers: int, force: float) -> tuple[Slab, S
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Dataset ``slabs``."""
     base, force = parameters.base, parameters.force
-    tasks = {
-        (c, k): partial(compute, base, case, layers, force)
-        for c, case in enumerate(parameters.cases)
-        for k, layers in enumerate(case.layers)
-    }
+    given = [(case, layers) for case in parameters.cases for layers in case.layers]
+    tasks = {k: partial(compute, base, *one, force) for k, one in enumerate(given)}
     slabs, states = zip(*computed(tasks, "slabs").values(), strict=True)
-    dataset = table(slabs, "slab").assign(certificates_dataset(states, "slab").variables)
+    of_cases = labels(
+        "slab",
+        [case for case, _ in given],
+        disks_per_layer="disks of a row per layer",
+        friction="coefficient of friction",
+        floor="smooth, or rough: friction on floor and walls too",
+        gravity="how gravity was applied",
+    )
+    layers = {"layers": variable("slab", [layers for _, layers in given], "number of layers")}
+    dataset = table(slabs, "slab").assign(layers | of_cases).merge(certificates_dataset(states, "slab"))
     return labelled({"slabs": dataset.assign_attrs(force=force, stiffness_ratio=base.contact.stiffness_ratio)})
 
 

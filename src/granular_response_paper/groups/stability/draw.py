@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -46,11 +47,8 @@ RANDOM = ("certified", "uncertified", "not settled", "no equilibrium", "time ste
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``stability_steps`` (a panel for each property of the scene), ``stability_motion`` and ``stability_scenes``."""
-    return {
-        "stability_steps": _steps(datasets),
-        "stability_motion": _motion(datasets),
-        "stability_scenes": _scenes(datasets),
-    }
+    drawn = {"steps": _steps, "motion": _motion, "scenes": _scenes}
+    return {f"stability_{name}": figure(datasets) for name, figure in drawn.items()}
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
@@ -67,18 +65,16 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 def _steps(datasets: Mapping[str, xr.Dataset]) -> Figure:
     """A panel for each property of the scene: where settling ends for each integrator, and where energy explodes."""
-    names = [name for name in AXES if f"time_step_{name}" in datasets]
-    integrators = [str(i) for i in datasets[f"time_step_{names[0]}"]["integrator"].values]
-    columns = min(4, len(names))
-    rows = -(-len(names) // columns)
+    studies = {name: datasets[f"time_step_{name}"] for name in AXES if f"time_step_{name}" in datasets}
+    columns = min(4, len(studies))
+    rows = -(-len(studies) // columns)
     figure, panels = style.figure(rows, columns, width="double", height=0.5 + 1.9 * rows, sharey=True)
-    for axes in panels.flat[len(names) :]:
+    for axes in panels.flat[len(studies) :]:
         axes.set_axis_off()
-    for axes, name in zip(panels.flat, names, strict=False):
-        study = datasets[f"time_step_{name}"]
-        for k, integrator in enumerate(integrators):
+    for axes, (name, study) in zip(panels.flat, studies.items(), strict=False):
+        for k, integrator in enumerate(study["integrator"].values.tolist()):
             outcome = study["outcome"].sel(integrator=integrator).transpose(name, "ratio").values
-            shift = 0.22 * (k - 0.5 * (len(integrators) - 1))
+            shift = 0.22 * (k - 0.5 * (study.sizes["integrator"] - 1))
             _limits(axes, study["ratio"].values, outcome, shift, style.marked_line(k), integrator.capitalize())
         axes.axhline(1.0, color=style.BLACK, linestyle="-", linewidth=0.8, zorder=0, label="predicted limit")
         axes.set(yscale="log", xlabel=AXES[name], xlim=(-0.6, study.sizes[name] - 0.4), ylim=(0.7, 4.6))
@@ -86,7 +82,7 @@ def _steps(datasets: Mapping[str, xr.Dataset]) -> Figure:
         axes.set_yticks([1.0, 2.0, 4.0], ["1", "2", "4"])
         axes.minorticks_off()
         axes.tick_params(axis="x", top=False, length=2.0)
-    titles(panels.flat[: len(names)])
+    titles(panels.flat[: len(studies)])
     for axes in panels[:, 0]:
         axes.set_ylabel("time step / limit")
     handles, labels = panels.flat[0].get_legend_handles_labels()
@@ -104,12 +100,10 @@ def _limits(
     smallest step does not settle, or the largest does.
     """
     settled = np.logical_and.accumulate(outcome == SETTLES, axis=1).sum(axis=1)
-    here = (settled > 0) & (settled < len(ratio))
+    here = np.flatnonzero((settled > 0) & (settled < len(ratio)))
     low, high = ratio[settled[here] - 1], ratio[settled[here]]
     middle = np.sqrt(low * high)
-    bars = np.stack([middle - low, high - middle])
-    at = np.flatnonzero(here) + shift
-    axes.errorbar(at, middle, bars, **{**look, "linestyle": "none", "markersize": 4.5}, elinewidth=1.2, label=name)
+    axes.errorbar(here + shift, middle, [middle - low, high - middle], **look | DOTS, elinewidth=1.2, label=name)
     for index, row in enumerate(outcome):
         exploding = np.flatnonzero(row == BLOWS_UP)
         if exploding.size:
@@ -123,10 +117,14 @@ def _short(value: float) -> str:
 
 def _motion(datasets: Mapping[str, xr.Dataset]) -> Figure:
     figure, axes = style.figure(2, 2, width="double", height=4.8)
-    _drift(axes[0, 0], datasets["drift"])
-    _sliding(axes[0, 1], datasets["drift"])
-    _collisions(axes[1, 0], datasets["collisions"])
-    _rolling(axes[1, 1], datasets["rolling"])
+    (drift, sliding), (collisions, rolling) = axes
+    _drift(drift, datasets["drift"])
+    _sliding(sliding, datasets["drift"])
+    _collisions(collisions, datasets["collisions"])
+    _rolling(rolling, datasets["rolling"])
+    for panel, part in ((drift, 0.3), (collisions, 0.25), (rolling, 0.15)):  # room for the legends
+        low, high = panel.get_ylim()
+        panel.set_ylim(low, high + part * (high - low))
     titles(axes.flat, place="inside")
     return figure
 
@@ -136,8 +134,6 @@ def _drift(panel: Axes, study: xr.Dataset) -> None:
         one = study.sel(integrator=integrator, system="slab")
         panel.plot(one["time"], 1e3 * one["energy_change"], label=str(integrator).capitalize(), **style.line(k))
     panel.set(xlabel=f"time [${style.TIME_UNIT}$]", ylabel=r"energy change [$10^{-3}$]")
-    low, high = panel.get_ylim()
-    panel.set_ylim(low, high + 0.3 * (high - low))
     panel.legend(title="undamped slab, no friction", loc="upper right", ncols=3)
 
 
@@ -155,13 +151,11 @@ def _sliding(panel: Axes, study: xr.Dataset) -> None:
 
 def _collisions(panel: Axes, study: xr.Dataset) -> None:
     worst = study["energy_ratio"].max(["spin", "friction"])
-    for k, (law, body) in enumerate((law, body) for law in FRICTION_LAWS for body in ("floor", "disk")):
+    for k, (law, body) in enumerate(product(FRICTION_LAWS, ("floor", "disk"))):
         one = worst.sel(friction_law=law, body=body, damping_ratio=0.0)
         panel.plot(one["angle"], one, label=f"{FRICTION_LAWS[law]} rule, {body}", **style.marked_line(k))
     panel.axhline(1.0, color=style.MUTED, linewidth=0.8, linestyle="-", zorder=0)
     panel.set(xlabel="angle from grazing [degrees]", ylabel="largest energy, after / before")
-    low, high = panel.get_ylim()
-    panel.set_ylim(low, high + 0.25 * (high - low))
     panel.legend(loc="upper right", ncols=2)
 
 
@@ -179,8 +173,6 @@ def _rolling(panel: Axes, study: xr.Dataset) -> None:
         panel.plot(time[some], one["exact_velocity"][some], label=label, **look | DOTS)
         hollow = {"markerfacecolor": "white", "markeredgewidth": 0.8}
         panel.plot(time[some], one["exact_rim_speed"][some], **look | DOTS | hollow)
-    low, high = panel.get_ylim()
-    panel.set_ylim(low, high + 0.15 * (high - low))
     panel.set(xlabel="time / time of sliding", ylabel=r"velocity (–), rim speed (– –) [$\sqrt{g\bar R}$]")
     panel.legend(title="at first", loc="lower right")
 
@@ -190,7 +182,7 @@ def _scenes(datasets: Mapping[str, xr.Dataset]) -> Figure:
     outcomes, residuals, rounding = axes[0]
     study = datasets["random_scenes"]
     code = study["outcome"].values
-    count = [int((code == k).sum()) for k in range(len(RANDOM))]
+    count = np.bincount(code, minlength=len(RANDOM)).tolist()
     place = np.arange(len(RANDOM))[::-1]
     bars = outcomes.barh(place, count, color=[style.SKY, style.SKY, *[style.ORANGE] * 4, style.VERMILION])
     for bar in bars[2:]:
@@ -210,8 +202,7 @@ def _scenes(datasets: Mapping[str, xr.Dataset]) -> Figure:
     residuals.set(xlabel=f"unbalanced force [${style.WEIGHT}$]", ylabel="certified scenes")
     disturbed = datasets["rounding"]
     rows = np.arange(disturbed.sizes["case"])[::-1]
-    for k in range(disturbed.sizes["kick"]):
-        rounding.plot(disturbed["response_change"].isel(kick=k), rows, "o", color=style.BLUE)
+    rounding.plot(disturbed["response_change"].transpose("case", "kick"), rows, "o", color=style.BLUE)
     rounding.axvline(float(disturbed["displacement"]), color=style.MUTED, linewidth=0.8, linestyle="--")
     rounding.set(xscale="log", xlim=(1e-13, 1.0), xticks=[1e-12, 1e-9, 1e-6, 1e-3, 1.0])
     names = [str(case).replace(", ", ",\n", 1) for case in disturbed["case"].values]

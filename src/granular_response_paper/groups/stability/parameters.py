@@ -15,15 +15,9 @@ from granular_response_paper.parameters import Integrators, Numbers, Positives, 
 Base = Annotated[Scene, over(Scene())]
 
 Axis = Literal[
-    "normal_stiffness",
-    "stiffness_ratio",
-    "damping_ratio",
-    "friction",
-    "wall_friction",
-    "wall_stiffness",
-    "polydispersity",
-    "load",
-]
+    "normal_stiffness", "stiffness_ratio", "damping_ratio", "friction", "wall_friction", "wall_stiffness",
+    "polydispersity", "load",
+]  # fmt: skip
 
 
 class TimeSteps(Description):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from itertools import product
+from itertools import chain
 from typing import Any, get_args
 
 import numpy as np
@@ -22,16 +22,8 @@ from granular_response.solvers.timestep import stability_limit
 from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.stability.parameters import (
-    Collisions,
-    Drift,
-    Parameters,
-    RandomScenes,
-    Rolling,
-    Rounding,
-    TimeSteps,
-)
-from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.groups.stability import parameters as given
+from granular_response_paper.records import axes, column, record, table, table_along, variables
 from granular_response_paper.tasks import computed
 from granular_response_paper.trials import closed_forms, random_scenes, time_steps
 from granular_response_paper.trials.rounding import Disturbed, disturb
@@ -56,7 +48,7 @@ BODIES, LAWS = ("floor", "disk"), ("cut", "literal")
 Study = tuple[Mapping[Any, Callable[[], Any]], Callable[[dict[Any, Any]], dict[str, xr.Dataset]]]
 
 
-def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+def simulate(parameters: given.Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``time_step_AXIS`` for each of ``time_steps.axes``, ``drift``, ``collisions``, ``rolling``, ``rounding``
     and ``random_scenes``.
     """
@@ -77,15 +69,13 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     return labelled(made)
 
 
-def _time_steps(asked: TimeSteps, seed: int) -> Study:
+def _time_steps(asked: given.TimeSteps, seed: int) -> Study:
     """By the name of an axis and the place on it."""
     tasks = {}
     for name, values in asked.axes.items():
         for k, value in enumerate(values):
-            if name == "load":
-                changes: dict[str, Any] = {"loads": [{"disk": "top-centre", "force": [0.0, -value]}] if value else []}
-            else:
-                changes = {AXES[name][0]: value}
+            loads = [{"disk": "top-centre", "force": [0.0, -value]}] if value else []
+            changes = {AXES[name][0]: loads if name == "load" else value}
             scene = asked.scene.updated({**changes, "protocol.time_step": "auto"})  # safe to come to rest with
             tasks[name, k] = partial(time_steps.tried, scene, asked.integrators, asked.ratios, asked.steps, seed)
 
@@ -93,12 +83,12 @@ def _time_steps(asked: TimeSteps, seed: int) -> Study:
         made = {}
         for name, values in asked.axes.items():
             several = {(i, k): one for k in range(len(values)) for i, one in enumerate(found[name, k])}
-            coordinates = {
-                "integrator": (asked.integrators, "integrator"),
-                name: (values, AXES[name][1]),
-                "ratio": (asked.ratios, "time step over the predicted limit"),
-            }
-            made[f"time_step_{name}"] = table(several, "integrator", name).assign_coords(axes(**coordinates))
+            made[f"time_step_{name}"] = table_along(
+                several,
+                integrator=(asked.integrators, "integrator"),
+                **{name: (values, AXES[name][1])},
+                ratio=(asked.ratios, "time step over the predicted limit"),
+            )
         return made
 
     return tasks, datasets
@@ -130,7 +120,7 @@ def drift(scene: Scene, system: str, integrator: str, part: float, time: float, 
     return Drifted(times, change / (0.5 if system == "bouncing disk" else closed_forms.kinetic_energy(state, problem)))
 
 
-def _drift(asked: Drift, seed: int) -> Study:
+def _drift(asked: given.Drift, seed: int) -> Study:
     systems = {  # friction and duration by what moves
         "bouncing disk": (0.0, asked.time),
         "slab": (0.0, asked.time),
@@ -141,8 +131,8 @@ def _drift(asked: Drift, seed: int) -> Study:
         scene = asked.scene.updated({"contact.friction": mu})
         for i, name in enumerate(asked.integrators):
             tasks[s, i] = partial(drift, scene, system, name, asked.part_of_limit, time, asked.kick, seed)
-    coordinates = axes(system=(systems, "what moves"), integrator=(asked.integrators, "integrator"))
-    return tasks, lambda found: {"drift": table(found, "system", "integrator").assign_coords(coordinates)}
+    along = {"system": (systems, "what moves"), "integrator": (asked.integrators, "integrator")}
+    return tasks, lambda found: {"drift": table_along(found, **along)}
 
 
 @record
@@ -157,24 +147,22 @@ def collide(scene: Scene, angles: tuple[float, ...], spins: tuple[float, ...], s
     return Collided(np.array(ratios))
 
 
-def _collisions(asked: Collisions) -> Study:
+def _collisions(asked: given.Collisions) -> Study:
     tasks = {}
-    places = product(*map(range, (len(BODIES), len(LAWS), len(asked.damping_ratios), len(asked.frictions))))
-    for b, k, d, f in places:
+    for b, k, d, f in np.ndindex(len(BODIES), len(LAWS), len(asked.damping_ratios), len(asked.frictions)):
         mu, ratio = asked.frictions[f], asked.damping_ratios[d]
         changes = {"contact.friction": mu, "wall.friction": mu, "contact.damping_ratio": ratio}
         scene = Scene().updated({**changes, "protocol.friction_law": LAWS[k], "loads": []})
         tasks[b, k, d, f] = partial(collide, scene, asked.angles, asked.spins, asked.time_step, BODIES[b])
-    coordinates = axes(
-        body=(BODIES, "what the disk hits"),
-        friction_law=(LAWS, "protocol.friction_law"),
-        damping_ratio=(asked.damping_ratios, AXES["damping_ratio"][1]),
-        friction=(asked.frictions, "coefficient of friction"),
-        angle=(asked.angles, "angle of incidence from grazing in degrees"),
-        spin=(asked.spins, "spin of the hitting disk, rim speed over speed"),
-    )
-    dims = ("body", "friction_law", "damping_ratio", "friction")
-    return tasks, lambda found: {"collisions": table(found, *dims).assign_coords(coordinates)}
+    along = {
+        "body": (BODIES, "what the disk hits"),
+        "friction_law": (LAWS, "protocol.friction_law"),
+        "damping_ratio": (asked.damping_ratios, AXES["damping_ratio"][1]),
+        "friction": (asked.frictions, "coefficient of friction"),
+        "angle": (asked.angles, "angle of incidence from grazing in degrees"),
+        "spin": (asked.spins, "spin of the hitting disk, rim speed over speed"),
+    }
+    return tasks, lambda found: {"collisions": table_along(found, **along)}
 
 
 @record
@@ -194,17 +182,17 @@ def roll(friction: float, speed: float, spin: float, step: float) -> Rolled:
     return Rolled(times, velocity, rim_speed, *closed_forms.rolling_speed(times, friction, speed, spin))
 
 
-def _rolling(asked: Rolling) -> Study:
+def _rolling(asked: given.Rolling) -> Study:
     tasks = {(k,): partial(roll, asked.friction, *start, asked.time_step) for k, start in enumerate(asked.starts)}
     friction = variable((), asked.friction, "coefficient of friction of the floor")
-    starts = {
-        "speed": variable("start", [v for v, _ in asked.starts], "velocity at first"),
-        "spin": variable("start", [w for _, w in asked.starts], "spin at first, counter-clockwise"),
-    }
+    speed, spin = zip(*asked.starts, strict=True)
+    starts = variables(
+        speed=("start", speed, "velocity at first"), spin=("start", spin, "spin at first, counter-clockwise")
+    )
     return tasks, lambda found: {"rolling": table(found, "start").assign_coords(starts).assign(friction=friction)}
 
 
-def _rounding(asked: Rounding, seed: int) -> Study:
+def _rounding(asked: given.Rounding, seed: int) -> Study:
     seeds = range(seed, seed + asked.kicks)
     tasks = {(k,): partial(disturb, scene, asked.displacement, seeds) for k, scene in enumerate(asked.scenes)}
     size = variable((), asked.displacement, "largest displacement of the rest state, in mean radii")
@@ -217,14 +205,12 @@ def _rounding(asked: Rounding, seed: int) -> Study:
     return tasks, datasets
 
 
-def _random_scenes(asked: RandomScenes, seed: int) -> Study:
+def _random_scenes(asked: given.RandomScenes, seed: int) -> Study:
     tasks = {
         (begin,): partial(_random_chunk, asked.maximum_steps, seed, begin, min(begin + asked.chunk, asked.number))
         for begin in range(0, asked.number, asked.chunk)
     }
-    return tasks, lambda found: {
-        "random_scenes": _random_scenes_dataset([one for each in found.values() for one in each])
-    }
+    return tasks, lambda found: {"random_scenes": _random_scenes_dataset([*chain(*found.values())])}
 
 
 def _random_chunk(steps: int, seed: int, begin: int, end: int) -> list[random_scenes.Trial]:
