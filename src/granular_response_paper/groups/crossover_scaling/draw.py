@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
@@ -126,8 +125,11 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
             exponents.append((f"$N^{{{said(power)}}}$", float(ends[1]), float(through[1]), look["color"]))
         style.logarithmic(axes)
         axes.set(xlabel="layers $N$", ylabel=style.FORCE)
-        _plain(axes, apart(slabs["layers"].values.tolist()))
-        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        ticks = apart(slabs["layers"].values.tolist())
+        axes.set_xticks(ticks, labels=[str(t) for t in ticks])
+        axes.xaxis.set_minor_formatter("")
+        axes.minorticks_off()
+        axes.yaxis.set(major_formatter="{x:g}", major_locator=LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.set_xlim(right=1.5 * float(slabs["layers"].max()))
         label_ends(axes, [end for end in exponents if np.isfinite(end[2])], gap=8.0, bbox=WHITE)
     key = panels[1, 1]
@@ -155,14 +157,6 @@ def apart(layers: Iterable[int]) -> list[int]:
         if not chosen or number > NEXT_LABEL * chosen[-1]:
             chosen.append(number)
     return chosen
-
-
-def _plain(axes: Axes, ticks: list[int]) -> None:
-    """Layers as they are, on a logarithmic axis."""
-    axes.set_xticks(ticks, labels=[str(t) for t in ticks])
-    axes.xaxis.set_minor_formatter("")
-    axes.minorticks_off()
-    axes.yaxis.set_major_formatter("{x:g}")
 
 
 def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure:
@@ -220,8 +214,7 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
         if low > 0.0:
             axes.set_ylim(low / 1.3, high * max((high / low) ** 0.5, 2.0))
         for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_formatter("{x:g}")
-            axis.set_minor_formatter("")
+            axis.set(major_formatter="{x:g}", minor_formatter="")
         if kind == "disks_per_layer":  # within a decade
             axes.set_xticks([2, 3, 4, 6], labels=["2", "3", "4", "6"])
         axes.legend(loc="upper left", fontsize=7)

@@ -17,9 +17,10 @@ The deepest slabs are simulated by the survey (:mod:`granular_response_paper.sur
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from itertools import product
 
 import numpy as np
 import xarray as xr
@@ -42,7 +43,6 @@ from granular_response_paper.slab_response import (
     Measures,
     by_motion,
     first_opening,
-    locate,
     reaches_floor,
 )
 from granular_response_paper.survey.packings import measured
@@ -69,9 +69,8 @@ class Slab:
     disks_per_row: int = column("disks in the bottom row")
     friction: float = column("coefficient of friction between disks")
     normal_stiffness: float = column("normal stiffness of contacts in mean weights per mean radius")
-    asked_confinement: float = column(
-        f"force of horizontal contacts that is asked for {WEIGHTS}"
-    )  #: of no meaning between walls
+    #: of no meaning between walls
+    asked_confinement: float = column(f"force of horizontal contacts that is asked for {WEIGHTS}")
     periodic: bool = column("1 for periodic sides, 0 for walls")
 
     def scene(self, base: Scene) -> Scene:
@@ -79,13 +78,8 @@ class Slab:
         packing: dict[str, int | float | str] = {"layers": self.layers, "disks_per_row": self.disks_per_row}
         if self.periodic:
             packing |= {"sides": "periodic", "lattice_constant": 2.0 - self.asked_confinement / self.normal_stiffness}
-        return base.updated(
-            {
-                "packing": packing,
-                "contact.friction": self.friction,
-                "contact.normal_stiffness": self.normal_stiffness,
-            }
-        )
+        contact = {"friction": self.friction, "normal_stiffness": self.normal_stiffness}
+        return base.updated({"packing": packing, "contact": contact})
 
 
 @record
@@ -122,26 +116,26 @@ def compute(
     measures = Measures(path)
     confinement = horizontal_force(measures)
 
-    asked = {
-        "first_opening": first_opening(measures),
-        "crossover": Happening(lambda state: measures.dip(state) > visible, EVENTS["crossover"]),
-        "two_peaks": Happening(measures.double_peaked, TWO_PEAKS),
-        "reaches_floor": reaches_floor(measures),
-    }
+    asked = [  # in the order of EVENTS
+        first_opening(measures),
+        Happening(lambda state: measures.dip(state) > visible, EVENTS["crossover"]),
+        Happening(measures.double_peaked, TWO_PEAKS),
+        reaches_floor(measures),
+    ]
     forces: list[float] = []
-    left = list(asked.values())
+    left = asked
     while left and len(forces) < most_forces:
         forces.append(confinement * first_force * factor ** len(forces))
         state = path.at(forces[-1])
         left = [what for what in left if not what.happened(state)]
     states = path.through(forces)
     width = NARROW if scene.contact.friction else tolerance
-    found = locate(path, forces, asked, width)
+    brackets = np.array([path.first(forces, what, width) for what in asked])
     regions = [measures.region(state) for state in states]
     return Outcome(
         confinement,
         linear_opening(measures, path.at(SMALL * confinement)),
-        np.array([(event.low, event.high) for event in found]),
+        brackets,
         float(sum(by_motion(state) for state in states)),
         np.array(forces),
         np.array([measures.dip(state) for state in states]),
@@ -229,34 +223,22 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     SweepError
         If a slab cannot be solved.
     """
-    found = slabs(parameters)
-    stored = packings(parameters, surveyed=True)
     done = measured(parameters, "slabs", packings, task, Outcome, work=_work)
-    datasets = slab_and_path_tables(found, [done[slab] for _, slab in found], stored)
+    datasets = slab_and_path_tables(slabs(parameters), done, packings(parameters, surveyed=True))
     datasets["slabs"].attrs.update(visible=parameters.visible, tolerance=parameters.tolerance)
     return labelled(datasets | {"powers": power_table(datasets["slabs"], parameters)}, parameters.base)
 
 
 def slabs(parameters: Parameters) -> list[tuple[str, Slab]]:
     """Names of series, each with one of its slabs; a slab that is in several series is there as often."""
-    return [
-        (
-            series.name,
-            Slab(
-                layers,
-                _odd(layers * across),
-                series.friction,
-                layers * stiffness,
-                confinement * (layers / PAPERS_LAYERS if series.confined == "as weight" else 1.0),
-                series.sides == "periodic",
-            ),
-        )
-        for series in parameters.series
-        for layers in series.heights
-        for across in series.disks_per_layer
-        for stiffness in series.stiffness_per_layer
-        for confinement in series.confinement
-    ]
+    found = []
+    for one in parameters.series:
+        each = product(one.heights, one.disks_per_layer, one.stiffness_per_layer, one.confinement)
+        for layers, across, stiffness, constant in each:
+            disks, periodic = _odd(layers * across), one.sides == "periodic"
+            confinement = constant * (layers / PAPERS_LAYERS if one.confined == "as weight" else 1.0)
+            found.append((one.name, Slab(layers, disks, one.friction, layers * stiffness, confinement, periodic)))
+    return found
 
 
 def packings(parameters: Parameters, *, surveyed: bool) -> dict[Slab, Slab]:
@@ -279,32 +261,20 @@ def _work(slab: Slab) -> float:
 
 def task(asked: Parameters, slab: Slab) -> partial[Outcome]:
     """One of these slabs."""
-    return partial(
-        compute,
-        slab.scene(asked.base),
-        asked.visible,
-        asked.first_force,
-        asked.factor,
-        asked.most_forces,
-        asked.tolerance,
-    )
+    given = asked.visible, asked.first_force, asked.factor, asked.most_forces, asked.tolerance
+    return partial(compute, slab.scene(asked.base), *given)
 
 
 def slab_and_path_tables(
-    found: Sequence[tuple[str, Slab]], outcomes: Sequence[Outcome], stored: Collection[Slab]
+    found: Sequence[tuple[str, Slab]], done: Mapping[Slab, Outcome], stored: Collection[Slab]
 ) -> dict[str, xr.Dataset]:
     """``slabs``: what each is, and its events; ``paths``: what is measured at its forces, nan beyond its last one."""
-    data = table(outcomes, "slab")
-    brackets = {
-        f"{name}_bracket": variable(
-            ("slab", "bracket"),
-            data["brackets"].values[:, k],
-            f"forces {WEIGHTS} between which: {text}; nan if not up to the first",
-        )
-        for k, (name, text) in enumerate(EVENTS.items())
-    }
     each = [slab for _, slab in found]
-    of = table(each, "slab")
+    of, data = table(each, "slab"), table([done[slab] for slab in each], "slab")
+    brackets = {}
+    for k, (name, event) in enumerate(EVENTS.items()):
+        text = f"forces {WEIGHTS} between which: {event}; nan if not up to the first"
+        brackets[f"{name}_bracket"] = variable(("slab", "bracket"), data["brackets"].values[:, k], text)
     kept = of[["layers", "disks_per_row", "friction", "normal_stiffness"]].variables
     coordinates = {
         "series": variable("slab", [name for name, _ in found], "series"),

@@ -96,9 +96,7 @@ def _growth(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
                 _widths(axes, data.isel(case=case).sel(definition="half_maximum"), name(data, case), look)
             axes.set(xscale="log", yscale="log", xlabel=rf"{label}$\,/\,{style.RADIUS}$", ylim=PER_DEPTH)
             for axis, ticks in ((axes.xaxis, TICKS), (axes.yaxis, (1.0, 2.0, 4.0, 6.0))):
-                axis.set_major_locator(LogLocator(subs=ticks))
-                axis.set_major_formatter("{x:g}")
-                axis.set_minor_formatter("")
+                axis.set(major_locator=LogLocator(subs=ticks), major_formatter="{x:g}", minor_formatter="")
             guide = np.array([10.0, 22.0])
             axes.plot(guide, 0.46 * (guide[0] / guide) ** (ELASTIC - DIFFUSIVE), linestyle=DOTTED, **GUIDE)
         panels[row, 0].set_ylabel(f"half width / {label}")

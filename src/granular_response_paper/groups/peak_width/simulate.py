@@ -132,13 +132,10 @@ def compute(scene: Scene, force: float, loads: int, margin: float, lines: int, w
         start, end = common_candidates([rest, loaded], packing.radius)
         middle = rest.position[int(problem.load_disk[0]), 0]
         fields = [(load_forces(start, end), middle, force)]
-    profile = np.zeros((len(line), len(t)))
-    transmitted = np.zeros(len(line))
-    for forces, x, size in fields:
-        for k in range(len(line)):
-            profile[k] += scaled(forces, x, line[k], depth[k], t, width) / size
-            transmitted[k] += line_forces(forces, line[k])[1].sum() / size
-    return Outcome(surface, depth, profile / len(fields), transmitted / len(fields), len(fields))
+    at = list(zip(line, depth, strict=True))
+    profiles = [[scaled(forces, x, *place, t, width) / size for place in at] for forces, x, size in fields]
+    transmitted = [[line_forces(forces, height)[1].sum() / size for height in line] for forces, _, size in fields]
+    return Outcome(surface, depth, np.mean(profiles, axis=0), np.mean(transmitted, axis=0), len(fields))
 
 
 def loaded_disks(packing: Packing, rest: State, margin: float, count: int) -> NDArray[np.intp]:
