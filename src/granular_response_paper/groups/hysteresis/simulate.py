@@ -31,25 +31,17 @@ from granular_response.solvers.work import slid, stored, work
 from granular_response.state import FloatArray, State
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.hysteresis.parameters import Parameters
 from granular_response_paper.records import axes, column, columns, labels, record, stacked, table
-from granular_response_paper.slab_response import (
-    FIRST_OPENING,
-    LINEARITY,
-    Happening,
-    LoadPath,
-    Measures,
-    by_motion,
-    first_change,
-    first_opening,
-)
+from granular_response_paper.slab_response import LINEARITY, Happening, LoadPath, Measures, by_motion
 from granular_response_paper.survey.packings import measured
 
 #: The three ways of a loop, in turn.
 BRANCHES = ("loading", "unloading", "loading again")
 EVENTS = {
-    "first_opening": FIRST_OPENING,
+    "first_opening": slab.FIRST_OPENING,
     "linear_range": f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at the smallest force",
     "reversible_range": "unloading leaves a floor force changed by more than the part left of the largest change",
 }
@@ -253,10 +245,10 @@ class Packing:
         path = self.path
         passed = sorted(path.known)
         linear = self.centre(path.known[forces[0]])
-        opening = first_opening(self.measures)
+        opening = slab.first_opening(self.measures)
         nonlinear = Happening(lambda state: abs(self.centre(state) / linear - 1.0) > LINEARITY, EVENTS["linear_range"])
         # a loop is known of where the load turns alone, and to each further force it is a way of its own
-        low, high = first_change(forces, [self.left_by(force) > left for force in forces])
+        low, high = slab.first_change(forces, [self.left_by(force) > left for force in forces])
         if np.isfinite(high) and high - low > tolerance * high:
             found = bisect_event(
                 lambda force: self.left_by(force) > left, low, high, tolerance * high, at_low=False, at_high=True

@@ -16,8 +16,8 @@ from granular_response.plot import style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, of_group
 from granular_response_paper.panels import different, family, label_ends, outer, packing, titles
+from granular_response_paper.survey.crossover import ABOVE, FOUND
 
-from .claims import ABOVE, FOUND
 from .parameters import Parameters
 
 #: Levels of the thick and of the thin bar.

@@ -23,24 +23,9 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import COLLAPSED, smoothed
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
 from granular_response_paper.records import axes, column, record, stacked, table, variables
+from granular_response_paper.survey import crossover
 from granular_response_paper.survey import datasets as survey
-from granular_response_paper.survey.crossover import (
-    ABOVE,
-    BELOW,
-    CONFIDENCE,
-    FOUND,
-    KINDS,
-    LEVELS,
-    Crossing,
-    Crossover,
-    Ensemble,
-    Singles,
-    cross,
-    folded,
-    shapes_of_samples,
-    singles,
-    weights,
-)
+from granular_response_paper.survey.crossover import CONFIDENCE, LEVELS, Crossing, Ensemble, Singles, folded
 
 #: A width of the Gaussian and a case.
 Place = tuple[int, int]
@@ -73,10 +58,10 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     for done, (w, case) in enumerate(places, 1):
         ensemble = read_ensemble(source, case, x, widths[w], asked.least_part)
         symmetric = Ensemble(ensemble.force, folded(ensemble.response), ensemble.least)
-        crossings[w, case] = cross(
+        crossings[w, case] = crossover.cross(
             symmetric, x, widths[w], numbers=asked.numbers, others=asked.other_tolerances, **drawn
         )
-        single[w, case] = singles(ensemble, x, widths[w], **drawn)
+        single[w, case] = crossover.singles(ensemble, x, widths[w], **drawn)
         if progress := current().progress:
             progress(done, len(places), "crossovers")
     found = _datasets(source, asked, crossings, single)
@@ -101,9 +86,10 @@ def _medians(usual: xr.Dataset, single: Mapping[Place, Singles], collapsed: NDAr
     """What ``crossovers`` holds, of the median realization; ``collapsed`` (case,) packings of each."""
     smallest, largest = (usual["limits"].values[..., end] for end in (0, 1))
     median = stacked({place: one.median for place, one in single.items()})
+    beyond = [crossover.BELOW, crossover.ABOVE]
     columns = {
         "force": np.clip(median, smallest, largest),
-        "kind": np.where(median == -np.inf, BELOW, np.where(median == np.inf, ABOVE, FOUND)).astype(np.int8),
+        "kind": np.select([median == -np.inf, median == np.inf], beyond, crossover.FOUND).astype(np.int8),
         "interval": stacked({place: one.median_interval for place, one in single.items()}),
         "draws": stacked({place: one.median_draws for place, one in single.items()}, np.float32),
     }
@@ -154,7 +140,7 @@ def _starts(
             distance = 2.0 / (1.0 - 0.5 * one.polydispersity) if usual else float(constant[case])
             count = int(packings["realizations"].values[case])
             packing = packings.isel(case=case, realization=slice(0, count))
-            drawn = weights(count, parameters.draws, parameters.seed)
+            drawn = crossover.weights(count, parameters.draws, parameters.seed)
             starts.append(Start.of(one.force, distance, packing, lattice, drawn))
             places.append((case, int(np.flatnonzero(under[case])[0])))
     order, steps = (xr.DataArray(list(each), dims="case") for each in zip(*places, strict=True))
@@ -180,7 +166,7 @@ def _means_of_few(
     for width, (case, step) in product(parameters.widths, places):
         rows = folded(read_ensemble(source, case, x, width, parameters.least_part).response[:, step])
         rows = rows[np.isfinite(rows[:, 0])]
-        shapes = shapes_of_samples(rows, x, width, number, seed=parameters.seed)
+        shapes = crossover.shapes_of_samples(rows, x, width, number, seed=parameters.seed)
         ends = np.quantile(np.quantile(shapes, LEVELS, axis=1), CONFIDENCE, axis=1).T
         quantiles.append(np.column_stack([np.quantile(shapes, LEVELS), ends]))
     every = np.reshape(quantiles, (len(parameters.widths), len(places), len(LEVELS), 3))
@@ -213,7 +199,7 @@ def _datasets(
     places = ("width", "case")
     of_mean, of_each = table(crossings, *places), table(single, *places)
     others = {(*place, k): other for place, one in crossings.items() for k, other in enumerate(one.others)}
-    by_tolerance = table(others, *places, "tolerance", kind=Crossover)
+    by_tolerance = table(others, *places, "tolerance", kind=crossover.Crossover)
     for data in (of_mean, by_tolerance):
         data["draws"] = data["draws"].astype(np.float32)
     for name in ("shape", "asymmetry", "difference"):
@@ -237,7 +223,7 @@ def _datasets(
     return {
         "crossovers": crossovers.assign_attrs(tolerance)
         .assign_coords(coordinates)
-        .assign_coords(axes(kind_of_draw=(KINDS, "kinds of bootstrap draws"))),
+        .assign_coords(axes(kind_of_draw=(crossover.KINDS, "kinds of bootstrap draws"))),
         "definitions": by_tolerance.assign(limits=crossovers["limits"].variable)
         .assign_coords(coordinates)
         .assign_coords(axes(tolerance=(parameters.other_tolerances, "shape from which on there are two peaks"))),

@@ -262,8 +262,8 @@ def _central_means(
         case = _case(averages, delta, friction)
         if case is not None:
             one = averages.isel(case=case, step=averages["count_at_rest"].values[case] >= 2).sel(width=width, x=0.0)
-            points = (one[name].values for name in ("force", "mean", "standard_error"))
-            axes.errorbar(*points, elinewidth=0.8, capsize=1.5, **look)
+            mean, error = one["mean"].values, one["standard_error"].values
+            axes.errorbar(one["force"].values, mean, error, elinewidth=0.8, capsize=1.5, **look)
 
 
 def _range_ends(axes: Axes, data: xr.Dataset, look: dict[str, Any], name: str) -> None:
