@@ -187,11 +187,9 @@ def _samples(realizations: int, number: int, seed: int, draws: int, samples: int
         yield drawn[rng.integers(0, realizations, (samples, number))]
 
 
-def shapes_of_samples(
-    responses: FloatArray, x: FloatArray, width: float, number: int, *, seed: int, draws: int = 200, samples: int = 400
-) -> FloatArray:
-    """(draws, samples) shapes of means of ``number`` of symmetric responses (r, x), each row from a draw of these."""
-    picked = _samples(len(responses), number, seed, draws, samples)
+def shapes_of_samples(responses: FloatArray, x: FloatArray, width: float, number: int, *, seed: int) -> FloatArray:
+    """(200, 400) shapes of means of ``number`` of symmetric responses (r, x), each row from a draw of these."""
+    picked = _samples(len(responses), number, seed, draws=200, samples=400)
     return np.stack([shape(x, responses[one].mean(axis=1), width) for one in picked])
 
 
@@ -355,9 +353,8 @@ def singles(
         return np.asarray(np.sqrt(np.maximum(squares - mean**2, 0.0)).mean(axis=-1))
 
     force, kind = passed(ensemble.force, grown(shapes), tolerance)
-    value = np.where(kind == BELOW, -np.inf, force)
-    usable = np.isfinite(value) | (kind == BELOW)
-    value, censored = np.where(usable, value, ensemble.force[0]), kind == ABOVE
+    value = np.where(kind == BELOW, -np.inf, np.nan_to_num(force, nan=ensemble.force[0]))
+    censored = kind == ABOVE
     medians = censored_medians(value, censored, drawn)
     return Singles(
         spread=deviation(square.mean(), mean),

@@ -32,7 +32,7 @@ from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.crossover_scaling.parameters import Parameters, Series, varied
-from granular_response_paper.records import axes, column, labels, record, table
+from granular_response_paper.records import axes, column, columns, labels, record, table
 from granular_response_paper.slab_response import (
     FIRST_OPENING,
     NARROW,
@@ -41,6 +41,7 @@ from granular_response_paper.slab_response import (
     Happening,
     LoadPath,
     Measures,
+    Scalars,
     by_motion,
     first_opening,
     reaches_floor,
@@ -90,16 +91,13 @@ class Outcome:
     linear_opening: float = column(
         f"force {WEIGHTS} at which the first contact would open if contacts went on as under a small one"
     )
-    brackets: FloatArray = column(
-        f"forces {WEIGHTS} between which: {'; '.join(EVENTS.values())}", "event", "bracket"
-    )  #: nan above for what was not seen
+    #: nan above for what was not seen
+    brackets: FloatArray = column(f"forces {WEIGHTS} between which: {'; '.join(EVENTS.values())}", "event", "bracket")
     by_motion: float = column(
         "steps of the force in which the motion of the disks had a part; nan: not recorded", later=True
     )
     force: FloatArray = column(f"applied force {WEIGHTS}", "line")
-    dip: FloatArray = column(
-        "how far the response at x = 0 is below the lower maximum beside it, per largest response", "line"
-    )
+    dip: FloatArray = column(columns(Scalars)["central_dip"].long_name, "line")
     depth: FloatArray = column(f"depth of the region of opened contacts below the loaded disk {RADII}", "line")
     width: FloatArray = column(f"largest width of the region of opened contacts {RADII}", "line")
     opened: FloatArray = column("contacts of the region", "line")
@@ -136,9 +134,9 @@ def compute(
         confinement,
         linear_opening(measures, path.at(SMALL * confinement)),
         brackets,
-        float(sum(by_motion(state) for state in states)),
+        float(sum(map(by_motion, states))),
         np.array(forces),
-        np.array([measures.dip(state) for state in states]),
+        np.array(list(map(measures.dip, states))),
         *np.array([(one.depth, one.width, one.count) for one in regions], float).T,
     )
 
@@ -218,10 +216,7 @@ def _slope(x: FloatArray) -> FloatArray:
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``slabs`` (slab), ``paths`` (slab, step) and ``powers`` (series).
 
-    Raises
-    ------
-    SweepError
-        If a slab cannot be solved.
+    Raises SweepError if a slab cannot be solved.
     """
     done = measured(parameters, "slabs", packings, task, Outcome, work=_work)
     datasets = slab_and_path_tables(slabs(parameters), done, packings(parameters, surveyed=True))
@@ -314,16 +309,17 @@ def power_table(slabs: xr.Dataset, parameters: Parameters) -> xr.Dataset:
             if series.varied == "layers":
                 far = law.at_size(parameters.extrapolated, continuum(series) if event != "first_opening" else None)
             found[s, e] = Fitted(law.exponent(), far)
-    texts = {"name": "series", "friction": "coefficient of friction", "varied": "what differs along the series"}
-    coordinates = labels("series", parameters.series, **texts)
     confined = ["walls" if one.sides == "walls" else one.confined for one in parameters.series]
-    data = table(found, "series", "event").assign_coords(
-        {"series": coordinates.pop("name"), **coordinates}
-        | {"confined": variable("series", confined, "what sets the force of horizontal contacts at rest")}
-        | axes(event=(events, "event"), end=(ends, "value and ends of the interval"))
-    )
-    data.attrs["layers"] = parameters.extrapolated
-    return data
+    coordinates = {
+        "series": variable("series", [one.name for one in parameters.series], "series"),
+        **labels(
+            "series", parameters.series, friction="coefficient of friction", varied="what differs along the series"
+        ),
+        "confined": variable("series", confined, "what sets the force of horizontal contacts at rest"),
+        **axes(event=(events, "event"), end=(ends, "value and ends of the interval")),
+    }
+    data = table(found, "series", "event").assign_coords(coordinates)
+    return data.assign_attrs(layers=parameters.extrapolated)
 
 
 def continuum(series: Series) -> float | None:

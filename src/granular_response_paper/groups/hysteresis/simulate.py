@@ -181,8 +181,7 @@ class Packing:
         self.problem = self.path.problem
         self.disk = int(self.problem.load_disk[0])
         self.width = width
-        #: by force, what a loop to it leaves
-        self.known_left: dict[float, float] = {}
+        self.known_left: dict[float, float] = {}  #: by force, what a loop to it leaves
 
     def added(self, state: State) -> FloatArray:
         """(disk,) floor forces that are not there at rest."""
@@ -196,15 +195,12 @@ class Packing:
         """Response at x = 0."""
         return self.measures.centre(state, self.width)
 
-    def after(self, state: State, loads: Sequence[float]) -> list[State]:
-        """States at ``loads`` in turn, from ``state`` on."""
-        return loaded_states(self.problem, state, loads)[1]
-
     def left_by(self, force: float) -> float:
         """Largest change of a floor force that unloading from ``force`` leaves, per largest change under the load."""
         if force not in self.known_left:
             loaded = self.path.at(force)
-            left, under = (np.abs(self.added(state)).max() for state in (self.after(loaded, [0.0])[0], loaded))
+            unloaded = loaded_states(self.problem, loaded, [0.0])[1][0]
+            left, under = (np.abs(self.added(state)).max() for state in (unloaded, loaded))
             self.known_left[force] = float(left / under)
         return self.known_left[force]
 
@@ -242,8 +238,7 @@ class Packing:
 
     def events(self, forces: Sequence[float], left: float, tolerance: float) -> list[tuple[float, float]]:
         """Brackets of ``EVENTS``; see the module."""
-        path = self.path
-        passed = sorted(path.known)
+        path, passed = self.path, sorted(self.path.known)
         linear = self.centre(path.known[forces[0]])
         opening = slab.first_opening(self.measures)
         nonlinear = Happening(lambda state: abs(self.centre(state) / linear - 1.0) > LINEARITY, EVENTS["linear_range"])
@@ -273,7 +268,8 @@ def compute(
     for force in forces:
         turn = loads.index(force)
         ways = [*loads[turn - 1 :: -1], *loads[1 : turn + 1]]
-        states = common_candidates([*first[: turn + 1], *packing.after(first[turn], ways)], radius)
+        further = loaded_states(packing.problem, first[turn], ways)[1]
+        states = common_candidates([*first[: turn + 1], *further], radius)
         found.append(packing.turn(states, turn, force, forces[0]))
     return Outcome(
         np.array([astuple(turn) for turn, _ in found], float),

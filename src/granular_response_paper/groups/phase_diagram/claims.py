@@ -136,9 +136,9 @@ def two_peaks_or_one(data: Data, words: Bounds) -> Finding:
 def _tail(case: xr.Dataset, level: float) -> Quantity:
     """A quantile of the dip of means of ``SHOWN`` realizations, with 95 % of its bootstrap draws."""
     one = at(case, level=level)
-    low, high = one["dip_of_means_interval"].values
+    low, high = one["dip_of_means_interval"].values.tolist()
     test = f"quantile of means of {SHOWN}, bootstrap"
-    return Quantity(float(one["dip_of_means"]), float(low), float(high), "confidence", test, _packings_of(case))
+    return Quantity(float(one["dip_of_means"]), low, high, "confidence", test, _packings_of(case))
 
 
 @dataclass(frozen=True)
@@ -491,12 +491,12 @@ def linear_ends(path: xr.Dataset, tolerance: float, measure: str = CENTRE) -> Fl
     return np.array(found)
 
 
-def linear_end(path: xr.Dataset, tolerance: float, measure: str = CENTRE) -> Quantity:
-    """The median force at which realizations leave their linear range; a bound where half of them do not.
+def linear_end(path: xr.Dataset, tolerance: float) -> Quantity:
+    """The median force at which profiles of realizations leave their linear range; a bound where half of them do not.
 
     Raises NotMeasured for two realizations or none; a lattice has one, without scatter.
     """
-    found = linear_ends(path, tolerance, measure)
+    found = linear_ends(path, tolerance, PROFILE)
     CLAIMS.needs(found.size not in (0, 2), "linear_range holds too few realizations")
     force = path["applied_force"].values
     last = float(force[np.isfinite(path[CENTRE].transpose("realization", "step").values).any(axis=0)].max())
@@ -554,7 +554,7 @@ def shorter_with_disorder(data: Data, words: Bounds) -> Finding:
         conditions = []
         for mu in frictions:
             cases = [_case(study, delta, mu) for delta in (0.0, *usual)]
-            lattice, *medians = (linear_end(case, tolerance, PROFILE) for case in cases)
+            lattice, *medians = (linear_end(case, tolerance) for case in cases)
             order = order_of([linear_ends(case, tolerance, PROFILE) for case in cases[1:]])
             name = f"friction {mu:g}"
             back = Quantity.exact(sum(after.per(before).low > 1.0 for before, after in pairwise(medians)))

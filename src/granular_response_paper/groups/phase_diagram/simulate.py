@@ -41,12 +41,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     the median realization; ``shapes``, the shape against the force; ``realizations``, one by one; ``packings`` at rest;
     ``starts`` side by side; ``linear_range``, the response under small forces beside smooth walls, and its change.
 
-    Raises
-    ------
-    granular_response.store.files.StoreError
-        If the survey cannot be read.
-    ValueError
-        If a parameter is out of range.
+    Raises StoreError if the survey cannot be read, ValueError if a parameter is out of range.
     """
     asked, widths = parameters, parameters.widths
     x = np.arange(round(asked.reach / asked.spacing) + 1, dtype=float) * asked.spacing
@@ -219,18 +214,15 @@ def _datasets(
         width=(parameters.widths, f"width w of the smoothing Gaussian {RADII}"),
         level=(LEVELS, "part of the bootstrap draws below"),
     ) | {name: source[name].variable for name in CASE}
-    tolerance = {"tolerance": parameters.tolerance}
-    return {
-        "crossovers": crossovers.assign_attrs(tolerance)
-        .assign_coords(coordinates)
-        .assign_coords(axes(kind_of_draw=(crossover.KINDS, "kinds of bootstrap draws"))),
-        "definitions": by_tolerance.assign(limits=crossovers["limits"].variable)
-        .assign_coords(coordinates)
-        .assign_coords(axes(tolerance=(parameters.other_tolerances, "shape from which on there are two peaks"))),
-        "shapes": shapes.assign_attrs(tolerance)
-        .assign_coords(coordinates)
-        .assign_coords(axes(number=(parameters.numbers, "realizations in a mean"))),
-        "realizations": realizations.assign(
-            variables(collapse_force=("case realization", collapse, collapsed))
-        ).assign_coords(coordinates),
+    kinds = axes(kind_of_draw=(crossover.KINDS, "kinds of bootstrap draws"))
+    tolerances = axes(tolerance=(parameters.other_tolerances, "shape from which on there are two peaks"))
+    found = {
+        "crossovers": (crossovers.assign_attrs(tolerance=parameters.tolerance), kinds),
+        "definitions": (by_tolerance.assign(limits=crossovers["limits"].variable), tolerances),
+        "shapes": (
+            shapes.assign_attrs(tolerance=parameters.tolerance),
+            axes(number=(parameters.numbers, "realizations in a mean")),
+        ),
+        "realizations": (realizations.assign(variables(collapse_force=("case realization", collapse, collapsed))), {}),
     }
+    return {name: data.assign_coords(coordinates | own) for name, (data, own) in found.items()}

@@ -160,10 +160,9 @@ def _contact_forces(data: xr.Dataset) -> FloatArray:
     """(state, m, 2) forces on the first disks of all contacts, then those of the walls."""
     position = data["position"].values
     between = position[:, data["contact_disk"].values] - position[:, data["contact_partner"].values]
-    walls = WALL_NORMAL[data["wall_index"].values.astype(int)]
     normals = {
         "contact": between / np.linalg.norm(between, axis=-1, keepdims=True),
-        "wall": np.broadcast_to(walls, (len(position), *walls.shape)),
+        "wall": WALL_NORMAL[data["wall_index"].values.astype(int)],
     }
     forces = [
         contact_force(normal, data[f"{kind}_normal_force"].values, data[f"{kind}_tangential_force"].values)
@@ -187,8 +186,7 @@ def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
             if case is None:
                 axes.set_axis_off()
                 continue
-            rows = data["response"].values[case]
-            rows = rows[np.isfinite(rows).all(axis=1)]
+            rows = data["response"].isel(case=case).dropna("realization").values
             mean, error = rows.mean(axis=0), rows.std(axis=0, ddof=1) / np.sqrt(len(rows))
             _elastic(axes, averages, float(data["width"]))
             axes.plot(x, rows.T, color="#909090", linewidth=0.4, linestyle="-")
