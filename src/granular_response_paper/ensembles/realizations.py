@@ -25,7 +25,7 @@ from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_RE
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup
 from granular_response_paper.parameters import material
 from granular_response_paper.records import column, columns, record
-from granular_response_paper.slab_response import LoadPath, by_motion, lost
+from granular_response_paper.slab_response import LoadPath, by_motion, lost, wall_margin
 
 #: Bins of the contact angles over half a turn.
 ANGLE_BINS = 36
@@ -60,7 +60,7 @@ class Packed:
         count = rest.position.shape[0]
         touching = rest.pairs.touching
         horizontal = np.abs(np.abs(rest.pair_normal()[touching, 0])) > np.cos(np.pi / 6.0)
-        bulk = network.bulk_disks(rest, problem.packing.width, min(10.0, 0.2 * problem.packing.width))
+        bulk = network.bulk_disks(rest, problem.packing.width, wall_margin(problem.packing.width))
         return cls(
             coordination_number=network.coordination_number(rest),
             coordination_number_bulk=network.coordination_number(rest, bulk) if bulk.any() else float("nan"),

@@ -338,6 +338,12 @@ class Singles:
     median_interval: FloatArray = column("quantiles of the bootstrapped median", "level")
     median_draws: FloatArray  #: (draws,) infinite beyond bounds
 
+    def middle(self, smallest: float, largest: float) -> Crossover:
+        """The crossover of the median realization on a path between these forces."""
+        kind = {-np.inf: BELOW, np.inf: ABOVE}.get(self.median, FOUND)
+        force = float(np.clip(self.median, smallest, largest))
+        return Crossover(force, np.int8(kind), self.median_interval, self.median_draws)
+
 
 def singles(
     ensemble: Ensemble, x: FloatArray, width: float, *, draws: int, seed: int, tolerance: float = 0.0

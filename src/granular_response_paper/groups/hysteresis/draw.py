@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family, material, titles, zero
+from granular_response_paper.panels import different, family, material, titles, zero
 
 from .parameters import Parameters
 
@@ -76,7 +76,7 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
     figure, ((loops, below),) = style.figure(1, 2, width="double", height=2.9)
     friction = curves["friction"].values
     cases, one = looped(curves["polydispersity"].values, friction)
-    colours = dict(family(sorted(set(friction[cases])), of="friction"))
+    colours = dict(family(different(friction[cases]), of="friction"))
     for k, case in enumerate(cases):
         look = {"color": colours[friction[case]]["color"], "linestyle": "-", "linewidth": 1.0}
         x, load = (curves[name].isel(case=case).values for name in ("displacement", "load"))
@@ -112,8 +112,7 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
     delta, friction = loops["polydispersity"].values, loops["friction"].values
     lost = ((loops[f"slid{again}"] + loops[f"crossed{again}"]) / loops["work"] for again in ("", "_again"))
     parts = (loops["floor_left"], *lost)
-    spreads = sorted(set(delta))
-    colours = dict(family(sorted(set(friction)), of="friction"))
+    spreads, colours = different(delta), dict(family(different(friction), of="friction"))
     for case in np.flatnonzero(friction > 0.0):
         dash = style.LINE_STYLES[spreads.index(delta[case])]
         look = colours[friction[case]] | {"linestyle": dash, "label": material(delta[case], friction[case])}

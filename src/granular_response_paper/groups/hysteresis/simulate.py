@@ -302,8 +302,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     )  # fmt: skip
     events["definition"] = variable("event", list(EVENTS.values()), "what counts as the event")
     events.attrs["left"] = parameters.left
-    first = {(c,): outcomes[c, 0].shown for c in range(len(cases))}
-    shown = table({place: one for place, one in first.items() if one}, "case")
+    shown = table([outcomes[c, 0].shown for c in range(len(cases))], "case")
     shown = shown.assign_coords(coordinates | axes(branch=(BRANCHES, "way")))
     datasets = {
         "loops": loops.assign_coords(coordinates),

@@ -13,7 +13,7 @@ from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
 from granular_response_paper.captions import RADIUS, WEIGHT, Caption, of_group, of_scene
-from granular_response_paper.panels import SURVEYED, family, material, titles
+from granular_response_paper.panels import SURVEYED, different, family, material, titles
 
 from .parameters import Parameters
 
@@ -89,7 +89,7 @@ def _growth(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
     for row, (data, label) in enumerate(((inside, "depth"), (floors, "height of the slab"))):
         for (_, cases), axes in zip(parts, panels[row], strict=True):
             along = "polydispersity" if data["polydispersity"].values[cases].any() else "friction"
-            ramp = dict(family(sorted(set(data[along].values[cases].tolist())), of=along))
+            ramp = dict(family(different(data[along][cases]), of=along))
             for place, case in enumerate(cases):
                 colour = ramp[float(data[along][case])]["color"]
                 look = style.marked_line(place, colour=colour) | {"linestyle": "none", "markersize": 3.8}

@@ -161,19 +161,17 @@ def scaled(forces: ContactForces, x: float, height: float, depth: float, t: Floa
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``inside`` and ``floors``."""
     outcomes = measured(parameters, "slabs", packings, task, Outcome)
-    cases = [
-        [[outcomes[c, h, r] for r in range(case.count(h))] for h in range(len(case.heights))]
+    each = [
+        (case, [[outcomes[c, h, r] for r in range(case.count(h))] for h in range(len(case.heights))])
         for c, case in enumerate(parameters.cases)
     ]
-    each = list(zip(parameters.cases, cases, strict=True))
     inside = table([_inside(parameters, case, found[-1]) for case, found in each], "case").rename_dims(along="line")
     floors = table([_floors(parameters, case, found) for case, found in each], "case").rename_dims(along="slab")
+    given = {"fitted": list(parameters.fitted), "width": parameters.width}
     datasets = {
-        "inside": inside.assign_coords(_coordinates(parameters, "of the lines")),
-        "floors": floors.assign_coords(_coordinates(parameters, "of the slabs")),
+        "inside": inside.assign_coords(_coordinates(parameters, "of the lines")).assign_attrs(given),
+        "floors": floors.assign_coords(_coordinates(parameters, "of the slabs")).assign_attrs(given),
     }
-    for dataset in datasets.values():
-        dataset.attrs.update({"fitted": list(parameters.fitted), "width": parameters.width})
     return labelled(datasets, parameters.base)
 
 

@@ -14,15 +14,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.state import FloatArray
-from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.resources import current
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import COLLAPSED, smoothed
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
-from granular_response_paper.records import axes, column, record, stacked, table, variables
+from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.survey import crossover
 from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import CONFIDENCE, LEVELS, Crossing, Ensemble, Singles, folded
@@ -61,7 +60,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
             progress(done, len(places), "crossovers")
     found = _datasets(source, asked, crossings, single)
     collapsed = (source["outcome"].values == COLLAPSED).any(axis=-1).sum(axis=-1).astype(np.int32)
-    found["medians"] = _medians(found["crossovers"], single, collapsed)
+    text = "packings that collapse along their load paths"
+    found["medians"] = found["medians"].assign(variables(collapsed=("case", collapsed, text)))
     found["packings"] = packings.drop_vars("processor_time", errors="ignore")
     found["starts"] = _starts(source, asked, found["shapes"], packings, x)
     small = survey.read(Path(asked.survey), [asked.linear_range])["ensembles"]
@@ -77,22 +77,6 @@ def read_ensemble(source: xr.Dataset, case: int, x: FloatArray, width: float, le
     return Ensemble(one["force"].values[used], response, max(1, int(np.ceil(least_part * len(response)))))
 
 
-def _medians(usual: xr.Dataset, single: Mapping[Place, Singles], collapsed: NDArray[np.int32]) -> xr.Dataset:
-    """What ``crossovers`` holds, of the median realization; ``collapsed`` (case,) packings of each."""
-    smallest, largest = (usual["limits"].values[..., end] for end in (0, 1))
-    median = stacked({place: one.median for place, one in single.items()})
-    beyond = [crossover.BELOW, crossover.ABOVE]
-    columns = {
-        "force": np.clip(median, smallest, largest),
-        "kind": np.select([median == -np.inf, median == np.inf], beyond, crossover.FOUND).astype(np.int8),
-        "interval": stacked({place: one.median_interval for place, one in single.items()}),
-        "draws": stacked({place: one.median_draws for place, one in single.items()}, np.float32),
-    }
-    medians: dict[str, Any] = {name: usual[name].copy(data=values) for name, values in columns.items()}
-    medians["collapsed"] = variable("case", collapsed, "packings that collapse along their load paths")
-    return usual[[*columns, "limits"]].assign(medians)
-
-
 _BOOTSTRAPPED = "quantiles of the bootstrapped mean"
 _APPLIED = f"applied force {WEIGHTS}"
 
@@ -101,7 +85,7 @@ _APPLIED = f"applied force {WEIGHTS}"
 class Start:
     """What touches at rest in the packings of one start, and under which force the response is compared."""
 
-    applied_force: float = column(f"applied force {WEIGHTS}")
+    applied_force: float = column(_APPLIED)
     distance: float = column(f"distance of neighbours before gravity acts {RADII}")
     contacts: float = column("mean number of contacts of a disk at rest, walls counted")
     contacts_interval: FloatArray = column(_BOOTSTRAPPED, "level")
@@ -190,12 +174,13 @@ def _linear_range(source: xr.Dataset, width: float, x: FloatArray) -> xr.Dataset
 def _datasets(
     source: xr.Dataset, parameters: Parameters, crossings: Mapping[Place, Crossing], single: Mapping[Place, Singles]
 ) -> dict[str, xr.Dataset]:
-    """``crossovers``, ``definitions``, ``shapes`` and ``realizations``."""
+    """``crossovers``, ``definitions``, ``shapes``, ``realizations`` and ``medians``."""
     places = ("width", "case")
     of_mean, of_each = table(crossings, *places), table(single, *places)
     others = {(*place, k): other for place, one in crossings.items() for k, other in enumerate(one.others)}
     by_tolerance = table(others, *places, "tolerance", kind=crossover.Crossover)
-    for data in (of_mean, by_tolerance):
+    medians = table({place: single[place].middle(*one.limits) for place, one in crossings.items()}, *places)
+    for data in (of_mean, by_tolerance, medians):
         data["draws"] = data["draws"].astype(np.float32)
     for name in ("shape", "asymmetry", "difference"):
         of_each[name] = of_each[name].astype(np.float32)
@@ -214,15 +199,14 @@ def _datasets(
         width=(parameters.widths, f"width w of the smoothing Gaussian {RADII}"),
         level=(LEVELS, "part of the bootstrap draws below"),
     ) | {name: source[name].variable for name in CASE}
+    tolerance = {"tolerance": parameters.tolerance}
     kinds = axes(kind_of_draw=(crossover.KINDS, "kinds of bootstrap draws"))
     tolerances = axes(tolerance=(parameters.other_tolerances, "shape from which on there are two peaks"))
     found = {
-        "crossovers": (crossovers.assign_attrs(tolerance=parameters.tolerance), kinds),
+        "crossovers": (crossovers.assign_attrs(tolerance), kinds),
         "definitions": (by_tolerance.assign(limits=crossovers["limits"].variable), tolerances),
-        "shapes": (
-            shapes.assign_attrs(tolerance=parameters.tolerance),
-            axes(number=(parameters.numbers, "realizations in a mean")),
-        ),
+        "shapes": (shapes.assign_attrs(tolerance), axes(number=(parameters.numbers, "realizations in a mean"))),
         "realizations": (realizations.assign(variables(collapse_force=("case realization", collapse, collapsed))), {}),
+        "medians": (medians.assign(limits=crossovers["limits"].variable).assign_attrs(tolerance), {}),
     }
     return {name: data.assign_coords(coordinates | own) for name, (data, own) in found.items()}
