@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations, pairwise, product
 
 import numpy as np
@@ -271,14 +272,8 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
     )
 
 
-@CLAIMS.measures("D3a")
-def rises_with_friction(data: Data, words: Bounds) -> Finding:
-    return _orders(data, words, "friction", "rises")
-
-
-@CLAIMS.measures("D3b")
-def falls_with_disorder(data: Data, words: Bounds) -> Finding:
-    return _orders(data, words, "polydispersity", "falls")
+CLAIMS.measures("D3a")(partial(_orders, what="friction", rising="rises"))
+CLAIMS.measures("D3b")(partial(_orders, what="polydispersity", rising="falls"))
 
 
 def _away(data: Data, words: Bounds) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
