@@ -155,3 +155,8 @@ def grey_limit(axes: Axes, x: FloatArray, response: FloatArray) -> None:
 def different(values: ArrayLike) -> list[Any]:
     """Each of some values once, in their order."""
     return np.unique(np.asarray(values)).tolist()
+
+
+#: Lines to compare curves with, behind these, and their dashes.
+GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
+DASHED, DOTTED = (0, (4, 2)), (0, (1, 1.5))

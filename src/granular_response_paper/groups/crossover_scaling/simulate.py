@@ -30,22 +30,11 @@ from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response_paper import slab_response
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.crossover_scaling.parameters import Parameters, Series, varied
 from granular_response_paper.records import axes, column, columns, labels, record, table
-from granular_response_paper.slab_response import (
-    FIRST_OPENING,
-    NARROW,
-    REACHES_FLOOR,
-    TWO_PEAKS,
-    Happening,
-    LoadPath,
-    Measures,
-    Scalars,
-    by_motion,
-    first_opening,
-    reaches_floor,
-)
+from granular_response_paper.slab_response import Happening, LoadPath, Measures, Scalars, by_motion
 from granular_response_paper.survey.packings import measured
 
 #: Layers of the paper's slab, to which a confinement in proportion to the weight refers.
@@ -55,10 +44,10 @@ PAPERS_LAYERS = 15
 SMALL = 0.1
 
 EVENTS = {
-    "first_opening": FIRST_OPENING,
+    "first_opening": slab_response.FIRST_OPENING,
     "crossover": "the floor response at x = 0 is visibly below both maxima beside it",
-    "two_peaks": TWO_PEAKS,
-    "reaches_floor": REACHES_FLOOR,
+    "two_peaks": slab_response.TWO_PEAKS,
+    "reaches_floor": slab_response.REACHES_FLOOR,
 }
 
 
@@ -115,10 +104,10 @@ def compute(
     confinement = horizontal_force(measures)
 
     asked = [  # in the order of EVENTS
-        first_opening(measures),
+        slab_response.first_opening(measures),
         Happening(lambda state: measures.dip(state) > visible, EVENTS["crossover"]),
-        Happening(measures.double_peaked, TWO_PEAKS),
-        reaches_floor(measures),
+        Happening(measures.double_peaked, slab_response.TWO_PEAKS),
+        slab_response.reaches_floor(measures),
     ]
     forces: list[float] = []
     left = asked
@@ -127,7 +116,7 @@ def compute(
         state = path.at(forces[-1])
         left = [what for what in left if not what.happened(state)]
     states = path.through(forces)
-    width = NARROW if scene.contact.friction else tolerance
+    width = slab_response.NARROW if scene.contact.friction else tolerance
     brackets = np.array([path.first(forces, what, width) for what in asked])
     regions = [measures.region(state) for state in states]
     return Outcome(

@@ -12,14 +12,12 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import among, family, packing, titles
+from granular_response_paper.panels import DASHED, DOTTED, GUIDE, among, family, packing, titles
 
 from .parameters import Parameters
 
 #: Of the panels against friction or polydispersity alone.
 POLYDISPERSITY, FRICTION = 0.1, 0.2
-GUIDE = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
-DASHED, DOTTED = (0, (4, 2)), (0, (1, 1.5))
 
 
 @style.context()

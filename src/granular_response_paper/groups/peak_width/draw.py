@@ -13,7 +13,7 @@ from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
 from granular_response_paper.captions import RADIUS, WEIGHT, Caption, of_group, of_scene
-from granular_response_paper.panels import SURVEYED, different, family, material, titles
+from granular_response_paper.panels import DASHED, DOTTED, GUIDE, SURVEYED, different, family, material, titles
 
 from .parameters import Parameters
 
@@ -22,12 +22,10 @@ ELASTIC, DIFFUSIVE = 1.0, 0.5
 HALFWAY = 0.5 * (ELASTIC + DIFFUSIVE)
 #: Two definitions of the width: label, and filling of the symbols.
 DEFINITIONS = {"half_maximum": ("at half maximum", "full"), "half_force": ("with half of the force", "none")}
-GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
 #: Half widths per depth that are shown.
 PER_DEPTH = 0.28, 2.0
 #: Labelled on logarithmic axes, in every decade.
 TICKS = (1.0, 2.0, 5.0)
-DASHED, DOTTED = (0, (4, 2)), (0, (1, 1.5))
 
 
 @style.context()
