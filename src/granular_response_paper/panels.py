@@ -150,3 +150,13 @@ def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap
 def grey_limit(axes: Axes, x: FloatArray, response: FloatArray) -> None:
     """The elastic response, or that to the smallest force, as a broad grey line behind all others."""
     axes.plot(x, response, color=style.FAINT, linestyle="-", linewidth=3.5, zorder=1, label="elastic")
+
+
+def different(values: ArrayLike) -> list[Any]:
+    """Each of some values once, in their order."""
+    return np.unique(np.asarray(values)).tolist()
+
+
+#: Lines to compare curves with, behind these, and their dashes.
+GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
+DASHED, DOTTED = (0, (4, 2)), (0, (1, 1.5))

@@ -25,7 +25,7 @@ from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_RE
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup
 from granular_response_paper.parameters import material
 from granular_response_paper.records import column, columns, record
-from granular_response_paper.slab_response import LoadPath, by_motion, lost
+from granular_response_paper.slab_response import LoadPath, by_motion, lost, wall_margin
 
 #: Bins of the contact angles over half a turn.
 ANGLE_BINS = 36
@@ -60,7 +60,7 @@ class Packed:
         count = rest.position.shape[0]
         touching = rest.pairs.touching
         horizontal = np.abs(np.abs(rest.pair_normal()[touching, 0])) > np.cos(np.pi / 6.0)
-        bulk = network.bulk_disks(rest, problem.packing.width, min(10.0, 0.2 * problem.packing.width))
+        bulk = network.bulk_disks(rest, problem.packing.width, wall_margin(problem.packing.width))
         return cls(
             coordination_number=network.coordination_number(rest),
             coordination_number_bulk=network.coordination_number(rest, bulk) if bulk.any() else float("nan"),
@@ -133,11 +133,9 @@ def realize(
     try:
         path = LoadPath.of(scene)
     except SolveError as error:
-        none = np.zeros(0)
-        outcome[:1] = FAILED
-        return Realization(
-            none, none, np.zeros((count, 0)), outcome, f"gravity: {error}", Loaded(**loaded), Packed.unknown(), ()
-        )
+        outcome[:1], message, none = FAILED, f"gravity: {error}", np.zeros(0)
+        unknown = Loaded(**loaded), Packed.unknown()
+        return Realization(none, none, np.zeros((count, 0)), outcome, message, *unknown, ())
     problem, rest = path.problem, path.rest
     disk = int(problem.load_disk[0])
     path.lowest = float(rest.position[disk, 1]) - collapse_depth
@@ -154,7 +152,7 @@ def realize(
         moved = state.position - rest.position
         values = {
             "sink": -moved[disk, 1],
-            "largest_displacement": np.hypot(moved[:, 0], moved[:, 1]).max(),
+            "largest_displacement": np.hypot(*moved.T).max(),
             "lost": len(lost([state])),
             "by_motion": by_motion(state),
             **_certified(state, Loaded),
@@ -171,18 +169,10 @@ def realize(
     response = np.full((count, len(disks)), np.nan)
     for k, one in enumerate(states):
         response[k] = (floor_force(one, disks) - at_rest) / forces[k]
-    kept = tuple(states[k] for k in range(len(states)) if forces[k] in keep)
+    kept = (rest, *(states[k] for k in range(len(states)) if forces[k] in keep)) if keep else ()
     x = rest.position[disks, 0] - rest.position[disk, 0]
-    return Realization(
-        x,
-        at_rest,
-        response,
-        outcome,
-        message,
-        Loaded(**loaded),
-        Packed.of(problem, rest),
-        (rest, *kept) if keep else (),
-    )
+    known = Loaded(**loaded), Packed.of(problem, rest)
+    return Realization(x, at_rest, response, outcome, message, *known, kept)
 
 
 def ensemble_task(parameters: EnsembleGroup, case: Case, realization: int) -> partial[Realization]:

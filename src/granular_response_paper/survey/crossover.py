@@ -29,7 +29,7 @@ the mean hangs on a few and leaves out the weakest.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -179,20 +179,18 @@ def two_peaked_means(
     return result
 
 
-def shapes_of_samples(
-    responses: FloatArray, x: FloatArray, width: float, number: int, *, seed: int, draws: int = 200, samples: int = 400
-) -> FloatArray:
-    """(draws, samples) shapes of means of ``number`` realizations, each row from a draw of the realizations.
-
-    What an ensemble of symmetric responses (r, x) knows of such means: each draw holds r of them, with replacement, and
-    of each ``samples`` means are taken.
-    """
+def _samples(realizations: int, number: int, seed: int, draws: int, samples: int) -> Iterator[NDArray[np.int64]]:
+    """For each draw of the realizations with replacement: (samples, number) which of them are in means of so many."""
     rng = np.random.default_rng(seed)
-    shapes = np.empty((draws, samples))
-    for row in shapes:
-        drawn = responses[rng.integers(0, len(responses), len(responses))]
-        row[:] = shape(x, drawn[rng.integers(0, len(drawn), (samples, number))].mean(axis=1), width)
-    return shapes
+    for _ in range(draws):
+        drawn = rng.integers(0, realizations, realizations)
+        yield drawn[rng.integers(0, realizations, (samples, number))]
+
+
+def shapes_of_samples(responses: FloatArray, x: FloatArray, width: float, number: int, *, seed: int) -> FloatArray:
+    """(200, 400) shapes of means of ``number`` of symmetric responses (r, x), each row from a draw of these."""
+    picked = _samples(len(responses), number, seed, draws=200, samples=400)
+    return np.stack([shape(x, responses[one].mean(axis=1), width) for one in picked])
 
 
 def seen_in_samples(
@@ -211,16 +209,14 @@ def seen_in_samples(
     As :func:`shapes_of_samples` draws them, but each with its whole load path. A mean needs as large a part of its
     realizations at rest as that of the ensemble.
     """
-    rng = np.random.default_rng(seed)
     count = len(ensemble.response)
     few = Ensemble(ensemble.force, ensemble.response, int(np.ceil(number * ensemble.least / count)))
-    parts = np.empty(draws)
-    for draw in range(draws):
-        drawn = rng.integers(0, count, count)
-        picked = drawn[rng.integers(0, count, (samples, number))]
+
+    def part(picked: NDArray[np.int64]) -> float:
         shapes = shape(x, few.means(counted(picked, count)), width)
-        parts[draw] = np.mean(passed(ensemble.force, grown(shapes), tolerance)[1] == FOUND)
-    return parts
+        return float(np.mean(passed(ensemble.force, grown(shapes), tolerance)[1] == FOUND))
+
+    return np.array([part(picked) for picked in _samples(count, number, seed, draws, samples)])
 
 
 def censored_medians(values: FloatArray, censored: NDArray[np.bool_], weights: FloatArray) -> FloatArray:
@@ -298,9 +294,6 @@ def cross(
     usual = at(tolerance)
     found = usual.draws
     used = ensemble.force[np.isfinite(shapes)]
-    spread = np.full((len(shapes), len(LEVELS)), np.nan)
-    known = np.isfinite(drawn).all(axis=0)
-    spread[known] = np.quantile(drawn[:, known], LEVELS, axis=0).T
     parts = [two_peaked_means(ensemble, x, width, n, draws=draws, seed=seed, tolerance=tolerance) for n in numbers]
     seen = seen_in_samples(ensemble, x, width, min(numbers), seed=seed, tolerance=tolerance)
     return Crossing(
@@ -308,7 +301,7 @@ def cross(
         draw_part=np.array([np.isfinite(found).mean(), (found == -np.inf).mean(), (found == np.inf).mean()]),
         limits=(float(used[0]), float(used[-1])) if used.size else (float("nan"), float("nan")),
         shape=shapes,
-        shape_interval=spread,
+        shape_interval=np.quantile(drawn, LEVELS, axis=0).T,  # nan where a draw has none
         two_peaked_means=np.stack(parts, axis=-1),
         seen=float(seen.mean()),
         seen_interval=np.quantile(seen, LEVELS),
@@ -345,6 +338,12 @@ class Singles:
     median_interval: FloatArray = column("quantiles of the bootstrapped median", "level")
     median_draws: FloatArray  #: (draws,) infinite beyond bounds
 
+    def middle(self, smallest: float, largest: float) -> Crossover:
+        """The crossover of the median realization on a path between these forces."""
+        kind = {-np.inf: BELOW, np.inf: ABOVE}.get(self.median, FOUND)
+        force = float(np.clip(self.median, smallest, largest))
+        return Crossover(force, np.int8(kind), self.median_interval, self.median_draws)
+
 
 def singles(
     ensemble: Ensemble, x: FloatArray, width: float, *, draws: int, seed: int, tolerance: float = 0.0
@@ -360,9 +359,8 @@ def singles(
         return np.asarray(np.sqrt(np.maximum(squares - mean**2, 0.0)).mean(axis=-1))
 
     force, kind = passed(ensemble.force, grown(shapes), tolerance)
-    value = np.where(kind == BELOW, -np.inf, force)
-    usable = np.isfinite(value) | (kind == BELOW)
-    value, censored = np.where(usable, value, ensemble.force[0]), kind == ABOVE
+    value = np.where(kind == BELOW, -np.inf, np.nan_to_num(force, nan=ensemble.force[0]))
+    censored = kind == ABOVE
     medians = censored_medians(value, censored, drawn)
     return Singles(
         spread=deviation(square.mean(), mean),

@@ -42,10 +42,7 @@ def dataset(outcomes: Mapping[Any, Any]) -> xr.Dataset:
 def read(path: str | Path, key: type[Key], kind: type[Outcome]) -> dict[Key, Outcome]:
     """Stored outcomes of a ``kind`` by their keys, in double precision.
 
-    Raises
-    ------
-    granular_response.store.files.StoreError
-        If the file cannot be read, or holds no packings of this kind.
+    Raises StoreError if the file cannot be read, or holds no packings of this kind.
     """
     found = store.read(path).get(DATASET)
     named, values = columns(key), columns(kind)
@@ -93,10 +90,7 @@ def measured(
 def chosen(path: str | None, kind: type[Outcome], keys: Mapping[Place, Any]) -> dict[Place, Outcome]:
     """The outcomes of some packings, by their places in a group; without any, no file is needed.
 
-    Raises
-    ------
-    granular_response.store.files.StoreError
-        Also if one of them is not there: the message names the first.
+    Raises what :func:`read` raises, and StoreError if one of them is not there: the message names the first.
     """
     if not keys:
         return {}

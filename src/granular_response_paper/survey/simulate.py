@@ -45,17 +45,8 @@ from granular_response_paper.survey.parameters import Parameters
 GROUPS = ("peak_width", "moduli", "crossover_scaling", "hysteresis")
 
 #: The sources that every outcome depends on, and those of a realization of an ensemble.
-MECHANICS = (
-    "contact",
-    "kernels",
-    "linalg",
-    "machine",
-    "observe",
-    "scene",
-    "solvers",
-    "state",
-    f"{PACKAGE}/slab_response.py",
-)
+LIBRARY = ("contact", "kernels", "linalg", "machine", "observe", "scene", "solvers", "state")
+MECHANICS = (*LIBRARY, f"{PACKAGE}/slab_response.py")
 SOURCES = (*MECHANICS, f"{PACKAGE}/ensembles")
 
 #: What is kept of the responses and of the packings.
@@ -95,12 +86,7 @@ class Block:
 def read_parameters(path: Path) -> Parameters:
     """The survey's parameter file.
 
-    Raises
-    ------
-    SurveyError
-        If it cannot be read.
-    granular_response.scene.SceneError
-        If a parameter is missing, unknown or not what it must be.
+    Raises SurveyError if it cannot be read, SceneError for a parameter that is missing, unknown or not what it must be.
     """
     try:
         return Parameters(**text.read(path.read_text(encoding="utf-8")))
@@ -141,9 +127,8 @@ def packings_of(group: str, parameter_file: Path) -> Block:
         return {packings.DATASET: packings.dataset({key: found[key] for key in tasks})}
 
     # the first argument of each is its scene
-    order = sorted(tasks, key=lambda key: tasks[key].args[0].packing.disk_count)
-    scene = parameters.base  # type: ignore[attr-defined]
-    return Block(group, {key: tasks[key] for key in order}, datasets, scene, given, sources_of(group))
+    ordered = dict(sorted(tasks.items(), key=lambda item: item[1].args[0].packing.disk_count))
+    return Block(group, ordered, datasets, parameters.base, given, sources_of(group))  # type: ignore[attr-defined]
 
 
 def tasks_of(group: str, parameters: Any) -> dict[Any, partial[Any]]:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
+from numpy.typing import ArrayLike
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import SURVEYED, family, label_ends, titles
+from granular_response_paper.panels import SURVEYED, different, family, label_ends, titles
 
 from .parameters import Parameters, varied
 
@@ -62,10 +62,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     }
     said = {
         stem: of_scene(
-            parameters.base,
-            friction=sorted(set(powers["friction"].values[series].tolist())),
-            normal_stiffness=None,
-            packing=None,
+            parameters.base, friction=different(powers["friction"][series]), normal_stiffness=None, packing=None
         )
         for stem, series in drawn.items()
     }
@@ -74,7 +71,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         "crossover_scaling",
         said,
         p=parameters,
-        layers=sorted(set(slabs["layers"].values.tolist())),
+        layers=different(slabs["layers"]),
         survey=" Open symbols: slabs of the survey." if surveyed else "",
     )
 
@@ -126,8 +123,11 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
             exponents.append((f"$N^{{{said(power)}}}$", float(ends[1]), float(through[1]), look["color"]))
         style.logarithmic(axes)
         axes.set(xlabel="layers $N$", ylabel=style.FORCE)
-        _plain(axes, apart(slabs["layers"].values.tolist()))
-        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        ticks = apart(slabs["layers"])
+        axes.set_xticks(ticks, labels=[str(t) for t in ticks])
+        axes.xaxis.set_minor_formatter("")
+        axes.minorticks_off()
+        axes.yaxis.set(major_formatter="{x:g}", major_locator=LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.set_xlim(right=1.5 * float(slabs["layers"].max()))
         label_ends(axes, [end for end in exponents if np.isfinite(end[2])], gap=8.0, bbox=WHITE)
     key = panels[1, 1]
@@ -141,28 +141,20 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
 def _symbols(powers: xr.Dataset) -> list[dict[str, Any]]:
     """Of the series of layers: colours by the friction, a marker and dashes of its own for each."""
     frictions = powers["friction"].values[of_layers(powers)].tolist()
-    colours = dict(family(sorted(set(frictions)), of="friction"))
+    colours = dict(family(different(frictions), of="friction"))
     return [
         {**style.marked_line(k, colour=colours[mu]["color"]), "linestyle": style.LINE_STYLES[k], "markersize": 4.5}
         for k, mu in enumerate(frictions)
     ]
 
 
-def apart(layers: Iterable[int]) -> list[int]:
+def apart(layers: ArrayLike) -> list[int]:
     """Of ``layers`` those whose labels do not meet on a logarithmic axis, from the least on."""
     chosen: list[int] = []
-    for number in sorted(set(layers)):
+    for number in different(layers):
         if not chosen or number > NEXT_LABEL * chosen[-1]:
             chosen.append(number)
     return chosen
-
-
-def _plain(axes: Axes, ticks: list[int]) -> None:
-    """Layers as they are, on a logarithmic axis."""
-    axes.set_xticks(ticks, labels=[str(t) for t in ticks])
-    axes.xaxis.set_minor_formatter("")
-    axes.minorticks_off()
-    axes.yaxis.set_major_formatter("{x:g}")
 
 
 def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure:
@@ -220,8 +212,7 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
         if low > 0.0:
             axes.set_ylim(low / 1.3, high * max((high / low) ** 0.5, 2.0))
         for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_formatter("{x:g}")
-            axis.set_minor_formatter("")
+            axis.set(major_formatter="{x:g}", minor_formatter="")
         if kind == "disks_per_layer":  # within a decade
             axes.set_xticks([2, 3, 4, 6], labels=["2", "3", "4", "6"])
         axes.legend(loc="upper left", fontsize=7)

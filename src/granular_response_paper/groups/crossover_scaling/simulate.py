@@ -17,9 +17,10 @@ The deepest slabs are simulated by the survey (:mod:`granular_response_paper.sur
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from itertools import product
 
 import numpy as np
 import xarray as xr
@@ -29,22 +30,11 @@ from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response_paper import slab_response
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.crossover_scaling.parameters import Parameters, Series, varied
-from granular_response_paper.records import axes, column, labels, record, table
-from granular_response_paper.slab_response import (
-    FIRST_OPENING,
-    NARROW,
-    REACHES_FLOOR,
-    TWO_PEAKS,
-    Happening,
-    LoadPath,
-    Measures,
-    by_motion,
-    first_opening,
-    locate,
-    reaches_floor,
-)
+from granular_response_paper.records import axes, column, columns, labels, record, table
+from granular_response_paper.slab_response import Happening, LoadPath, Measures, Scalars, by_motion
 from granular_response_paper.survey.packings import measured
 
 #: Layers of the paper's slab, to which a confinement in proportion to the weight refers.
@@ -54,10 +44,10 @@ PAPERS_LAYERS = 15
 SMALL = 0.1
 
 EVENTS = {
-    "first_opening": FIRST_OPENING,
+    "first_opening": slab_response.FIRST_OPENING,
     "crossover": "the floor response at x = 0 is visibly below both maxima beside it",
-    "two_peaks": TWO_PEAKS,
-    "reaches_floor": REACHES_FLOOR,
+    "two_peaks": slab_response.TWO_PEAKS,
+    "reaches_floor": slab_response.REACHES_FLOOR,
 }
 
 
@@ -69,9 +59,8 @@ class Slab:
     disks_per_row: int = column("disks in the bottom row")
     friction: float = column("coefficient of friction between disks")
     normal_stiffness: float = column("normal stiffness of contacts in mean weights per mean radius")
-    asked_confinement: float = column(
-        f"force of horizontal contacts that is asked for {WEIGHTS}"
-    )  #: of no meaning between walls
+    #: of no meaning between walls
+    asked_confinement: float = column(f"force of horizontal contacts that is asked for {WEIGHTS}")
     periodic: bool = column("1 for periodic sides, 0 for walls")
 
     def scene(self, base: Scene) -> Scene:
@@ -79,13 +68,8 @@ class Slab:
         packing: dict[str, int | float | str] = {"layers": self.layers, "disks_per_row": self.disks_per_row}
         if self.periodic:
             packing |= {"sides": "periodic", "lattice_constant": 2.0 - self.asked_confinement / self.normal_stiffness}
-        return base.updated(
-            {
-                "packing": packing,
-                "contact.friction": self.friction,
-                "contact.normal_stiffness": self.normal_stiffness,
-            }
-        )
+        contact = {"friction": self.friction, "normal_stiffness": self.normal_stiffness}
+        return base.updated({"packing": packing, "contact": contact})
 
 
 @record
@@ -96,16 +80,13 @@ class Outcome:
     linear_opening: float = column(
         f"force {WEIGHTS} at which the first contact would open if contacts went on as under a small one"
     )
-    brackets: FloatArray = column(
-        f"forces {WEIGHTS} between which: {'; '.join(EVENTS.values())}", "event", "bracket"
-    )  #: nan above for what was not seen
+    #: nan above for what was not seen
+    brackets: FloatArray = column(f"forces {WEIGHTS} between which: {'; '.join(EVENTS.values())}", "event", "bracket")
     by_motion: float = column(
         "steps of the force in which the motion of the disks had a part; nan: not recorded", later=True
     )
     force: FloatArray = column(f"applied force {WEIGHTS}", "line")
-    dip: FloatArray = column(
-        "how far the response at x = 0 is below the lower maximum beside it, per largest response", "line"
-    )
+    dip: FloatArray = column(columns(Scalars)["central_dip"].long_name, "line")
     depth: FloatArray = column(f"depth of the region of opened contacts below the loaded disk {RADII}", "line")
     width: FloatArray = column(f"largest width of the region of opened contacts {RADII}", "line")
     opened: FloatArray = column("contacts of the region", "line")
@@ -122,29 +103,29 @@ def compute(
     measures = Measures(path)
     confinement = horizontal_force(measures)
 
-    asked = {
-        "first_opening": first_opening(measures),
-        "crossover": Happening(lambda state: measures.dip(state) > visible, EVENTS["crossover"]),
-        "two_peaks": Happening(measures.double_peaked, TWO_PEAKS),
-        "reaches_floor": reaches_floor(measures),
-    }
+    asked = [  # in the order of EVENTS
+        slab_response.first_opening(measures),
+        Happening(lambda state: measures.dip(state) > visible, EVENTS["crossover"]),
+        Happening(measures.double_peaked, slab_response.TWO_PEAKS),
+        slab_response.reaches_floor(measures),
+    ]
     forces: list[float] = []
-    left = list(asked.values())
+    left = asked
     while left and len(forces) < most_forces:
         forces.append(confinement * first_force * factor ** len(forces))
         state = path.at(forces[-1])
         left = [what for what in left if not what.happened(state)]
     states = path.through(forces)
-    width = NARROW if scene.contact.friction else tolerance
-    found = locate(path, forces, asked, width)
+    width = slab_response.NARROW if scene.contact.friction else tolerance
+    brackets = np.array([path.first(forces, what, width) for what in asked])
     regions = [measures.region(state) for state in states]
     return Outcome(
         confinement,
         linear_opening(measures, path.at(SMALL * confinement)),
-        np.array([(event.low, event.high) for event in found]),
-        float(sum(by_motion(state) for state in states)),
+        brackets,
+        float(sum(map(by_motion, states))),
         np.array(forces),
-        np.array([measures.dip(state) for state in states]),
+        np.array(list(map(measures.dip, states))),
         *np.array([(one.depth, one.width, one.count) for one in regions], float).T,
     )
 
@@ -224,39 +205,24 @@ def _slope(x: FloatArray) -> FloatArray:
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``slabs`` (slab), ``paths`` (slab, step) and ``powers`` (series).
 
-    Raises
-    ------
-    SweepError
-        If a slab cannot be solved.
+    Raises SweepError if a slab cannot be solved.
     """
-    found = slabs(parameters)
-    stored = packings(parameters, surveyed=True)
     done = measured(parameters, "slabs", packings, task, Outcome, work=_work)
-    datasets = slab_and_path_tables(found, [done[slab] for _, slab in found], stored)
+    datasets = slab_and_path_tables(slabs(parameters), done, packings(parameters, surveyed=True))
     datasets["slabs"].attrs.update(visible=parameters.visible, tolerance=parameters.tolerance)
     return labelled(datasets | {"powers": power_table(datasets["slabs"], parameters)}, parameters.base)
 
 
 def slabs(parameters: Parameters) -> list[tuple[str, Slab]]:
     """Names of series, each with one of its slabs; a slab that is in several series is there as often."""
-    return [
-        (
-            series.name,
-            Slab(
-                layers,
-                _odd(layers * across),
-                series.friction,
-                layers * stiffness,
-                confinement * (layers / PAPERS_LAYERS if series.confined == "as weight" else 1.0),
-                series.sides == "periodic",
-            ),
-        )
-        for series in parameters.series
-        for layers in series.heights
-        for across in series.disks_per_layer
-        for stiffness in series.stiffness_per_layer
-        for confinement in series.confinement
-    ]
+    found = []
+    for one in parameters.series:
+        each = product(one.heights, one.disks_per_layer, one.stiffness_per_layer, one.confinement)
+        for layers, across, stiffness, constant in each:
+            disks, periodic = _odd(layers * across), one.sides == "periodic"
+            confinement = constant * (layers / PAPERS_LAYERS if one.confined == "as weight" else 1.0)
+            found.append((one.name, Slab(layers, disks, one.friction, layers * stiffness, confinement, periodic)))
+    return found
 
 
 def packings(parameters: Parameters, *, surveyed: bool) -> dict[Slab, Slab]:
@@ -279,32 +245,20 @@ def _work(slab: Slab) -> float:
 
 def task(asked: Parameters, slab: Slab) -> partial[Outcome]:
     """One of these slabs."""
-    return partial(
-        compute,
-        slab.scene(asked.base),
-        asked.visible,
-        asked.first_force,
-        asked.factor,
-        asked.most_forces,
-        asked.tolerance,
-    )
+    given = asked.visible, asked.first_force, asked.factor, asked.most_forces, asked.tolerance
+    return partial(compute, slab.scene(asked.base), *given)
 
 
 def slab_and_path_tables(
-    found: Sequence[tuple[str, Slab]], outcomes: Sequence[Outcome], stored: Collection[Slab]
+    found: Sequence[tuple[str, Slab]], done: Mapping[Slab, Outcome], stored: Collection[Slab]
 ) -> dict[str, xr.Dataset]:
     """``slabs``: what each is, and its events; ``paths``: what is measured at its forces, nan beyond its last one."""
-    data = table(outcomes, "slab")
-    brackets = {
-        f"{name}_bracket": variable(
-            ("slab", "bracket"),
-            data["brackets"].values[:, k],
-            f"forces {WEIGHTS} between which: {text}; nan if not up to the first",
-        )
-        for k, (name, text) in enumerate(EVENTS.items())
-    }
     each = [slab for _, slab in found]
-    of = table(each, "slab")
+    of, data = table(each, "slab"), table([done[slab] for slab in each], "slab")
+    brackets = {}
+    for k, (name, event) in enumerate(EVENTS.items()):
+        text = f"forces {WEIGHTS} between which: {event}; nan if not up to the first"
+        brackets[f"{name}_bracket"] = variable(("slab", "bracket"), data["brackets"].values[:, k], text)
     kept = of[["layers", "disks_per_row", "friction", "normal_stiffness"]].variables
     coordinates = {
         "series": variable("slab", [name for name, _ in found], "series"),
@@ -344,16 +298,17 @@ def power_table(slabs: xr.Dataset, parameters: Parameters) -> xr.Dataset:
             if series.varied == "layers":
                 far = law.at_size(parameters.extrapolated, continuum(series) if event != "first_opening" else None)
             found[s, e] = Fitted(law.exponent(), far)
-    texts = {"name": "series", "friction": "coefficient of friction", "varied": "what differs along the series"}
-    coordinates = labels("series", parameters.series, **texts)
     confined = ["walls" if one.sides == "walls" else one.confined for one in parameters.series]
-    data = table(found, "series", "event").assign_coords(
-        {"series": coordinates.pop("name"), **coordinates}
-        | {"confined": variable("series", confined, "what sets the force of horizontal contacts at rest")}
-        | axes(event=(events, "event"), end=(ends, "value and ends of the interval"))
-    )
-    data.attrs["layers"] = parameters.extrapolated
-    return data
+    coordinates = {
+        "series": variable("series", [one.name for one in parameters.series], "series"),
+        **labels(
+            "series", parameters.series, friction="coefficient of friction", varied="what differs along the series"
+        ),
+        "confined": variable("series", confined, "what sets the force of horizontal contacts at rest"),
+        **axes(event=(events, "event"), end=(ends, "value and ends of the interval")),
+    }
+    data = table(found, "series", "event").assign_coords(coordinates)
+    return data.assign_attrs(layers=parameters.extrapolated)
 
 
 def continuum(series: Series) -> float | None:

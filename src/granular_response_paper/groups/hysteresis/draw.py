@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family, material, titles, zero
+from granular_response_paper.panels import different, family, material, titles, zero
 
 from .parameters import Parameters
 
@@ -20,6 +21,8 @@ from .parameters import Parameters
 REACH = 30.0
 #: Least part that is drawn on the logarithmic axes: what is below it is rounding, or none.
 LEAST = 1e-4
+#: How points of the second loading are drawn.
+DOTS: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 2.6}
 #: What the events are called, their markers and their colours.
 NAMES = {
     "first_opening": ("first contact opens", "v", style.VERMILION),
@@ -73,35 +76,24 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
     figure, ((loops, below),) = style.figure(1, 2, width="double", height=2.9)
     friction = curves["friction"].values
     cases, one = looped(curves["polydispersity"].values, friction)
-    colours = dict(family(sorted(set(friction[cases])), of="friction"))
+    colours = dict(family(different(friction[cases]), of="friction"))
     for k, case in enumerate(cases):
-        look = {"color": colours[friction[case]]["color"]}
-        for branch in range(curves.sizes["branch"]):
-            x, load = (curves[name].isel(case=case, branch=branch).values for name in ("displacement", "load"))
-            again = {"linestyle": "none", "marker": style.MARKERS[k], "markersize": 2.6} if branch == 2 else {}
-            loops.plot(1e3 * x, load, **look | {"linestyle": "-", "linewidth": 1.0} | again)
-        at = curves["displacement"].isel(case=case, branch=0).values
-        top = curves["load"].isel(case=case, branch=0).values
-        loops.annotate(
-            style.equals(style.FRICTION, friction[case]),
-            (1e3 * np.nanmax(at), np.nanmax(top)),
-            (3, 0),
-            textcoords="offset points",
-            va="center",
-        )
+        look = {"color": colours[friction[case]]["color"], "linestyle": "-", "linewidth": 1.0}
+        x, load = (curves[name].isel(case=case).values for name in ("displacement", "load"))
+        for branch in range(len(x)):
+            again = DOTS | {"marker": style.MARKERS[k]} if branch == 2 else {}
+            loops.plot(1e3 * x[branch], load[branch], **look | again)
+        end, text = (1e3 * np.nanmax(x[0]), np.nanmax(load[0])), style.equals(style.FRICTION, friction[case])
+        loops.annotate(text, end, (3, 0), textcoords="offset points", va="center")
     loops.set(xlabel=rf"displacement of the loaded disk$\,/\,10^{{-3}}{style.RADIUS}$", ylabel=style.FORCE)
     loops.set_xlim(0.0, 1.16e3 * float(np.nanmax(curves["displacement"].values[cases])))
     loops.set_ylim(bottom=0.0)
-    handles = [
-        Line2D([], [], color=style.MUTED, linewidth=1.0),
-        Line2D([], [], color=style.MUTED, linestyle="none", marker="o", markersize=2.6),
-    ]
+    handles = [Line2D([], [], color=style.MUTED, **look) for look in ({"linewidth": 1.0}, DOTS)]
     loops.legend(handles, ["loading, unloading", "loading again"], loc="lower right")
     x, added = floor["x"].isel(case=one).values, floor["added"].isel(case=one).values
     near = np.abs(x) <= REACH
     for branch, label in enumerate(("loaded", "unloaded", "loaded again")):
-        dots = {"linestyle": "none", "marker": "o", "markersize": 2.6} if branch == 2 else {}
-        below.plot(x[near], added[branch, near], label=label, **style.line(branch) | dots)
+        below.plot(x[near], added[branch, near], label=label, **style.line(branch) | (DOTS if branch == 2 else {}))
     zero(below)
     below.set(xlabel=style.POSITION, ylabel=rf"incremental floor force$\,/\,{style.WEIGHT}$")
     below.legend(loc="upper right")
@@ -118,12 +110,10 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
         axes.remove()
     ends, drawn = figure.add_subplot(grid[1, :]), panels[0]
     delta, friction = loops["polydispersity"].values, loops["friction"].values
-    first, again = loops["slid"] + loops["crossed"], loops["slid_again"] + loops["crossed_again"]
-    parts = (loops["floor_left"], first / loops["work"], again / loops["work"])
-    rubbing = np.flatnonzero(friction > 0.0)
-    spreads = sorted(set(delta))
-    colours = dict(family(sorted(set(friction)), of="friction"))
-    for case in rubbing:
+    lost = ((loops[f"slid{again}"] + loops[f"crossed{again}"]) / loops["work"] for again in ("", "_again"))
+    parts = (loops["floor_left"], *lost)
+    spreads, colours = different(delta), dict(family(different(friction), of="friction"))
+    for case in np.flatnonzero(friction > 0.0):
         dash = style.LINE_STYLES[spreads.index(delta[case])]
         look = colours[friction[case]] | {"linestyle": dash, "label": material(delta[case], friction[case])}
         force = loops["force"].isel(case=case).values
@@ -131,7 +121,7 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
             value = part.isel(case=case).mean("realization").values
             axes.plot(force, np.where(value > LEAST, value, np.nan), **look)
             below = force[value <= LEAST]
-            caret = {"linestyle": "none", "marker": "v", "markersize": 4.0, "color": look["color"]}
+            caret = DOTS | {"marker": "v", "markersize": 4.0, "color": look["color"]}
             axes.plot(below, np.full(below.shape, 1.2 * LEAST), **caret)
     drawn[0].axhline(events.attrs["left"], color=style.MUTED, linewidth=0.7, linestyle=(0, (4, 2)))
     for axes in drawn:
@@ -139,12 +129,9 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
         axes.xaxis.set_minor_formatter("")
     drawn[0].set_ylabel("relative to the load")
     _ends(ends, events, delta, friction)
-    handles, names = drawn[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside upper center", ncols=3, handlelength=3.0)
-    titles(
-        (*drawn, ends),
-        ("remainder on the floor", "dissipated, first loop", "dissipated, second loop", "ends of ranges"),
-    )
+    figure.legend(*drawn[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, handlelength=3.0)
+    names = ("remainder on the floor", "dissipated, first loop", "dissipated, second loop", "ends of ranges")
+    titles((*drawn, ends), names)
     return figure
 
 
@@ -153,27 +140,22 @@ def _ends(axes: Axes, events: xr.Dataset, delta: np.ndarray, friction: np.ndarra
     last = float(events["low"].max())
     first = min(float(events["high"].fillna(np.inf).min()), 3.0 * last)
     for index, (name, (text, marker, colour)) in enumerate(NAMES.items()):
+        symbol = DOTS | {"color": colour, "marker": marker, "markersize": 4.0}
         for case in range(events.sizes["case"]):
             one = events.sel(event=name).isel(case=case)
-            low, high = one["low"].values, one["high"].values
-            there = np.isfinite(low)
-            if not there.any():
+            one = one.isel(realization=np.isfinite(one["low"].values))
+            if not one.sizes["realization"]:
                 continue
-            low, high = low[there], high[there]
-            row = case + 0.22 * (index - 1)
-            reached = np.isfinite(high)
-            middle = np.where(reached, 0.5 * (low + np.where(reached, high, low)), low)
+            low, reached = one["low"].values, np.isfinite(one["high"].values)
+            middle, row = 0.5 * (low + np.where(reached, one["high"].values, low)), case + 0.22 * (index - 1)
             axes.plot([middle.min(), middle.max()], [row, row], color=colour, linewidth=0.9, linestyle="-")
-            axes.plot(
-                [np.median(middle)], [row], color=colour, marker=marker, markersize=4.0, linestyle="none",
-                markerfacecolor=colour if reached.all() else "white",
-            )  # fmt: skip
+            axes.plot([np.median(middle)], [row], markerfacecolor=colour if reached.all() else "white", **symbol)
             if not reached.all():
                 axes.annotate(
                     "", (1.0, row), (middle.max(), row), xycoords=("axes fraction", "data"), textcoords="data",
                     arrowprops={"arrowstyle": "->", "color": colour, "linewidth": 0.9},
                 )  # fmt: skip
-        axes.plot([], [], color=colour, marker=marker, markersize=4.0, linestyle="none", label=text)
+        axes.plot([], [], label=text, **symbol)
     axes.legend(loc="upper left")
     names = list(map(material, delta, friction))
     axes.set(xlabel=style.FORCE, ylim=(len(names) - 0.4, -0.6))

@@ -13,6 +13,7 @@ that force leaves some floor force changed by more than a part of the largest ch
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from functools import partial
@@ -30,25 +31,17 @@ from granular_response.solvers.work import slid, stored, work
 from granular_response.state import FloatArray, State
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.hysteresis.parameters import Parameters
 from granular_response_paper.records import axes, column, columns, labels, record, stacked, table
-from granular_response_paper.slab_response import (
-    FIRST_OPENING,
-    LINEARITY,
-    Happening,
-    LoadPath,
-    Measures,
-    by_motion,
-    first_change,
-    first_opening,
-)
+from granular_response_paper.slab_response import LINEARITY, Happening, LoadPath, Measures, by_motion
 from granular_response_paper.survey.packings import measured
 
 #: The three ways of a loop, in turn.
 BRANCHES = ("loading", "unloading", "loading again")
 EVENTS = {
-    "first_opening": FIRST_OPENING,
+    "first_opening": slab.FIRST_OPENING,
     "linear_range": f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at the smallest force",
     "reversible_range": "unloading leaves a floor force changed by more than the part left of the largest change",
 }
@@ -130,16 +123,10 @@ class Books:
     stored: float
     pairs: FloatArray  #: (m,) taken by sliding, along the common candidates of the states
     walls: float
-    crosses: bool  #: whether dynamics carried the packing over a part
+    crosses: int  #: how often dynamics carried the packing over a part
 
     def __add__(self, other: Books) -> Books:
-        return Books(
-            self.work + other.work,
-            self.stored + other.stored,
-            self.pairs + other.pairs,
-            self.walls + other.walls,
-            self.crosses or other.crosses,
-        )
+        return Books(*map(operator.add, astuple(self), astuple(other)))
 
     @property
     def slid(self) -> float:
@@ -150,6 +137,11 @@ class Books:
         """Where dynamics had a part, what is neither stored nor slid; 0 elsewhere."""
         return self.work - self.stored - self.slid if self.crosses else 0.0
 
+    def loop(self, again: str = "") -> dict[str, float]:
+        """The fields of a :class:`Turn` for a loop, those of the second one with ``_again`` behind their names."""
+        found = {"lost": self.work, "kept": self.stored, "slid": self.slid, "crossed": self.crossed}
+        return {name + again: value for name, value in found.items()}
+
 
 def keep_books(problem: Problem, states: Sequence[State]) -> Books:
     """Where the work of the load goes along ``states``, with common candidates.
@@ -157,11 +149,11 @@ def keep_books(problem: Problem, states: Sequence[State]) -> Books:
     Sliding between two states is left out where the motion of the disks led from one to the other: nothing is known of
     the way between them.
     """
-    pairs, walls, done, crosses = np.zeros(len(states[0].pairs.first)), 0.0, 0.0, False
+    pairs, walls, done, crosses = np.zeros(len(states[0].pairs.first)), 0.0, 0.0, 0
     for before, after in pairwise(states):
         done += work(problem, before, after)
         if by_motion(after):
-            crosses = True
+            crosses += 1
             continue
         lost = slid(problem, before, after)
         pairs += lost.pairs
@@ -189,8 +181,7 @@ class Packing:
         self.problem = self.path.problem
         self.disk = int(self.problem.load_disk[0])
         self.width = width
-        #: by force, what a loop to it leaves
-        self.known_left: dict[float, float] = {}
+        self.known_left: dict[float, float] = {}  #: by force, what a loop to it leaves
 
     def added(self, state: State) -> FloatArray:
         """(disk,) floor forces that are not there at rest."""
@@ -204,19 +195,13 @@ class Packing:
         """Response at x = 0."""
         return self.measures.centre(state, self.width)
 
-    def after(self, state: State, loads: Sequence[float]) -> list[State]:
-        """States at ``loads`` in turn, from ``state`` on."""
-        return loaded_states(self.problem, state, loads)[1]
-
-    def left(self, loaded: State, unloaded: State) -> float:
-        """Largest change of a floor force that is left, per largest change under the load."""
-        return float(np.abs(self.added(unloaded)).max() / np.abs(self.added(loaded)).max())
-
-    def left_by(self, state: State) -> float:
-        """The same for the way from ``state`` to no load; known ones are not gone again."""
-        force = state.load_factor
+    def left_by(self, force: float) -> float:
+        """Largest change of a floor force that unloading from ``force`` leaves, per largest change under the load."""
         if force not in self.known_left:
-            self.known_left[force] = self.left(state, self.after(state, [0.0])[0])
+            loaded = self.path.at(force)
+            unloaded = loaded_states(self.problem, loaded, [0.0])[1][0]
+            left, under = (np.abs(self.added(state)).max() for state in (unloaded, loaded))
+            self.known_left[force] = float(left / under)
         return self.known_left[force]
 
     def turn(self, states: Sequence[State], turn: int, force: float, smallest: float) -> tuple[Turn, Shown]:
@@ -224,17 +209,17 @@ class Packing:
 
         ``smallest`` is the force up to which the response counts as linear.
         """
-        bottom = 2 * turn
-        up, back, again = states[: turn + 1], states[turn : bottom + 1], states[bottom:]
-        once, down, more = (keep_books(self.problem, branch) for branch in (up, back, again))
+        branches = states[: turn + 1], states[turn : 2 * turn + 1], states[2 * turn :]
+        once, down, more = (keep_books(self.problem, branch) for branch in branches)
         loop, second_loop = once + down, down + more
-        loaded, unloaded, second = states[turn], states[bottom], states[-1]
-        self.known_left[force] = self.left(loaded, unloaded)
+        loaded, unloaded, second = (branch[-1] for branch in branches)
         opened = states[0].pairs.touching & ~loaded.pairs.touching
         added = np.stack([self.added(state) for state in (loaded, unloaded, second)])
+        largest, left, repeated = np.abs([added[0], added[1], added[2] - added[0]]).max(axis=1)
+        self.known_left[force] = float(left / largest)
         measured = Turn(
             floor_left=self.known_left[force],
-            floor_repeated=np.abs(added[2] - added[0]).max() / np.abs(added[0]).max(),
+            floor_repeated=repeated / largest,
             displacement=self.sunk(loaded),
             displacement_left=self.sunk(unloaded),
             displacement_repeated=self.sunk(second),
@@ -242,37 +227,27 @@ class Packing:
             opened_contacts=self.measures.opened(self.path.known[force]),
             sliding_contacts=loaded.pairs.sliding.sum() + loaded.walls.sliding.sum(),
             work=once.work,
-            lost=loop.work,
-            kept=loop.stored,
-            slid=loop.slid,
             slid_walls=loop.walls,
             slid_opened=loop.pairs[opened].sum(),
-            crossed=loop.crossed,
-            lost_again=second_loop.work,
-            kept_again=second_loop.stored,
-            slid_again=second_loop.slid,
-            crossed_again=second_loop.crossed,
+            **loop.loop(),
+            **second_loop.loop("_again"),
         )
-        load, sunk = np.empty((2, len(BRANCHES), turn + 1))
-        for b, branch in enumerate((up, back, again)):
-            load[b] = [state.load_factor for state in branch]
-            sunk[b] = [self.sunk(state) for state in branch]
+        load = np.array([[state.load_factor for state in branch] for branch in branches])
+        sunk = np.array([[self.sunk(state) for state in branch] for branch in branches])
         return measured, Shown(load, sunk, added, self.measures.x)
 
     def events(self, forces: Sequence[float], left: float, tolerance: float) -> list[tuple[float, float]]:
         """Brackets of ``EVENTS``; see the module."""
-        path = self.path
-        passed = sorted(path.known)
+        path, passed = self.path, sorted(self.path.known)
         linear = self.centre(path.known[forces[0]])
-        opening = first_opening(self.measures)
+        opening = slab.first_opening(self.measures)
         nonlinear = Happening(lambda state: abs(self.centre(state) / linear - 1.0) > LINEARITY, EVENTS["linear_range"])
         # a loop is known of where the load turns alone, and to each further force it is a way of its own
-        low, high = first_change(forces, [self.left_by(path.known[force]) > left for force in forces])
+        low, high = slab.first_change(forces, [self.left_by(force) > left for force in forces])
         if np.isfinite(high) and high - low > tolerance * high:
             found = bisect_event(
-                lambda force: self.left_by(path.at(force)) > left, low, high, tolerance * high,
-                at_low=False, at_high=True,
-            )  # fmt: skip
+                lambda force: self.left_by(force) > left, low, high, tolerance * high, at_low=False, at_high=True
+            )
             low, high = found.low, found.high
         return [path.first(passed, opening), path.first(passed[passed.index(forces[0]) :], nonlinear), (low, high)]
 
@@ -293,7 +268,8 @@ def compute(
     for force in forces:
         turn = loads.index(force)
         ways = [*loads[turn - 1 :: -1], *loads[1 : turn + 1]]
-        states = common_candidates([*first[: turn + 1], *packing.after(first[turn], ways)], radius)
+        further = loaded_states(packing.problem, first[turn], ways)[1]
+        states = common_candidates([*first[: turn + 1], *further], radius)
         found.append(packing.turn(states, turn, force, forces[0]))
     return Outcome(
         np.array([astuple(turn) for turn, _ in found], float),
@@ -305,8 +281,13 @@ def compute(
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``loops`` (case, realization, turn), ``events`` (case, realization, event), ``curves`` and ``floor``."""
     cases = parameters.cases
-    outcomes = measured(parameters, "packings", packings, task, Outcome, work=lambda place: _work(parameters, place[0]))
 
+    def work(place: tuple[int, int]) -> float:
+        """Roughly how long a packing takes: friction, then how far it is loaded."""
+        case = cases[place[0]]
+        return case.forces[-1] * (1.0 + 10.0 * (case.friction > 0.0))
+
+    outcomes = measured(parameters, "packings", packings, task, Outcome, work=work)
     along = ("case", "realization")
     coordinates = labels("case", cases, polydispersity="polydispersity", friction="friction between disks")
     loops = table(
@@ -321,8 +302,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     )  # fmt: skip
     events["definition"] = variable("event", list(EVENTS.values()), "what counts as the event")
     events.attrs["left"] = parameters.left
-    first = {(c,): outcomes[c, 0].shown for c in range(len(cases))}
-    shown = table({place: one for place, one in first.items() if one}, "case")
+    shown = table([outcomes[c, 0].shown for c in range(len(cases))], "case")
     shown = shown.assign_coords(coordinates | axes(branch=(BRANCHES, "way")))
     datasets = {
         "loops": loops.assign_coords(coordinates),
@@ -349,9 +329,3 @@ def task(parameters: Parameters, key: Key) -> partial[Outcome]:
     width = parameters.width if case.polydispersity else 0.0
     scene = parameters.of(case, key.realization)
     return partial(compute, scene, case.forces, case.increments, parameters.left, width, parameters.tolerance)
-
-
-def _work(parameters: Parameters, c: int) -> float:
-    """Roughly how long a packing takes: friction, then how far it is loaded."""
-    case = parameters.cases[c]
-    return case.forces[-1] * (1.0 + 10.0 * (case.friction > 0.0))

@@ -12,14 +12,12 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import among, family, packing, titles
+from granular_response_paper.panels import DASHED, DOTTED, GUIDE, among, family, packing, titles
 
 from .parameters import Parameters
 
 #: Of the panels against friction or polydispersity alone.
 POLYDISPERSITY, FRICTION = 0.1, 0.2
-GUIDE = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
-DASHED, DOTTED = (0, (4, 2)), (0, (1, 1.5))
 
 
 @style.context()
@@ -27,9 +25,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``network_statistics`` from the dataset ``statistics``."""
     data = datasets["statistics"]
     rest = data.sel(state="rest")
-    (delta,), (mu,) = (
-        among(data[name], [wanted])[:1] for name, wanted in (("polydispersity", POLYDISPERSITY), ("friction", FRICTION))
-    )
+    delta, mu = among(data["polydispersity"], [POLYDISPERSITY])[0], among(data["friction"], [FRICTION])[0]
     one = rest.sel(polydispersity=delta).mean("realization")
     figure, panels = style.figure(2, 3, width="double", height=5.2)
     (forces, spreads, limits), (fabric, contacts, excess) = panels
@@ -80,14 +76,8 @@ def _against_friction(axes: Axes, values: xr.DataArray, **look: Any) -> None:
     mean = rest.mean("realization")
     ends = np.abs(np.stack([rest.min("realization") - mean, rest.max("realization") - mean]))
     axes.errorbar(friction, mean, ends, capsize=2, **look | {"markersize": 3.5})
-    loaded = look | {
-        "linestyle": "none",
-        "markerfacecolor": "none",
-        "markersize": 7,
-        "markeredgewidth": 0.8,
-        "label": None,
-    }
-    axes.plot(friction, values.sel(state="loaded").mean("realization"), **loaded)
+    open_ = {"linestyle": "none", "markerfacecolor": "none", "markersize": 7, "markeredgewidth": 0.8, "label": None}
+    axes.plot(friction, values.sel(state="loaded").mean("realization"), **look | open_)
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:

@@ -64,13 +64,6 @@ class Statistics:
     )
 
 
-@record
-class Outcome:
-    """One packing: its statistics by state."""
-
-    found: tuple[Statistics, ...]
-
-
 def measure(problem: Problem, state: State, load: float, band: float, margin: float) -> Statistics:
     """Statistics of a state under the vertical ``load`` (mean disk weights)."""
     friction, pairs, walls = problem.scene.contact.friction, state.pairs, state.walls
@@ -138,20 +131,17 @@ def cut_imbalance(problem: Problem, state: State, load: float) -> float:
     return float(worst)
 
 
-def compute(scene: Scene, force: float, band: float, margin: float, collapse_depth: float) -> Outcome:
-    """One packing at rest and under ``force``; ``scene`` has one load, of unit force. What is not found is nan."""
+def compute(scene: Scene, force: float, band: float, margin: float, collapse_depth: float) -> list[Statistics]:
+    """One packing at rest and, if it bears it, under ``force``; ``scene`` has one load, of unit force."""
     path = LoadPath.of(scene)
     disk = int(path.problem.load_disk[0])
     path.lowest = float(path.rest.position[disk, 1]) - collapse_depth
-    states = [path.rest]
+    states = [(path.rest, 0.0)]
     with contextlib.suppress(SolveError):
         state = path.at(force)
         if state.position[disk, 1] >= path.lowest:
-            states.append(state)
-    loads = (0.0, force)
-    return Outcome(
-        tuple(measure(path.problem, one, load, band, margin) for one, load in zip(states, loads, strict=False))
-    )
+            states.append((state, force))
+    return [measure(path.problem, state, load, band, margin) for state, load in states]
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -165,7 +155,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         for r in range(case.realizations)
     }
     outcomes = computed(tasks, "packings")
-    found = {(*place, s): one for place, outcome in outcomes.items() for s, one in enumerate(outcome.found)}
+    found = {(*place, s): one for place, states in outcomes.items() for s, one in enumerate(states)}
     data = table(found, "polydispersity", "friction", "realization", "state").assign_coords(
         axes(
             polydispersity=(asked.polydispersities, "delta: spread of the radii"),

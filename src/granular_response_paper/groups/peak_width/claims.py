@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 
@@ -18,19 +20,7 @@ ELASTIC = 1.0
 WIDTHS = {"half_maximum": "half maximum", "half_force": "half of the force"}
 
 
-@CLAIMS.measures("B6")
-def inside_slabs(data: Data, words: Bounds) -> Finding:
-    """On lines inside the highest slab of each case."""
-    return _growth(data, "inside", words, "power of the depth")
-
-
-@CLAIMS.measures("B7")
-def on_floors(data: Data, words: Bounds) -> Finding:
-    """On the floors of slabs of growing height."""
-    return _growth(data, "floors", words, "power of the height")
-
-
-def _growth(data: Data, name: str, words: Bounds, what: str) -> Finding:
+def _growth(data: Data, words: Bounds, name: str, what: str) -> Finding:
     study = data.get(GROUP, name)
     readings, elastic, found = [], [], []
     for case in range(study.sizes["case"]):
@@ -52,6 +42,11 @@ def _growth(data: Data, name: str, words: Bounds, what: str) -> Finding:
         f"{min(quantity.low for quantity in found):.2g}",
         readings,
     )
+
+
+#: On lines inside the highest slab of each case, and on the floors of slabs of growing height.
+CLAIMS.measures("B6")(partial(_growth, name="inside", what="power of the depth"))
+CLAIMS.measures("B7")(partial(_growth, name="floors", what="power of the height"))
 
 
 def power(found: xr.Dataset) -> Quantity:

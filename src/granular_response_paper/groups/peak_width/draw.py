@@ -13,7 +13,7 @@ from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
 from granular_response_paper.captions import RADIUS, WEIGHT, Caption, of_group, of_scene
-from granular_response_paper.panels import SURVEYED, family, material, titles
+from granular_response_paper.panels import DASHED, DOTTED, GUIDE, SURVEYED, different, family, material, titles
 
 from .parameters import Parameters
 
@@ -22,12 +22,10 @@ ELASTIC, DIFFUSIVE = 1.0, 0.5
 HALFWAY = 0.5 * (ELASTIC + DIFFUSIVE)
 #: Two definitions of the width: label, and filling of the symbols.
 DEFINITIONS = {"half_maximum": ("at half maximum", "full"), "half_force": ("with half of the force", "none")}
-GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
 #: Half widths per depth that are shown.
 PER_DEPTH = 0.28, 2.0
 #: Labelled on logarithmic axes, in every decade.
 TICKS = (1.0, 2.0, 5.0)
-DASHED, DOTTED = (0, (4, 2)), (0, (1, 1.5))
 
 
 @style.context()
@@ -89,16 +87,14 @@ def _growth(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
     for row, (data, label) in enumerate(((inside, "depth"), (floors, "height of the slab"))):
         for (_, cases), axes in zip(parts, panels[row], strict=True):
             along = "polydispersity" if data["polydispersity"].values[cases].any() else "friction"
-            ramp = dict(family(sorted(set(data[along].values[cases].tolist())), of=along))
+            ramp = dict(family(different(data[along][cases]), of=along))
             for place, case in enumerate(cases):
                 colour = ramp[float(data[along][case])]["color"]
                 look = style.marked_line(place, colour=colour) | {"linestyle": "none", "markersize": 3.8}
                 _widths(axes, data.isel(case=case).sel(definition="half_maximum"), name(data, case), look)
             axes.set(xscale="log", yscale="log", xlabel=rf"{label}$\,/\,{style.RADIUS}$", ylim=PER_DEPTH)
             for axis, ticks in ((axes.xaxis, TICKS), (axes.yaxis, (1.0, 2.0, 4.0, 6.0))):
-                axis.set_major_locator(LogLocator(subs=ticks))
-                axis.set_major_formatter("{x:g}")
-                axis.set_minor_formatter("")
+                axis.set(major_locator=LogLocator(subs=ticks), major_formatter="{x:g}", minor_formatter="")
             guide = np.array([10.0, 22.0])
             axes.plot(guide, 0.46 * (guide[0] / guide) ** (ELASTIC - DIFFUSIVE), linestyle=DOTTED, **GUIDE)
         panels[row, 0].set_ylabel(f"half width / {label}")

@@ -132,13 +132,10 @@ def compute(scene: Scene, force: float, loads: int, margin: float, lines: int, w
         start, end = common_candidates([rest, loaded], packing.radius)
         middle = rest.position[int(problem.load_disk[0]), 0]
         fields = [(load_forces(start, end), middle, force)]
-    profile = np.zeros((len(line), len(t)))
-    transmitted = np.zeros(len(line))
-    for forces, x, size in fields:
-        for k in range(len(line)):
-            profile[k] += scaled(forces, x, line[k], depth[k], t, width) / size
-            transmitted[k] += line_forces(forces, line[k])[1].sum() / size
-    return Outcome(surface, depth, profile / len(fields), transmitted / len(fields), len(fields))
+    at = list(zip(line, depth, strict=True))
+    profiles = [[scaled(forces, x, *place, t, width) / size for place in at] for forces, x, size in fields]
+    transmitted = [[line_forces(forces, height)[1].sum() / size for height in line] for forces, _, size in fields]
+    return Outcome(surface, depth, np.mean(profiles, axis=0), np.mean(transmitted, axis=0), len(fields))
 
 
 def loaded_disks(packing: Packing, rest: State, margin: float, count: int) -> NDArray[np.intp]:
@@ -164,19 +161,17 @@ def scaled(forces: ContactForces, x: float, height: float, depth: float, t: Floa
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``inside`` and ``floors``."""
     outcomes = measured(parameters, "slabs", packings, task, Outcome)
-    cases = [
-        [[outcomes[c, h, r] for r in range(case.count(h))] for h in range(len(case.heights))]
+    each = [
+        (case, [[outcomes[c, h, r] for r in range(case.count(h))] for h in range(len(case.heights))])
         for c, case in enumerate(parameters.cases)
     ]
-    each = list(zip(parameters.cases, cases, strict=True))
     inside = table([_inside(parameters, case, found[-1]) for case, found in each], "case").rename_dims(along="line")
     floors = table([_floors(parameters, case, found) for case, found in each], "case").rename_dims(along="slab")
+    given = {"fitted": list(parameters.fitted), "width": parameters.width}
     datasets = {
-        "inside": inside.assign_coords(_coordinates(parameters, "of the lines")),
-        "floors": floors.assign_coords(_coordinates(parameters, "of the slabs")),
+        "inside": inside.assign_coords(_coordinates(parameters, "of the lines")).assign_attrs(given),
+        "floors": floors.assign_coords(_coordinates(parameters, "of the slabs")).assign_attrs(given),
     }
-    for dataset in datasets.values():
-        dataset.attrs.update({"fitted": list(parameters.fitted), "width": parameters.width})
     return labelled(datasets, parameters.base)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations, pairwise, product
 
 import numpy as np
@@ -17,6 +18,7 @@ from ...claims import asked
 from ...claims.bootstrap import LEVELS, OUTSIDE, of_draws, over_realizations, part_of
 from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading, at
 from ...claims.words import Bounds
+from ...survey.crossover import ABOVE, BELOW, FOUND, counted
 
 GROUP = "phase_diagram"
 CLAIMS = Claims(GROUP)
@@ -26,9 +28,6 @@ STARTS = ("touching-largest", "2.0")
 
 #: The width of smoothing of Fig. 21, and another one with what it changes.
 WIDTHS = {6.0: "", 3.0: "smoothing"}
-
-#: Kinds of crossover force, as stored: found, or a bound because there are two peaks, or one, at every force.
-FOUND, BELOW, ABOVE = 0, 1, 2
 
 #: Realizations in Fig. 21, and in each panel of Fig. 19.
 FEW, SHOWN = 5, 15
@@ -138,9 +137,9 @@ def two_peaks_or_one(data: Data, words: Bounds) -> Finding:
 def _tail(case: xr.Dataset, level: float) -> Quantity:
     """A quantile of the dip of means of ``SHOWN`` realizations, with 95 % of its bootstrap draws."""
     one = at(case, level=level)
-    low, high = one["dip_of_means_interval"].values
+    low, high = one["dip_of_means_interval"].values.tolist()
     test = f"quantile of means of {SHOWN}, bootstrap"
-    return Quantity(float(one["dip_of_means"]), float(low), float(high), "confidence", test, _packings_of(case))
+    return Quantity(float(one["dip_of_means"]), low, high, "confidence", test, _packings_of(case))
 
 
 @dataclass(frozen=True)
@@ -273,14 +272,8 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
     )
 
 
-@CLAIMS.measures("D3a")
-def rises_with_friction(data: Data, words: Bounds) -> Finding:
-    return _orders(data, words, "friction", "rises")
-
-
-@CLAIMS.measures("D3b")
-def falls_with_disorder(data: Data, words: Bounds) -> Finding:
-    return _orders(data, words, "polydispersity", "falls")
+CLAIMS.measures("D3a")(partial(_orders, what="friction", rising="rises"))
+CLAIMS.measures("D3b")(partial(_orders, what="polydispersity", rising="falls"))
 
 
 def _away(data: Data, words: Bounds) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -371,24 +364,16 @@ def gradual(data: Data, words: Bounds) -> Finding:
 
 @CLAIMS.measures("D7a")
 def coordination(data: Data, words: Bounds) -> Finding:
-    names = {
-        "contacts of disks": "coordination_number",
-        "walls counted": "coordination_number_with_walls",
-        "away from the boundaries": "coordination_number_bulk",
-    }
+    names = {"contacts of disks": "", "walls counted": "_with_walls", "away from the boundaries": "_bulk"}
     # the paper holds 4.25 against the isostatic 4: what is "about" is the excess
     low, high = (4.0 + (1.0 + sign * words["about"]) * 0.25 for sign in (-1.0, 1.0))
     means = {
-        f"{text}, {start}": over_realizations(case[name].values, np.mean)
+        f"{text}, {start}": over_realizations(case[f"coordination_number{kind}"].values, np.mean)
         for start, (case,) in _by_start(data.get(GROUP, "packings"), 0.0).items()
-        for text, name in names.items()
+        for text, kind in names.items()
     }
-    return asked.each(
-        "contacts per disk: ",
-        means,
-        lambda q: Condition("contacts per disk", q, low, high, ("about",)),
-        changed=changed,
-    )
+    what = "contacts per disk"
+    return asked.each(f"{what}: ", means, lambda q: Condition(what, q, low, high, ("about",)), changed=changed)
 
 
 @CLAIMS.measures("D7b")
@@ -396,11 +381,9 @@ def missing_horizontal(data: Data, words: Bounds) -> Finding:
     study, shares = data.get(GROUP, "packings"), {}
     lattice = _case(study, 0.0, 0.0)
     for start, (case,) in _by_start(study, 0.0).items():
-        gone = [
-            float(np.nanmean(lattice[name].values)) - case[name].values
-            for name in ("horizontal_contacts", "oblique_contacts")
-        ]
-        shares[start] = over_realizations(gone[0] / (gone[0] + gone[1]), np.mean)
+        names = ("horizontal_contacts", "oblique_contacts")
+        horizontal, oblique = (float(np.nanmean(lattice[name].values)) - case[name].values for name in names)
+        shares[start] = over_realizations(horizontal / (horizontal + oblique), np.mean)
     return asked.each(
         "horizontal part of the contacts that the lattice has and the packing has not: ",
         shares,
@@ -503,12 +486,12 @@ def linear_ends(path: xr.Dataset, tolerance: float, measure: str = CENTRE) -> Fl
     return np.array(found)
 
 
-def linear_end(path: xr.Dataset, tolerance: float, measure: str = CENTRE) -> Quantity:
-    """The median force at which realizations leave their linear range; a bound where half of them do not.
+def linear_end(path: xr.Dataset, tolerance: float) -> Quantity:
+    """The median force at which profiles of realizations leave their linear range; a bound where half of them do not.
 
     Raises NotMeasured for two realizations or none; a lattice has one, without scatter.
     """
-    found = linear_ends(path, tolerance, measure)
+    found = linear_ends(path, tolerance, PROFILE)
     CLAIMS.needs(found.size not in (0, 2), "linear_range holds too few realizations")
     force = path["applied_force"].values
     last = float(force[np.isfinite(path[CENTRE].transpose("realization", "step").values).any(axis=0)].max())
@@ -532,10 +515,7 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
     ]
     number = sum(sign.size for sign, _, _ in signs)
     rng = np.random.default_rng(0)
-    counts = [
-        np.stack([np.bincount(row, minlength=one.size) for row in rng.integers(0, one.size, (draws, one.size))])
-        for one in groups
-    ]
+    counts = [counted(rng.integers(0, one.size, (draws, one.size)), one.size) for one in groups]
     drawn = sum(np.einsum("da,ab,db->d", counts[second], sign, counts[first]) for sign, first, second in signs) / number
     tau, samples = float(sum(sign.sum() for sign, _, _ in signs) / number), sum(one.size for one in groups)
     return of_draws(tau, drawn, "Jonckheere's statistic, bootstrap", samples)
@@ -569,7 +549,7 @@ def shorter_with_disorder(data: Data, words: Bounds) -> Finding:
         conditions = []
         for mu in frictions:
             cases = [_case(study, delta, mu) for delta in (0.0, *usual)]
-            lattice, *medians = (linear_end(case, tolerance, PROFILE) for case in cases)
+            lattice, *medians = (linear_end(case, tolerance) for case in cases)
             order = order_of([linear_ends(case, tolerance, PROFILE) for case in cases[1:]])
             name = f"friction {mu:g}"
             back = Quantity.exact(sum(after.per(before).low > 1.0 for before, after in pairwise(medians)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -14,9 +15,9 @@ from numpy.typing import NDArray
 from granular_response.plot import style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, of_group
-from granular_response_paper.panels import family, label_ends, outer, packing, titles
+from granular_response_paper.panels import different, family, label_ends, outer, packing, titles
+from granular_response_paper.survey.crossover import ABOVE, FOUND
 
-from .claims import ABOVE, FOUND
 from .parameters import Parameters
 
 #: Levels of the thick and of the thin bar.
@@ -40,10 +41,8 @@ SIMULATED = "#EFF2F4"
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """Fig. 22 and what stands behind it, from the datasets of the study of the same name."""
-    crossovers = datasets["crossovers"]
-    usual = np.flatnonzero(crossovers["lattice_constant"].values == crossovers["lattice_constant"].values[0])
     shown, shapes, others, realizations = (
-        datasets[name].isel(case=usual) for name in ("crossovers", "shapes", "definitions", "realizations")
+        _usual(datasets[name]) for name in ("crossovers", "shapes", "definitions", "realizations")
     )
     return {
         "fig22_phase_diagram": _diagram(shown.isel(width=-1)),
@@ -54,16 +53,22 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
+def _usual(data: xr.Dataset) -> xr.Dataset:
+    """The cases with the initial lattice of the first one."""
+    return data.isel(case=data["lattice_constant"].values == data["lattice_constant"].values[0])
+
+
+def _disorders(data: xr.Dataset) -> list[float]:
+    """All polydispersities above 0."""
+    return [delta for delta in different(data["polydispersity"]) if delta]
+
+
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    crossovers = datasets["crossovers"]
-    usual = crossovers["lattice_constant"].values == crossovers["lattice_constant"].values[0]
-    frictions, deltas = (
-        sorted(set(crossovers[name].values[usual].tolist())) for name in ("friction", "polydispersity")
-    )
-    rubbing, disordered = [mu for mu in frictions if mu], {"polydispersity": [delta for delta in deltas if delta]}
-    realizations = sorted(set(crossovers["realizations"].values[usual & (crossovers["polydispersity"] > 0.0)].tolist()))
-    rows = len(parameters.widths)
+    crossovers = _usual(datasets["crossovers"])
+    frictions, deltas = (different(crossovers[name]) for name in ("friction", "polydispersity"))
+    rubbing, disordered = [mu for mu in frictions if mu], {"polydispersity": _disorders(crossovers)}
+    realizations = different(crossovers["realizations"][crossovers["polydispersity"].values > 0.0])
     given: dict[str, Value] = {
         "friction": frictions,
         "wall_friction": frictions,
@@ -71,6 +76,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         "realizations": realizations or 1,
         "width": parameters.widths,
     }
+    rows = len(parameters.widths)
     last, last_of_few = (chr(ord("a") - 1 + columns * rows) for columns in (len(deltas), len(deltas) - 1))
     return of_group(
         "phase_diagram",
@@ -95,7 +101,7 @@ def _diagram(crossovers: xr.Dataset) -> Figure:
     axes.set(xlim=(-0.05, 1.14), ylim=FORCES)
     axes.yaxis.set_major_formatter("{x:g}")
     ends = []
-    deltas = sorted(set(crossovers["polydispersity"].values.tolist()))
+    deltas = different(crossovers["polydispersity"])
     for k, (delta, look) in enumerate(family(deltas, of="polydispersity")):
         one = crossovers.isel(case=_of(crossovers, delta))
         friction, force, found = one["friction"].values, one["force"].values, one["kind"].values == FOUND
@@ -131,15 +137,14 @@ def _bounds(axes: Axes, data: xr.Dataset, colour: str, shift: float, limits: tup
 
 def _intervals(crossovers: xr.Dataset, shapes: xr.Dataset, realizations: xr.Dataset) -> Figure:
     """A row for each smoothing width, a column for each polydispersity: 68 and 95 % of the draws."""
-    deltas = sorted(set(crossovers["polydispersity"].values.tolist()))
-    widths = crossovers["width"].values.tolist()
     applied = shapes["applied_force"].values
     limits = FORCES[0], 2.0 * float(np.nanmax(applied))
-    colours = style.ordered_colours(len(deltas), of="polydispersity")
+    deltas, widths = different(crossovers["polydispersity"]), crossovers["width"].values.tolist()
+    colours = dict(zip(deltas, style.ordered_colours(len(deltas), of="polydispersity"), strict=True))
     figure, panels = _grid(widths, deltas, 0.5 + 1.85 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
     for (width, delta), axes in panels.items():
         here = _of(crossovers, delta)
-        one, colour = crossovers.sel(width=width).isel(case=here), colours[deltas.index(delta)]
+        one, colour = crossovers.sel(width=width).isel(case=here), colours[delta]
         axes.set(ylim=limits, **_FRICTION_AXES)
         friction, found = one["friction"].values, one["kind"].values == FOUND
         smallest, largest = np.nanmin(applied[here], axis=1), np.nanmax(applied[here], axis=1)
@@ -170,7 +175,7 @@ def _grid(
 ) -> tuple[Figure, dict[tuple[float, float], Axes]]:
     """A figure with a row for each smoothing width and a column for each polydispersity, named, and its panels."""
     figure, panels = style.figure(len(widths), len(deltas), width="double", height=height, sharex=True, sharey=True)
-    found = dict(zip(((w, d) for w in widths for d in deltas), panels.ravel(), strict=True))
+    found = dict(zip(product(widths, deltas), panels.flat, strict=True))
     titles(found.values(), [f"{packing(delta)}, $w = {width:g}\\,\\bar R$" for width, delta in found])
     outer(panels, x, y)
     return figure, found
@@ -210,9 +215,8 @@ def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
 
     A column for each polydispersity, a row for each smoothing width, a line for each friction.
     """
-    deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
-    looks = dict(family(sorted(set(crossovers["friction"].values.tolist())), of="friction"))
-    widths = crossovers["width"].values.tolist()
+    deltas, widths = _disorders(crossovers), crossovers["width"].values.tolist()
+    looks = dict(family(different(crossovers["friction"]), of="friction"))
     tolerance, few = float(shapes.attrs["tolerance"]), shapes.isel(number=0)
     what = f"fraction of means of {int(few['number'])}"
     figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), "force over crossover force", what)
@@ -228,23 +232,17 @@ def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
             (drawn[friction],) = axes.plot(force, agree, **looks[friction])
         axes.axvline(1.0, color=style.MUTED, linewidth=0.6, linestyle="-", zorder=0)
         axes.set(xscale="log", ylim=(0.2, 1.05))
-    order = sorted(drawn)
-    figure.legend(
-        [drawn[friction] for friction in order],
-        [f"$\\mu = {friction:g}$" for friction in order],
-        loc="outside upper center",
-        ncols=len(order),
-    )
+    lines = {f"$\\mu = {friction:g}$": drawn[friction] for friction in sorted(drawn)}
+    figure.legend(list(lines.values()), list(lines), loc="outside upper center", ncols=len(lines))
     return figure
 
 
 def _definitions(crossovers: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:
     """Crossovers by what counts as two peaks; found ones alone, those of single realizations beside them."""
-    deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
-    widths = crossovers["width"].values.tolist()
+    deltas, widths = _disorders(crossovers), crossovers["width"].values.tolist()
     figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
     tolerances = [(float(crossovers.attrs["tolerance"]), crossovers)]
-    tolerances += [(float(t), others.sel({"tolerance": t})) for t in others["tolerance"].values]
+    tolerances += [(t, others.sel({"tolerance": t})) for t in others["tolerance"].values.tolist()]
     handles = {}
     for (width, delta), axes in panels.items():
         here = _of(crossovers, delta)
@@ -265,17 +263,16 @@ def _definitions(crossovers: xr.Dataset, others: xr.Dataset, realizations: xr.Da
 
 def _starts(starts: xr.Dataset) -> Figure:
     """The dip under one force and the contacts at rest against the start; a column for each polydispersity."""
-    deltas = sorted(set(starts["polydispersity"].values.tolist()))
-    frictions = sorted({mu for mu in starts["friction"].values.tolist() if mu <= 0.2 and mu != 0.05})
+    deltas = different(starts["polydispersity"])
+    frictions = [mu for mu in different(starts["friction"]) if mu <= 0.2 and mu != 0.05]
     figure, panels = style.figure(2, len(deltas), width="double", height=4.0, sharex="col")
     names: list[str] = []
     for column, delta in enumerate(deltas):
         touching = 2.0 / (1.0 - 0.5 * delta)
         dips, contacts = panels[:, column]
         for friction, look in family(frictions, of="friction"):
-            here = np.flatnonzero((starts["polydispersity"].values == delta) & (starts["friction"].values == friction))
-            here = here[np.argsort(starts["distance"].values[here])]
-            one = starts.isel(case=here)
+            here = (starts["polydispersity"].values == delta) & (starts["friction"].values == friction)
+            one = starts.isel(case=here).sortby("distance")
             for axes, name, data in ((dips, "dip", one.isel(width=0)), (contacts, "contacts", one)):
                 value, ends = data[name].values, data[f"{name}_interval"].sel(level=list(THIN)).values
                 around = np.abs(ends.reshape(-1, 2).T - value)

@@ -20,10 +20,12 @@ from granular_response_paper.panels import (
     chain_key,
     chains,
     contact_ends,
+    different,
     family,
     grey_limit,
     label_ends,
     material,
+    outer,
     packing,
     titles,
     zero,
@@ -77,9 +79,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     disordered = sorted({case.polydispersity for case in parameters.columns if case.polydispersity})
     frictions = sorted({case.friction for case in parameters.columns})
     forces = sorted({force for case in parameters.columns for force in case.forces})
-    ensemble = of_scene(
-        scene, frictions=frictions, polydispersity=disordered, realizations=_counts(parameters, disordered)
-    )
+    counts, width = _counts(parameters, disordered), float(averages["width"][smoothed_by(averages)])
+    ensemble = of_scene(scene, frictions=frictions, polydispersity=disordered, realizations=counts)
     return of_group(
         "polydisperse_averages",
         {
@@ -96,11 +97,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
                 realizations=_counts(parameters, linear.polydispersities),
                 width=linear.width,
             ),
-            "fig21_disordered_forces": {
-                **ensemble,
-                "force": forces,
-                "width": float(averages["width"].values[smoothed_by(averages)]),
-            },
+            "fig21_disordered_forces": ensemble | {"force": forces, "width": width},
             "packings": ensemble,
         },
         keys=KEYS,
@@ -163,10 +160,9 @@ def _contact_forces(data: xr.Dataset) -> FloatArray:
     """(state, m, 2) forces on the first disks of all contacts, then those of the walls."""
     position = data["position"].values
     between = position[:, data["contact_disk"].values] - position[:, data["contact_partner"].values]
-    walls = WALL_NORMAL[data["wall_index"].values.astype(int)]
     normals = {
         "contact": between / np.linalg.norm(between, axis=-1, keepdims=True),
-        "wall": np.broadcast_to(walls, (len(position), *walls.shape)),
+        "wall": WALL_NORMAL[data["wall_index"].values.astype(int)],
     }
     forces = [
         contact_force(normal, data[f"{kind}_normal_force"].values, data[f"{kind}_tangential_force"].values)
@@ -177,7 +173,7 @@ def _contact_forces(data: xr.Dataset) -> FloatArray:
 
 def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Fig. 19: every realization thin, the mean thick in a band of its standard error; a row for each start."""
-    frictions = sorted(set(data["friction"].values.tolist()))
+    frictions = different(data["friction"])
     starts = [name for name in START_NAMES if name in data["lattice_constant"].values]
     figure, panels = style.figure(
         len(starts), len(frictions), width="double", height=0.5 + 1.95 * len(starts), sharex=True, sharey="col"
@@ -190,8 +186,7 @@ def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
             if case is None:
                 axes.set_axis_off()
                 continue
-            rows = data["response"].values[case]
-            rows = rows[np.isfinite(rows).all(axis=1)]
+            rows = data["response"].isel(case=case).dropna("realization").values
             mean, error = rows.mean(axis=0), rows.std(axis=0, ddof=1) / np.sqrt(len(rows))
             _elastic(axes, averages, float(data["width"]))
             axes.plot(x, rows.T, color="#909090", linewidth=0.4, linestyle="-")
@@ -200,9 +195,8 @@ def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
             zero(axes)
             name = f"$\\mu = {friction:g}$, {START_NAMES[start]}, {len(rows)} realizations"
             style.letter(axes, "abcdefgh"[len(frictions) * row + column], place="above", text=name)
-        panels[row, 0].set_ylabel(style.FLOOR_STRESS)
-    for axes in panels[-1]:
-        axes.set(xlabel=style.POSITION, xlim=(x[0], x[-1]))
+    panels[0, 0].set_xlim(x[0], x[-1])
+    outer(panels, style.POSITION, style.FLOOR_STRESS)
     return figure
 
 
@@ -219,22 +213,19 @@ def _case(data: xr.Dataset, polydispersity: float, friction: float, start: str |
     here = (data["polydispersity"].values == polydispersity) & (data["friction"].values == friction)
     if start is not None:
         here &= data["lattice_constant"].values == start
-    found = np.flatnonzero(here)
-    return int(found[0]) if found.size else None
+    return int(np.argmax(here)) if here.any() else None
 
 
 def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Fig. 20: one packing, the means of all, the lattice, smoothed alike, and the ends of the linear ranges."""
-    deltas = sorted(set(data["polydispersity"].values.tolist()), reverse=True)
-    frictions = sorted(set(data["friction"].values.tolist()))
+    deltas, frictions = different(data["polydispersity"])[::-1], different(data["friction"])
     looks = {friction: look | {"markersize": 3.0} for friction, look in family(frictions, of="friction")}
     figure, panels = style.figure(1, len(deltas) + 2, width="double", height=3.0)
     one, means, *others = panels[0]
     responses = [one, *others[:-1]]
     for axes, delta in zip(responses, deltas, strict=True):
         for friction in frictions:
-            path = int(np.flatnonzero((data["polydispersity"] == delta) & (data["friction"] == friction))[0])
-            response = data["response_at_centre"].values[path]
+            response = data["response_at_centre"].values[_case(data, delta, friction)]
             axes.plot(data["force"], response, **looks[friction], label=f"$\\mu = {friction:g}$")
     _central_means(means, averages, deltas[0], float(data.attrs["width"]), looks)
     largest = 1.05 * max(line.get_ydata().max() for axes in (*responses, means) for line in axes.get_lines())
@@ -263,19 +254,14 @@ def _central_means(
     axes: Axes, averages: xr.Dataset, delta: float, width: float, looks: Mapping[float, dict[str, Any]]
 ) -> None:
     """Mean responses at x = 0 with their standard errors, of the cases that have one of the frictions of ``looks``."""
-    same = np.flatnonzero(averages["width"].values == width)
-    if not same.size:  # the averages are smoothed otherwise
+    if width not in averages["width"].values:  # they are smoothed otherwise
         return
-    smoothed = averages.isel(width=int(same[0]))
     for friction, look in looks.items():
         case = _case(averages, delta, friction)
-        if case is None:
-            continue
-        one = smoothed.isel(case=case)
-        force, known = one["force"].values, one["count_at_rest"].values >= 2
-        at = one.sel(x=0.0)
-        mean, error = at["mean"].values[known], at["standard_error"].values[known]
-        axes.errorbar(force[known], mean, error, elinewidth=0.8, capsize=1.5, **look)
+        if case is not None:
+            one = averages.isel(case=case, step=averages["count_at_rest"].values[case] >= 2).sel(width=width, x=0.0)
+            mean, error = one["mean"].values, one["standard_error"].values
+            axes.errorbar(one["force"].values, mean, error, elinewidth=0.8, capsize=1.5, **look)
 
 
 def _range_ends(axes: Axes, data: xr.Dataset, look: dict[str, Any], name: str) -> None:
@@ -295,9 +281,8 @@ def _averages(data: xr.Dataset) -> Figure:
 
     A number in brackets is that of the realizations at rest, where not all of them are.
     """
-    keep = data["polydispersity"].values > 0.0
-    deltas = sorted(set(data["polydispersity"].values[keep].tolist()))
-    frictions = sorted(set(data["friction"].values[keep].tolist()))
+    disordered = data.isel(case=data["polydispersity"].values > 0.0)
+    deltas, frictions = different(disordered["polydispersity"]), different(disordered["friction"])
     figure, panels = style.figure(
         len(frictions), len(deltas), width="double", height=0.5 + 1.35 * len(frictions), sharex=True, sharey="row"
     )
@@ -314,9 +299,9 @@ def _averages(data: xr.Dataset) -> Figure:
             _family(axes, data.isel(case=case, width=w), x)
             letter = chr(ord("a") + row * len(deltas) + column)
             style.letter(axes, letter, text=material(delta, friction).replace(", ", "\n      "))
-        panels[row, 0].set(ylabel=style.FLOOR_STRESS, ylim=(None, 1.15 * panels[row, 0].get_ylim()[1]))
-    for axes in panels[-1]:
-        axes.set(xlabel=style.POSITION, xlim=(-45.0, 45.0))
+        panels[row, 0].set_ylim(top=1.15 * panels[row, 0].get_ylim()[1])
+    panels[0, 0].set_xlim(-45.0, 45.0)
+    outer(panels, style.POSITION, style.FLOOR_STRESS)
     note = f"over each panel: {style.FORCE}, in brackets the packings at rest where some collapsed; grey: elastic"
     figure.suptitle(note, fontsize=8)
     return figure
@@ -341,14 +326,14 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
 
 
 def _realizations(one: xr.Dataset) -> np.ndarray:
-    """(step,) how many a case has, whatever became of them."""
+    """(..., step) how many a case has, whatever became of them."""
     return np.sum([one[f"count_{name}"].values for name in OUTCOMES], axis=0)
 
 
 def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Directions of contacts, coordination numbers, and how many packings bear a force."""
     shown = _shown(data)
-    deltas = sorted(set(data["polydispersity"].values.tolist()))
+    deltas = different(data["polydispersity"])
     colours = dict(zip(deltas, style.ordered_colours(len(deltas), of="polydispersity"), strict=True))
     disordered = [delta for delta in deltas if delta]
     figure, panels = style.figure(2, len(disordered), width="double", height=4.6)
@@ -396,18 +381,12 @@ def _rose(axes: Axes, data: xr.Dataset, delta: float, start: str | None, look: M
 
 def _bearing(axes: Axes, averages: xr.Dataset, colours: Mapping[float, str]) -> None:
     """The part of the packings at rest against the force with its standard error, where some of them collapse."""
-    number = 0
-    for case in range(averages.sizes["case"]):
-        one = averages.isel(case=case)
-        used = np.isfinite(one["force"].values)
-        at_rest = one["count_at_rest"].values[used]
-        total = _realizations(one)[used]
-        if np.all(at_rest == total):
-            continue
-        delta, friction = float(one["polydispersity"]), float(one["friction"])
-        look = {**style.marked_line(number), "color": colours[delta], "markersize": 4.0}
-        look |= {"markeredgewidth": 0.8, "markerfacecolor": "white", "elinewidth": 0.8, "capsize": 1.5}
-        part = at_rest / total
+    fallen = np.flatnonzero((averages["count_at_rest"].values < _realizations(averages)).any(axis=1))
+    for k, case in enumerate(fallen):
+        one = averages.isel(case=case, step=np.isfinite(averages["force"].values[case]))
+        total, delta = _realizations(one), float(one["polydispersity"])
+        part = one["count_at_rest"].values / total
         error = np.sqrt(part * (1.0 - part) / total)
-        axes.errorbar(one["force"].values[used], part, error, **look, label=material(delta, friction))
-        number += 1
+        look = style.marked_line(k) | {"color": colours[delta], "markersize": 4.0, "markeredgewidth": 0.8}
+        look |= {"markerfacecolor": "white", "elinewidth": 0.8, "capsize": 1.5}
+        axes.errorbar(one["force"].values, part, error, **look, label=material(delta, float(one["friction"])))
