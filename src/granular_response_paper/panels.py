@@ -150,3 +150,12 @@ def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap
 def grey_limit(axes: Axes, x: FloatArray, response: FloatArray) -> None:
     """The elastic response, or that to the smallest force, as a broad grey line behind all others."""
     axes.plot(x, response, color=style.FAINT, linestyle="-", linewidth=3.5, zorder=1, label="elastic")
+
+
+def banded(
+    axes: Axes, x: ArrayLike, middle: ArrayLike, ends: tuple[ArrayLike, ArrayLike], look: dict[str, Any], *,
+    alpha: float = 0.2, label: str = "",
+) -> None:  # fmt: skip
+    """A curve with a pale band of its colour between the two ``ends``."""
+    axes.fill_between(x, *ends, color=look["color"], alpha=alpha, linewidth=0.0)
+    axes.plot(x, middle, label=label, **look)

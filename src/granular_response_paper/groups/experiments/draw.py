@@ -14,8 +14,9 @@ from granular_response.plot import style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.plot.photoelastic import photoelastic
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family, titles
+from granular_response_paper.panels import banded, family, titles
 
+from . import LATTICE
 from .parameters import Parameters
 
 #: Depths of the profiles; reach of profiles and images, in mean radii, and pixels of these from side to side.
@@ -25,8 +26,6 @@ SMALL = 3.0
 #: Principal stress difference of one fringe, per applied force, in 1/mean radius.
 FRINGE = 0.32
 TITLES = "vertical force", "oblique force", "widths", "moved disks"
-#: Directions of the lattice, in degrees.
-LATTICE = 60.0, 120.0
 GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5, "linestyle": (0, (1, 1.5))}
 
 
@@ -75,8 +74,7 @@ def _profiles(axes: Axes, one: xr.Dataset) -> None:
     depths = [depth for depth in DEPTHS if depth in near["depth"] and near["force"].sel(depth=depth).notnull().any()]
     for depth, look in family(depths, of="length", marked=False):
         middle, low, high = near["force"].sel(depth=depth).transpose("estimate", "x").values
-        axes.fill_between(near["x"], low, high, color=look["color"], alpha=0.25, linewidth=0.0)
-        axes.plot(near["x"], middle, label=f"{depth:g}", **look)
+        banded(axes, near["x"], middle, (low, high), look, alpha=0.25, label=f"{depth:g}")
     axes.set(xlabel=style.POSITION, ylabel=rf"added force per length$\,\times\,{style.RADIUS}/{style.F_EXT}$")
     axes.legend(title=style.DEPTH, fontsize=7, title_fontsize=7, handlelength=1.2)
 
@@ -84,10 +82,8 @@ def _profiles(axes: Axes, one: xr.Dataset) -> None:
 def _directions(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
     for k, case in enumerate(cases):
         middle, low, high = means["direction"].isel(case=case).transpose("estimate", "angle").values
-        look = style.line(k)
-        axes.fill_between(means["angle"], low, high, color=look["color"], alpha=0.2, linewidth=0.0)
-        axes.plot(means["angle"], middle, label=_name(means, case), **look)
-    for angle in LATTICE:
+        banded(axes, means["angle"], middle, (low, high), style.line(k), label=_name(means, case))
+    for angle in (LATTICE, 180.0 - LATTICE):
         axes.axvline(angle, ymax=0.62, **GUIDE)  # the legend is above
     axes.set(xlabel="direction below horizontal (°)", ylabel=rf"added force per radian$\,/\,{style.F_EXT}$")
     axes.set(xticks=[30, 60, 90, 120, 150], ylim=(0.0, None))
@@ -98,12 +94,9 @@ def _directions(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
 
 def _widths(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
     for k, case in enumerate(cases):
-        one = means["length"].isel(case=case).sel(definition="half_force").dropna("depth")
-        one = one.sel(depth=slice(2.0, None))
+        one = means["length"].isel(case=case).sel(definition="half_force", depth=slice(2.0, None)).dropna("depth")
         middle, low, high = one.transpose("estimate", "depth").values
-        look = style.line(k)
-        axes.fill_between(one["depth"], low, high, color=look["color"], alpha=0.2, linewidth=0.0)
-        axes.plot(one["depth"], middle, label=_name(means, case), **look)
+        banded(axes, one["depth"], middle, (low, high), style.line(k), label=_name(means, case))
     depth = np.array([4.0, 30.0])
     for power in (1.0, 0.5):
         axes.plot(depth, 2.4 * (depth / depth[0]) ** power, **GUIDE)
