@@ -133,9 +133,8 @@ def _event(axes: Axes, events: xr.Dataset, slabs: list[tuple[float, float]]) -> 
         # an event at the first force of all has no lower end
         middle = np.where(come, np.sqrt(np.where(low > 0.0, low, high) * np.where(come, high, 1.0)), low)
         axes.plot([middle.min(), middle.max()], [row, row], color=style.FAINT, linewidth=2.0, linestyle="-", zorder=1)
-        for k, (force, there) in enumerate(zip(middle, come, strict=True)):
-            way, gravity = str(mine["way"].values[k]), str(mine["gravity"].values[k])
-            ramp, damping = float(mine["ramp_time"][k]), float(mine["damping_ratio"][k])
+        columns = (mine[name].values.tolist() for name in ("way", "gravity", "ramp_time", "damping_ratio"))
+        for force, there, way, gravity, ramp, damping in zip(middle, come, *columns, strict=True):
             name, colour, markers = WAYS[gravity]
             marker = markers[0]
             if gravity == "slow":

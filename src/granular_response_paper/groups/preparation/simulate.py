@@ -52,6 +52,10 @@ class Prepared:
         return cls(way, *given, scene.wall.friction)
 
 
+#: Counted in a slab at rest, for each of ``slab.MARGINS``.
+LIMITED = "contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit"
+
+
 @record
 class Rest:
     """The slab at rest."""
@@ -60,9 +64,7 @@ class Rest:
     level_force: float = column(
         f"mean normal force at rest of touching horizontal contacts in the central third {WEIGHTS}"
     )
-    rest_mobilised: FloatArray = column(
-        "contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit", "margin"
-    )
+    rest_mobilised: FloatArray = column(LIMITED, "margin")
 
 
 @record
@@ -74,10 +76,7 @@ class Mobilized:
     taps: int = column("how often the slab was tapped")
     tap_amplitude: float = column("largest acceleration of the box in a tap in g; 0 untapped")
     tap_duration: float = column("duration of a tap in sqrt(radius/g); 0 untapped")
-    mobilized_part: FloatArray = column(
-        "part of the contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit",
-        "margin",
-    )
+    mobilized_part: FloatArray = column(f"part of the {LIMITED}", "margin")
     force: FloatArray = column(f"force of the event; nan if it does not come {WEIGHTS}", "name")
 
 
