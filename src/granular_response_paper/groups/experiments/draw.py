@@ -12,19 +12,16 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.field import draw_field, root_norm
-from granular_response.plot.photoelastic import photoelastic
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import banded, family, titles
+from granular_response_paper.panels import banded, family, polarised, titles
 
 from . import LATTICE
 from .parameters import Parameters
 
-#: Depths of the profiles; reach of profiles and images, in mean radii, and pixels of these from side to side.
-DEPTHS, REACH, NEAR, PIXELS = (4.0, 8.0, 12.0, 16.0), 22.0, 18.0, 560
+#: Depths and reach of the profiles, in mean radii, and pixels of images from side to side.
+DEPTHS, REACH, PIXELS = (4.0, 8.0, 12.0, 16.0), 22.0, 560
 #: The small force of experiments in which the response was linear, in mean weights.
 SMALL = 3.0
-#: Principal stress difference of one fringe, per applied force, in 1/mean radius.
-FRINGE = 0.32
 TITLES = "vertical force", "oblique force", "widths", "moved disks"
 GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5, "linestyle": (0, (1, 1.5))}
 
@@ -124,8 +121,7 @@ def _images(datasets: Mapping[str, xr.Dataset]) -> Figure:
     means, number = datasets["means"], max(1, len(pictures))
     figure, panels = style.figure(2, number, width="double", height=3.9)
     for (case, one), (above, below) in zip(pictures.items(), panels.T, strict=False):
-        half = min(NEAR, 0.5 * float(one.attrs["width"]))
-        photoelastic(one, ax=above, half_width=half, pixels=PIXELS, fringe=FRINGE * float(one["total_force"].max()))
+        half = polarised(above, one, float(one["total_force"].max()), pixels=PIXELS)
         field = means["force"].isel(case=case).sel(estimate="mean", x=slice(-half, half)).dropna("depth", how="all")
         if field.size:
             largest = float(field.sel(depth=slice(2.0, None)).max()) or 1.0
