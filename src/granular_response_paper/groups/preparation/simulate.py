@@ -149,14 +149,10 @@ def tasks(parameters: Parameters) -> dict[Place, partial[Outcome]]:
     """A task for each part, way and realization, and for the taps of each."""
     return {
         (part.polydispersity, scene.wall.friction, scene.contact.friction, k, p, realization, taps): partial(
-            compute,
-            way.name,
-            scene,
-            taps,
-            tuple(force for force in parameters.forces if force <= part.to),
-            parameters.asymmetry,
+            compute, way.name, scene, taps, forces, parameters.asymmetry
         )
         for p, part in enumerate(parameters.parts)
+        for forces in [tuple(force for force in parameters.forces if force <= part.to)]
         for k, way in enumerate(parameters.ways)
         if not part.ways or way.name in part.ways
         for realization in range(part.realizations)
@@ -167,10 +163,8 @@ def tasks(parameters: Parameters) -> dict[Place, partial[Outcome]]:
 
 def _scene(base: Scene, part: Part, realization: int) -> Scene:
     walls = part.friction if part.walls == "rough" else 0.0
-    changes: dict[str, Any] = {**material(part.polydispersity, realization, part.friction, walls)}
-    if part.polydispersity:
-        changes["packing.lattice_constant"] = TOUCHING_LARGEST
-    return base.updated(changes)
+    scene = base.updated(material(part.polydispersity, realization, part.friction, walls))
+    return scene.updated({"packing.lattice_constant": TOUCHING_LARGEST}) if part.polydispersity else scene
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
