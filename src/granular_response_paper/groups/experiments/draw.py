@@ -52,9 +52,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    p, disks = parameters, {name: packing.build().n for name, packing in parameters.packings.items()}
+    p = parameters
     said = of_scene(p.base, polydispersity=None, packing=None, width=p.width)
-    sizes = ", ".join(f"{name}: {number} disks" for name, number in disks.items())
+    sizes = ", ".join(f"{name}: {packing.build().n} disks" for name, packing in p.packings.items())
     numbers = [case.realizations for case in p.cases]
     counts = f"{min(numbers)} to {max(numbers)}"
     return of_group("experiments", {"experiments": said, "experiments_images": said}, p=p, sizes=sizes, counts=counts)

@@ -40,8 +40,11 @@ class Variant:
     load: Mapping[str, Any]
 
 
-#: By variant, what is changed, and the changes to the scene by key: of both stages, ...
-_BOTH: Mapping[str, tuple[str, Mapping[str, Any]]] = {
+#: What a variant changes, in words and by key of a scene.
+Change = tuple[str, Mapping[str, Any]]
+
+#: Changes to both stages.
+_BOTH: Mapping[str, Change] = {
     REFERENCE: ("the paper's protocol as read here", {}),
     "time_step_halved": ("time step halved", {"protocol.time_step": 2.5e-4}),
     "gear": ("Gear at half the time step (its limit is lower)",
@@ -54,19 +57,17 @@ _BOTH: Mapping[str, tuple[str, Mapping[str, Any]]] = {
                   {"protocol.stop_kinetic_energy": 1e-9, "protocol.static_finish": False}),
     "no_static_finish": ("stopped at 1e-13 per disk, without the static finish", {"protocol.static_finish": False}),
 }  # fmt: skip
-#: ... of the load alone, ...
-_LOAD: Mapping[str, tuple[str, Mapping[str, Any]]] = {
+#: Changes to the load alone.
+_LOAD: Mapping[str, Change] = {
     "ramp_80": ("load ramp of 80 in place of 20", {"protocol.ramp_time": 80.0}),
     "sudden_load": ("load applied at once", {"protocol.ramp_time": 0.0}),
     "path": ("quasi-static path in place of dynamics", {"protocol.method": "path"}),
 }
-#: ... and while the load acts: friction laws that statics does not have.
-LAWS_OF_MOTION: Mapping[str, tuple[str, Mapping[str, Any]]] = {
-    "literal_friction": (
-        "the paper's equation for the spring taken literally", {"protocol.friction_law": "literal"}
-    ),
+#: Changes while the load acts: friction laws that statics does not have.
+LAWS_OF_MOTION: Mapping[str, Change] = {
+    "literal_friction": ("the paper's equation for the spring taken literally", {"protocol.friction_law": "literal"}),
     "unloading_friction": ("the spring frozen at the limit, free to unload", {"protocol.friction_law": "unloading"}),
-}  # fmt: skip
+}
 
 
 def variants() -> list[Variant]:
