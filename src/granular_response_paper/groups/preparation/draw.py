@@ -76,6 +76,7 @@ def _against_mobilized(data: xr.Dataset) -> Figure:
     titles(panels, [PANELS[name] for name in names])
     part, delta = 100.0 * data["mobilized_part"].isel(margin=0).values, data["polydispersity"].values
     taps, gravity = data["tap_amplitude"].values, data["gravity"].values
+    frictions = list(family(np.unique(data["friction"].values), of="friction", marked=False))
     ways = [
         (text.removesuffix(" over"), markers[0], (taps == 0.0) & (gravity == name))
         for name, (text, _, markers) in WAYS.items()
@@ -87,7 +88,7 @@ def _against_mobilized(data: xr.Dataset) -> Figure:
     for axes, name in zip(panels, names, strict=True):
         force = data["force"].sel(name=name).values
         axes.axvspan(-LEAST_PART, LEAST_PART, color=style.FAINT, alpha=0.4, linewidth=0.0)
-        for friction, look in family(np.unique(data["friction"].values), of="friction", marked=False):
+        for friction, look in frictions:
             for place, (_, marker, prepared) in zip(np.linspace(-0.8, 0.8, len(ways)), ways, strict=True):
                 beside = np.where(part == 0.0, place * LEAST_PART, part)
                 alike = prepared & (data["friction"].values == friction)
@@ -103,10 +104,7 @@ def _against_mobilized(data: xr.Dataset) -> Figure:
         axes.xaxis.set_major_formatter("{x:g}")
         axes.yaxis.set_major_formatter("{x:g}")
     panels[0].set_ylabel(style.FORCE)
-    shown = [
-        (style.equals(style.FRICTION, mu), {"marker": "s", **look})
-        for mu, look in family(np.unique(data["friction"].values), of="friction", marked=False)
-    ]
+    shown = [(style.equals(style.FRICTION, mu), {"marker": "s", **look}) for mu, look in frictions]
     shown += [(text, {"marker": marker, "color": style.BLACK}) for text, marker, _ in ways]
     shown += [("disorder", {"marker": "o", "color": style.BLACK, "markerfacecolor": "none"})]
     handles = [Line2D([], [], linestyle="none", markersize=4.5, label=text, **look) for text, look in shown]
