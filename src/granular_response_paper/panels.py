@@ -13,6 +13,7 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
 from granular_response.plot import network, style
+from granular_response.plot.photoelastic import photoelastic
 from granular_response.state import FloatArray
 
 from .captions import letters
@@ -160,3 +161,24 @@ def different(values: ArrayLike) -> list[Any]:
 #: Lines to compare curves with, behind these, and their dashes.
 GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
 DASHED, DOTTED = (0, (4, 2)), (0, (1, 1.5))
+
+
+def banded(
+    axes: Axes, x: ArrayLike, middle: ArrayLike, ends: tuple[ArrayLike, ArrayLike], look: dict[str, Any], *,
+    alpha: float = 0.2, label: str = "",
+) -> None:  # fmt: skip
+    """A curve with a pale band of its colour between the two ``ends``."""
+    axes.fill_between(x, *ends, color=look["color"], alpha=alpha, linewidth=0.0)
+    axes.plot(x, middle, label=label, **look)
+
+
+#: Of packings between crossed polarisers: mean radii to each side of the load, and the principal stress difference of
+#: one fringe, per applied force, in 1/mean radius.
+NEAR, FRINGE = 18.0, 0.32
+
+
+def polarised(axes: Axes, packing: xr.Dataset, force: float, *, pixels: int) -> float:
+    """Draw a packing between crossed polarisers; returns how far to each side of the load it is shown."""
+    half = min(NEAR, 0.5 * float(packing.attrs["width"]))
+    photoelastic(packing, ax=axes, half_width=half, pixels=pixels, fringe=FRINGE * force)
+    return half

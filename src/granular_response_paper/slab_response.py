@@ -24,6 +24,7 @@ from granular_response.observe.floor import floor_disks, floor_response, interio
 from granular_response.observe.teardrop import OpenRegion, teardrop
 from granular_response.observe.widths import last_passage
 from granular_response.scene import Packing, Scene
+from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
@@ -473,3 +474,13 @@ def measured_along(dimension: str, measured: Sequence[xr.Dataset]) -> xr.Dataset
     ends = np.cumsum([0, *(one.sizes["state"] for one in measured)]).tolist()
     parts = [(slice(*place), one) for place, one in zip(pairwise(ends), measured, strict=True)]
     return measured_dataset((dimension,), parts, (ends[-1],))
+
+
+def disordered(stop_kinetic_energy: float) -> dict[str, float | str]:
+    """Changes to a scene whose disks differ in size: the largest ones touch at first, and how their fall is solved."""
+    return {
+        "packing.lattice_constant": TOUCHING_LARGEST,
+        "protocol.integrator": "leapfrog",
+        "protocol.time_step": "auto",
+        "protocol.stop_kinetic_energy": stop_kinetic_energy,
+    }

@@ -17,9 +17,10 @@ import numpy as np
 
 from granular_response.errors import SolveError
 from granular_response.observe.audit import Audit, ContactRule, audit
+from granular_response.observe.floor import floor_force
 from granular_response.scene import Load, Scene, SceneError
 from granular_response.solvers.solution import Solution, solve_scene
-from granular_response.state import FLOOR, State
+from granular_response.state import State
 from granular_response_paper.records import column, record
 from granular_response_paper.slab_response import lost
 
@@ -216,11 +217,8 @@ def write_table(path: Path, table: np.ndarray) -> None:
 
 def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> Trial:
     """Solve a scene and check what comes out; ``twin``: compare it with its twin too."""
-    states: list[State] = []
     checks: list[Audit] = []
-    outcome, message = "certified", ""
-    disks = 0
-    difference = float("nan")
+    outcome, message, disks, difference = "certified", "", 0, float("nan")
     try:
         scene = Scene.from_dict(description, folder=folder)
         solution = solve_scene(scene)
@@ -255,7 +253,7 @@ def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> 
 
     return Trial(
         outcome, message, description["packing"]["kind"], description["protocol"]["method"],
-        description["protocol"]["integrator"], description["contact"]["friction"], disks, len(states),
+        description["protocol"]["integrator"], description["contact"]["friction"], disks, len(checks),
         worst("force_residual"), worst("torque_residual"), worst("coulomb_excess"),
         difference,
     )  # fmt: skip
@@ -354,7 +352,7 @@ def twin_difference(description: dict[str, Any], solution: Solution, folder: str
         states = (one.rest, *one.loaded)
         if lost(states) or not all(state.certificate.stable for state in states):
             return float("nan")
-        found.append([_floor(state)[where] for state in states])
+        found.append([floor_force(state, where) for state in states])
     first, twin, near = found
     if np.abs(first[0] - twin[0]).max() > SAME_REST:
         return float("nan")
@@ -374,13 +372,6 @@ def _mirrored(load: Load, sign: float) -> dict[str, Any]:
     """A load in a packing as it is (``sign`` 1) or mirrored (-1), its disk left out."""
     both = {name: value and (value[0] and sign * value[0], value[1]) for name, value in load if name in _VECTORS}
     return {**both, "torque": sign * load.torque}
-
-
-def _floor(state: State) -> np.ndarray:
-    """(n,) force of the floor on each disk."""
-    walls = state.walls
-    on_floor = walls.second == FLOOR
-    return np.bincount(walls.first[on_floor], walls.normal_force[on_floor], len(state.position))
 
 
 def contradiction(state: State, found: Audit, rounding: float) -> str:

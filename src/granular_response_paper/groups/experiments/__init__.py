@@ -1,1 +1,4 @@
 """Figure group ``experiments``."""
+
+#: Direction of the lattice below the horizontal, in degrees.
+LATTICE = 60.0

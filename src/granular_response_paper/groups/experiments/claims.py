@@ -9,14 +9,15 @@ from ...claims import asked
 from ...claims.bootstrap import part_of
 from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
+from . import LATTICE
 
 GROUP = "experiments"
 CLAIMS = Claims(GROUP)
 NEARLY_EQUAL, TWO_SIZES, DEEP = "nearly equal", "bidisperse", "deep"
 #: Applied in the experiments with photoelastic disks; in mean weights, as the smaller ones.
 LARGE, MIDDLE, SMALL, HALF = 150.0, 15.0, 3.0, 1.5
-#: Direction of the lattice in degrees, and powers of depth of an elastic and a diffusive response.
-LATTICE, ELASTIC, DIFFUSIVE = 60.0, 1.0, 0.5
+#: Powers of depth of an elastic and a diffusive response.
+ELASTIC, DIFFUSIVE = 1.0, 0.5
 #: The two definitions of the width.
 WIDTHS = {"half_maximum": "half maximum", "half_force": "half of the force"}
 

@@ -12,21 +12,17 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.field import draw_field, root_norm
-from granular_response.plot.photoelastic import photoelastic
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family, titles
+from granular_response_paper.panels import banded, family, polarised, titles
 
+from . import LATTICE
 from .parameters import Parameters
 
-#: Depths of the profiles; reach of profiles and images, in mean radii, and pixels of these from side to side.
-DEPTHS, REACH, NEAR, PIXELS = (4.0, 8.0, 12.0, 16.0), 22.0, 18.0, 560
+#: Depths and reach of the profiles, in mean radii, and pixels of images from side to side.
+DEPTHS, REACH, PIXELS = (4.0, 8.0, 12.0, 16.0), 22.0, 560
 #: The small force of experiments in which the response was linear, in mean weights.
 SMALL = 3.0
-#: Principal stress difference of one fringe, per applied force, in 1/mean radius.
-FRINGE = 0.32
 TITLES = "vertical force", "oblique force", "widths", "moved disks"
-#: Directions of the lattice, in degrees.
-LATTICE = 60.0, 120.0
 GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5, "linestyle": (0, (1, 1.5))}
 
 
@@ -56,9 +52,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    p, disks = parameters, {name: packing.build().n for name, packing in parameters.packings.items()}
+    p = parameters
     said = of_scene(p.base, polydispersity=None, packing=None, width=p.width)
-    sizes = ", ".join(f"{name}: {number} disks" for name, number in disks.items())
+    sizes = ", ".join(f"{name}: {packing.build().n} disks" for name, packing in p.packings.items())
     numbers = [case.realizations for case in p.cases]
     counts = f"{min(numbers)} to {max(numbers)}"
     return of_group("experiments", {"experiments": said, "experiments_images": said}, p=p, sizes=sizes, counts=counts)
@@ -75,8 +71,7 @@ def _profiles(axes: Axes, one: xr.Dataset) -> None:
     depths = [depth for depth in DEPTHS if depth in near["depth"] and near["force"].sel(depth=depth).notnull().any()]
     for depth, look in family(depths, of="length", marked=False):
         middle, low, high = near["force"].sel(depth=depth).transpose("estimate", "x").values
-        axes.fill_between(near["x"], low, high, color=look["color"], alpha=0.25, linewidth=0.0)
-        axes.plot(near["x"], middle, label=f"{depth:g}", **look)
+        banded(axes, near["x"], middle, (low, high), look, alpha=0.25, label=f"{depth:g}")
     axes.set(xlabel=style.POSITION, ylabel=rf"added force per length$\,\times\,{style.RADIUS}/{style.F_EXT}$")
     axes.legend(title=style.DEPTH, fontsize=7, title_fontsize=7, handlelength=1.2)
 
@@ -84,10 +79,8 @@ def _profiles(axes: Axes, one: xr.Dataset) -> None:
 def _directions(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
     for k, case in enumerate(cases):
         middle, low, high = means["direction"].isel(case=case).transpose("estimate", "angle").values
-        look = style.line(k)
-        axes.fill_between(means["angle"], low, high, color=look["color"], alpha=0.2, linewidth=0.0)
-        axes.plot(means["angle"], middle, label=_name(means, case), **look)
-    for angle in LATTICE:
+        banded(axes, means["angle"], middle, (low, high), style.line(k), label=_name(means, case))
+    for angle in (LATTICE, 180.0 - LATTICE):
         axes.axvline(angle, ymax=0.62, **GUIDE)  # the legend is above
     axes.set(xlabel="direction below horizontal (°)", ylabel=rf"added force per radian$\,/\,{style.F_EXT}$")
     axes.set(xticks=[30, 60, 90, 120, 150], ylim=(0.0, None))
@@ -98,12 +91,9 @@ def _directions(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
 
 def _widths(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
     for k, case in enumerate(cases):
-        one = means["length"].isel(case=case).sel(definition="half_force").dropna("depth")
-        one = one.sel(depth=slice(2.0, None))
+        one = means["length"].isel(case=case).sel(definition="half_force", depth=slice(2.0, None)).dropna("depth")
         middle, low, high = one.transpose("estimate", "depth").values
-        look = style.line(k)
-        axes.fill_between(one["depth"], low, high, color=look["color"], alpha=0.2, linewidth=0.0)
-        axes.plot(one["depth"], middle, label=_name(means, case), **look)
+        banded(axes, one["depth"], middle, (low, high), style.line(k), label=_name(means, case))
     depth = np.array([4.0, 30.0])
     for power in (1.0, 0.5):
         axes.plot(depth, 2.4 * (depth / depth[0]) ** power, **GUIDE)
@@ -131,8 +121,7 @@ def _images(datasets: Mapping[str, xr.Dataset]) -> Figure:
     means, number = datasets["means"], max(1, len(pictures))
     figure, panels = style.figure(2, number, width="double", height=3.9)
     for (case, one), (above, below) in zip(pictures.items(), panels.T, strict=False):
-        half = min(NEAR, 0.5 * float(one.attrs["width"]))
-        photoelastic(one, ax=above, half_width=half, pixels=PIXELS, fringe=FRINGE * float(one["total_force"].max()))
+        half = polarised(above, one, float(one["total_force"].max()), pixels=PIXELS)
         field = means["force"].isel(case=case).sel(estimate="mean", x=slice(-half, half)).dropna("depth", how="all")
         if field.size:
             largest = float(field.sel(depth=slice(2.0, None)).max()) or 1.0

@@ -21,10 +21,11 @@ from granular_response.scene import Scene
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR, FloatArray
 from granular_response.store.result import common_candidates
-from granular_response.store.variables import RADII, variable
+from granular_response.store.variables import RADII
 from granular_response_paper.datasets import labelled, pictured
+from granular_response_paper.groups.experiments import LATTICE
 from granular_response_paper.groups.experiments.parameters import Parameters
-from granular_response_paper.records import axes, column, labels, record, table
+from granular_response_paper.records import axes, column, labels, record, table, variables
 from granular_response_paper.slab_response import LoadPath
 from granular_response_paper.survey.crossover import CONFIDENCE, folded, weights
 from granular_response_paper.tasks import computed
@@ -33,8 +34,8 @@ from granular_response_paper.tasks import computed
 SPACING, SCALED = 0.5, np.linspace(0.0, 1.5, 31)
 #: Directions below the horizontal, from the side that an oblique force points to, in degrees.
 ANGLES = np.arange(20.0, 161.0)
-#: Direction of the lattice, and half-way between it and the vertical.
-LATTICE, BETWEEN, VERTICAL = 60.0, 75.0, 90.0
+#: Downwards, and half-way between that and the lattice.
+VERTICAL, BETWEEN = 90.0, 75.0
 ESTIMATE = ("mean", "low", "high")
 WIDTHS = ("half_maximum", "half_force")
 
@@ -123,22 +124,18 @@ def statistics(asked: Parameters, x: FloatArray, height: float, force: FloatArra
 def mean_of(asked: Parameters, x: FloatArray, outcomes: list[Outcome]) -> Statistics:
     """Of the packings that hold the force; nan with fewer than three."""
     held = [one for one in outcomes if one.moved <= asked.largest_move]
-    number, missing = len(held), np.full((1, asked.depths, len(x)), np.nan)
-    profiles = [np.stack([getattr(one, name) for one in held]) if held else missing for name in ("force", "stress")]
-    height = float(np.mean([one.height for one in held])) if held else 0.0
-    if number < 3:
-        value = statistics(asked, x, height, missing[0], missing[0])
-        return Statistics(**{name: np.stack([np.full_like(one, np.nan)] * 3, axis=-1) for name, one in value.items()})
-    parts = weights(number, asked.draws, asked.seed) / number
+    if len(held) < 3:
+        missing = np.full((asked.depths, len(x)), np.nan)
+        value = statistics(asked, x, 0.0, missing, missing)
+        return Statistics(**{name: np.full((*np.shape(one), len(ESTIMATE)), np.nan) for name, one in value.items()})
+    profiles = [np.stack([getattr(one, name) for one in held]) for name in ("force", "stress")]
+    height = float(np.mean([one.height for one in held]))
     value = statistics(asked, x, height, *(one.mean(axis=0) for one in profiles))
+    parts = weights(len(held), asked.draws, asked.seed) / len(held)
     means = [np.einsum("wr,rdx->wdx", parts, one) for one in profiles]
     drawn = [statistics(asked, x, height, *one) for one in zip(*means, strict=True)]
-    return Statistics(
-        **{
-            name: np.stack([one, *np.quantile([draw[name] for draw in drawn], CONFIDENCE, axis=0)], axis=-1)
-            for name, one in value.items()
-        }
-    )
+    ends = {name: np.quantile([draw[name] for draw in drawn], CONFIDENCE, axis=0) for name in value}
+    return Statistics(**{name: np.stack([one, *ends[name]], axis=-1) for name, one in value.items()})
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -153,11 +150,10 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     found = computed(tasks, "packings")
     each = [[found[c, r] for r in range(case.realizations)] for c, case in enumerate(cases)]
     means = computed({(c,): partial(mean_of, asked, x, one) for c, one in enumerate(each)}, "means")
-    texts = {"force_applied": "applied force, in mean weights", "angle_applied": "of it below the horizontal, degrees"}
-    coordinates = labels("case", cases, packing="packing", realizations="number of packings") | {
-        name: variable("case", [getattr(case, name.partition("_")[0]) for case in cases], text)
-        for name, text in texts.items()
-    }
+    coordinates = labels("case", cases, packing="packing", realizations="number of packings") | variables(
+        force_applied=("case", [case.force for case in cases], "applied force, in mean weights"),
+        angle_applied=("case", [case.angle for case in cases], "of it below the horizontal, degrees"),
+    )
     points = axes(
         depth=(np.arange(1.0, asked.depths + 1.0), f"depth below the loaded disk {RADII}"),
         x=(x, f"position from the loaded disk {RADII}"), angle=(ANGLES, "angle below the horizontal, in degrees"),

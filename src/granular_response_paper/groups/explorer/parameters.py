@@ -31,14 +31,7 @@ class Parameters(SceneGroup):
 
     scene: Annotated[
         Scene,
-        over(
-            UNIT_LOAD,
-            "packing.polydispersity",
-            "packing.lattice_constant",
-            "contact.friction",
-            "loads",
-            "protocol",
-        ),
+        over(UNIT_LOAD, "packing.polydispersity", "packing.lattice_constant", "contact.friction", "loads", "protocol"),
     ] = Field(description="Of the lattices; disordered slabs have its stiffness_ratio too.")
     forces: Growing = Field(description="In mean disk weights.")
     lattices: Annotated[tuple[Lattice, ...], AfterValidator(some)]

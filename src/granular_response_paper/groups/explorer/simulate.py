@@ -17,10 +17,11 @@ from granular_response.observe.peaks import peak_count
 from granular_response.scene import Scene
 from granular_response.state import State
 from granular_response.store.result import certificates_dataset
-from granular_response.store.variables import RADII, variable
+from granular_response.store.variables import RADII
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.explorer.parameters import Parameters
-from granular_response_paper.slab_response import LoadPath, Measures, states_picture
+from granular_response_paper.records import variables
+from granular_response_paper.slab_response import LoadPath, Measures, disordered, states_picture
 from granular_response_paper.tasks import computed
 
 
@@ -36,17 +37,9 @@ def _tasks(parameters: Parameters) -> dict[str, partial[xr.Dataset]]:
         changes = {"contact.friction": lattice.friction, "contact.stiffness_ratio": lattice.stiffness_ratio}
         tasks.append(partial(states, base.updated(changes), forces, depth, 0.0))
     for one in parameters.disordered:
-        scene = base.updated(
-            {
-                "packing.polydispersity": one.polydispersity,
-                "packing.lattice_constant": "touching-largest",
-                "contact.friction": one.friction,
-                "wall.friction": one.friction,
-                "protocol.integrator": "leapfrog",
-                "protocol.time_step": "auto",
-                "protocol.stop_kinetic_energy": parameters.stop_kinetic_energy,
-            }
-        )
+        material = {"packing.polydispersity": one.polydispersity, "contact.friction": one.friction}
+        fall = disordered(parameters.stop_kinetic_energy)
+        scene = base.updated({**material, "wall.friction": one.friction, **fall})
         below = tuple(force for force in forces if force <= one.largest_force)
         tasks.append(partial(states, scene, below, depth, parameters.width))
     return {f"slab_{k}": task for k, task in enumerate(tasks)}
@@ -92,18 +85,19 @@ def _dataset(path: LoadPath, found: list[State], width: float) -> xr.Dataset:
     for name, values in pictures.data_vars.items():
         if values.dtype == np.float64 and values.ndim > 1:
             pictures[name] = values.astype(np.float32)
+    packing, contact = scene.packing.model_dump(), scene.contact
     return pictures.merge(certificates_dataset(found)).assign(
-        floor_response=variable(
-            ("state", "floor_disk"), response, "vertical floor force that the load adds, per applied force"
-        ),
-        smoothed_response=variable(("state", "floor_disk"), smooth, f"floor response {unit}"),
-        response_at_centre=variable("state", centre, f"floor response at x = 0 {unit}"),
-        peak_count=variable("state", count, "number of peaks of the smoothed response; 0 at rest"),
-        x=variable("floor_disk", x, f"rest position of a floor disk from the loaded disk {RADII}"),
-        smoothing_width=variable((), width, f"width w of the smoothing Gaussian {RADII}; 0: none"),
-        polydispersity=variable((), scene.packing.model_dump()["polydispersity"], "delta: spread of the radii"),
-        friction=variable((), scene.contact.friction, "coefficient of friction between disks"),
-        wall_friction=variable((), scene.wall.friction, "coefficient of friction of the walls"),
-        stiffness_ratio=variable((), scene.contact.stiffness_ratio, "k_T/k_N"),
-        normal_stiffness=variable((), scene.contact.normal_stiffness, "k_N in mean disk weight per mean radius"),
+        variables(
+            floor_response=("state floor_disk", response, "vertical floor force that the load adds, per applied force"),
+            smoothed_response=("state floor_disk", smooth, f"floor response {unit}"),
+            response_at_centre=("state", centre, f"floor response at x = 0 {unit}"),
+            peak_count=("state", count, "number of peaks of the smoothed response; 0 at rest"),
+            x=("floor_disk", x, f"rest position of a floor disk from the loaded disk {RADII}"),
+            smoothing_width=("", width, f"width w of the smoothing Gaussian {RADII}; 0: none"),
+            polydispersity=("", packing["polydispersity"], "delta: spread of the radii"),
+            friction=("", contact.friction, "coefficient of friction between disks"),
+            wall_friction=("", scene.wall.friction, "coefficient of friction of the walls"),
+            stiffness_ratio=("", contact.stiffness_ratio, "k_T/k_N"),
+            normal_stiffness=("", contact.normal_stiffness, "k_N in mean disk weight per mean radius"),
+        )
     )

@@ -12,19 +12,16 @@ from matplotlib.figure import Figure
 from granular_response.plot import style
 from granular_response.plot.animation import FULL, Frames, animate
 from granular_response.plot.chains import draw_chains, draw_key, draw_response
-from granular_response.plot.photoelastic import photoelastic
 from granular_response.plot.pictures import Shown
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import packing
+from granular_response_paper.panels import packing, polarised
 
 from .parameters import Parameters
 
-#: Mean radii to each side of the load: of slabs, and of photoelastic packings.
-HALF_WIDTH, NEAR = 30.0, 18.0
+#: Mean radii of slabs to each side of the load.
+HALF_WIDTH = 30.0
 #: Pixels from side to side of a photoelastic packing.
 PIXELS = 680
-#: Principal stress difference of one fringe, per applied force, in 1/mean radius.
-FRINGE = 0.32
 
 
 @style.context()
@@ -54,13 +51,11 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "overview": {**given, "force": [forces[0], forces[-1]]},
             "growing_force": {**given, "force": forces},
             "photoelastic": of_scene(
-                parameters.scene,
-                frictions=experiment.friction,
-                force=experiment.force,
+                parameters.scene, frictions=experiment.friction, force=experiment.force,
                 polydispersity=experiment.polydispersities,
             ),
         },
-    )
+    )  # fmt: skip
 
 
 def _slabs(datasets: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
@@ -97,7 +92,6 @@ def _photoelastic(packings: list[xr.Dataset]) -> Figure:
     figure, panels = style.figure(1, len(packings), width=6.2, height=2.95)
     largest = max(float(slab["total_force"].max()) for slab in packings)
     for axes, slab in zip(panels[0], packings, strict=True):
-        half = min(NEAR, 0.5 * float(slab.attrs["width"]))
-        photoelastic(slab, ax=axes, half_width=half, pixels=PIXELS, fringe=FRINGE * largest)
+        polarised(axes, slab, largest, pixels=PIXELS)
         axes.set_title(packing(float(slab["polydispersity"])), pad=2.0)
     return figure

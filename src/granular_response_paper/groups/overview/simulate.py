@@ -16,25 +16,21 @@ from granular_response.solvers.solution import solve_scene
 from granular_response.store.variables import variable
 from granular_response_paper.datasets import labelled, pictured
 from granular_response_paper.groups.overview.parameters import Parameters
+from granular_response_paper.slab_response import disordered
 from granular_response_paper.tasks import computed
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """``slab_K`` for each friction, ``photoelastic_K`` for each polydispersity."""
     base, experiment = parameters.base, parameters.experiment
+    fall = disordered(experiment.stop_kinetic_energy)
     rough = {"contact.friction": experiment.friction, "wall.friction": experiment.friction}
-    disordered = {
-        "packing.lattice_constant": "touching-largest",
-        "protocol.integrator": "leapfrog",
-        "protocol.time_step": "auto",
-        "protocol.stop_kinetic_energy": experiment.stop_kinetic_energy,
-    }
     tasks = {
         f"slab_{k}": partial(states, base.updated({"contact.friction": friction}), parameters.forces, elastic=True)
         for k, friction in enumerate(parameters.frictions)
     }
     for k, delta in enumerate(experiment.polydispersities):
-        scene = base.updated({**rough, "packing.polydispersity": delta, **(disordered if delta else {})})
+        scene = base.updated({**rough, "packing.polydispersity": delta, **(fall if delta else {})})
         tasks[f"photoelastic_{k}"] = partial(states, scene, (experiment.force,))
     return labelled(computed(tasks, "packings"))
 

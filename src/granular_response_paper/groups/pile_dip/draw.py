@@ -21,8 +21,13 @@ from granular_response_paper.panels import chain_key, chains, contact_ends, titl
 
 from .parameters import Parameters
 
-#: Cases that are drawn, left and right; of the two frictionless minima one, the other is its mirror image.
-DRAWN = {"frictionless": "without friction", "frictional": "with friction"}
+#: The cases, and which are drawn, left and right: of the two frictionless minima one.
+NAMES = {
+    "frictionless": "without friction",
+    "mirrored": "without friction, its mirror image",
+    "frictional": "with friction",
+}
+DRAWN = ["frictionless", "frictional"]
 
 #: Force of the key, in mean disk weights.
 KEY = 5.0
@@ -43,9 +48,9 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     figure, panels = style.figure(3, 2, width="double", height=3.9)
-    shown = piles.sel(case=list(DRAWN))
+    shown = piles.sel(case=DRAWN)
     strongest = float(np.linalg.norm(shown["contact_force"].values, axis=-1).max())
-    fields = stress["stress_zz"].sel(case=list(DRAWN)) + _wall_part(shown, stress)
+    fields = stress["stress_zz"].sel(case=DRAWN) + _wall_part(shown, stress)
     largest = float(fields.max())
     levels = np.asarray(MaxNLocator(8).tick_values(0.0, largest))[1:-1]  # without zero and what is above all
     width = float(piles["width"])
@@ -65,7 +70,7 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
             axes.set(xlim=(-2.6, width + 2.6), ylim=(-1.6, top + 0.2))
         map_axes.set(xlim=(-0.5 * width, 0.5 * width), ylim=(0.0, top))
         chain_key(forces, (0.8 * width, 0.9 * top), KEY, strongest, style.WEIGHT)
-    titles(panels.flat, [*(f"forces, {name}" for name in DRAWN.values()), *2 * ["$\\sigma_{zz}$"], *2 * ["contacts"]])
+    titles(panels.flat, [*(f"forces, {NAMES[case]}" for case in DRAWN), *2 * ["$\\sigma_{zz}$"], *2 * ["contacts"]])
     bar = figure.colorbar(image, ax=panels[1], shrink=0.9, aspect=14, pad=0.02, ticks=[0.0, *levels[1::2]])
     bar.ax.hlines(levels, 0.0, 1.0, transform=bar.ax.get_yaxis_transform(), color="white", linewidth=0.6)
     bar.set_label(style.STRESS_OF_GRAVITY)
@@ -117,19 +122,14 @@ def _network(axes: Axes, one: xr.Dataset) -> None:
 def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     """Not in the paper: the stress at one height, and the floor forces, of all three states."""
     figure, ((line, floor),) = style.figure(1, 2, width="double", height=2.5)
-    names = {
-        "frictionless": "without friction",
-        "mirrored": "without friction, its mirror image",
-        "frictional": "with friction",
-    }
-    for index, (case, name) in enumerate(names.items()):
+    for index, (case, name) in enumerate(NAMES.items()):
         one = stress["profile_zz"].sel(case=case)
         line.plot(stress["x"], one, **style.line(index), label=name)
         look = {**style.marked_line(index), "linestyle": style.LINE_STYLES[index]}
         floor.plot(piles["x_floor"], piles["floor_force"].sel(case=case), **look)
     line.set(xlabel=style.POSITION, ylabel=style.STRESS_OF_GRAVITY)
     line.set_ylim(bottom=0.0)
-    figure.legend(*line.get_legend_handles_labels(), loc="outside upper center", ncols=len(names))
+    figure.legend(*line.get_legend_handles_labels(), loc="outside upper center", ncols=len(NAMES))
     height = style.equals("z", float(stress["dip_height"]), style.RADIUS)
     titles((line, floor), (height, ""), stem="fig17_pile_profiles", place="inside")
     floor.set(xlabel=style.POSITION, ylabel=rf"floor force$\,/\,{style.WEIGHT}$")

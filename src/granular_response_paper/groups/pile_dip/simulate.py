@@ -27,11 +27,11 @@ from granular_response.solvers.energy import minimise
 from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
 from granular_response.store.result import STATUSES, certificates_dataset, common_candidates
-from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled, stress_components
 from granular_response_paper.groups.pile_dip.parameters import Parameters
-from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.tasks import computed
 
 CASES = ("frictionless", "mirrored", "frictional")
@@ -45,12 +45,12 @@ def settle(scene: Scene) -> tuple[State, ...]:
     if problem.rotations:
         return (state,)
     other = minimise(problem, problem.with_static_forces(mirrored(state, problem.packing)))
-    x = problem.packing.position[:, 0] - 0.5 * problem.packing.width
     bottom = np.flatnonzero(problem.packing.row == 0)
+    x = problem.packing.position[bottom, 0] - 0.5 * problem.packing.width
 
     def higher_on_the_right(minimum: State) -> float:
         force = floor_force(minimum, bottom)
-        right, left = force[x[bottom] > 1e-6], force[x[bottom] < -1e-6]  # neither in a pile of one disk
+        right, left = force[x > 1e-6], force[x < -1e-6]  # neither in a pile of one disk
         return float(right.max(initial=0.0) - left.max(initial=0.0))
 
     first, second = sorted((state, other), key=higher_on_the_right)
@@ -74,8 +74,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     found = computed({"without": partial(settle, without), "with": partial(settle, frictional)}, "piles")
     packing = frictional.packing.build()
     states = common_candidates([state for states in found.values() for state in states], packing.radius)
-    stress = _stress_dataset(packing, states, parameters.stress_width, parameters.stress_spacing, parameters.dip_height)
-    datasets = {"piles": _piles_dataset(packing, states), "stress": stress}
+    datasets = {"piles": _piles_dataset(packing, states), "stress": _stress_dataset(packing, states, parameters)}
     return labelled(datasets, frictional)
 
 
@@ -131,58 +130,46 @@ def _piles_dataset(packing: Packing, states: Sequence[State]) -> xr.Dataset:
     x = packing.position[bottom, 0] - 0.5 * packing.width
     piles = [Pile.of(packing, state, bottom, x) for state in states]
     image = np.abs(piles[0].floor_force - piles[1].floor_force[::-1]).max()
-    return (
-        table(piles, "case")
-        .assign(
-            radius=variable("disk", packing.radius, f"disk radius {RADII}"),
-            contact_disk=variable("contact", pairs.first, "disk that the contact force acts on"),
-            contact_partner=variable("contact", pairs.second, "other disk"),
-            wall_disk=variable("wall_contact", walls.first, "disk that the wall's force acts on"),
-            wall_index=variable("wall_contact", walls.second, "wall: 0 floor, 1 left, 2 right"),
-            image_difference=variable(
-                (), image, f"largest difference of the two minima's floor forces after mirroring {WEIGHTS}"
-            ),
-            width=variable((), packing.width, f"distance of the side walls {RADII}"),
-        )
-        .assign_coords(
-            axes(case=OF_CASES, axis=("xz", "axis labels"), floor_disk=(bottom, "index of the floor disk"))
-            | {"x_floor": variable("floor_disk", x, f"position from the axis of the pile {RADII}")}
-        )
-        .merge(certificates_dataset(states, "case"))
+    of_packing = variables(
+        radius=("disk", packing.radius, f"disk radius {RADII}"),
+        contact_disk=("contact", pairs.first, "disk that the contact force acts on"),
+        contact_partner=("contact", pairs.second, "other disk"),
+        wall_disk=("wall_contact", walls.first, "disk that the wall's force acts on"),
+        wall_index=("wall_contact", walls.second, "wall: 0 floor, 1 left, 2 right"),
+        image_difference=("", image, f"largest difference of the two minima's floor forces after mirroring {WEIGHTS}"),
+        width=("", packing.width, f"distance of the side walls {RADII}"),
     )
+    coordinates = axes(case=OF_CASES, axis=("xz", "axis labels"), floor_disk=(bottom, "index of the floor disk"))
+    places = variables(x_floor=("floor_disk", x, f"position from the axis of the pile {RADII}"))
+    dataset = table(piles, "case").assign(of_packing).assign_coords(coordinates | places)
+    return dataset.merge(certificates_dataset(states, "case"))
 
 
-def _stress_dataset(packing: Packing, states: Sequence[State], w: float, spacing: float, height: float) -> xr.Dataset:
-    half = 0.5 * packing.width
+def _stress_dataset(packing: Packing, states: Sequence[State], asked: Parameters) -> xr.Dataset:
+    w, spacing, height, half = asked.stress_width, asked.stress_spacing, asked.dip_height, 0.5 * packing.width
     steps = int(half / spacing)
     x: FloatArray = spacing * np.arange(-steps, steps + 1, dtype=np.float64)
     z = np.arange(0.0, float(packing.position[:, 1].max()) + 1.0 + 0.5 * spacing, spacing)
 
-    def fields(points: FloatArray) -> FloatArray:
+    def fields(z: FloatArray) -> FloatArray:
+        points = coarse.grid_points(x + half, z)
         return np.stack([coarse.coarse_grained_stress(coarse.contact_forces(s), points, w) for s in states])
 
-    grid = fields(coarse.grid_points(x + half, z))
-    line = fields(coarse.grid_points(x + half, np.array([height])))[:, 0, :, 1, 1]
-    dims = ("case", "z", "x")
-    dips = [central_dip(x, profile) for profile in line]
-    data = stress_components(dims, grid, "in weights per mean radius") | {
-        "profile_zz": variable(
-            ("case", "x"), line, "vertical stress at the height of the dip, in weights per mean radius"
-        ),
-        "dip": variable(
-            "case", dips, "how far the vertical stress on the axis is below the lower maximum beside it, per largest"
-        ),
-        "dip_of_mean": variable(
-            (), central_dip(x, line[:2].mean(axis=0)), "the same of the mean of the two frictionless minima"
-        ),
-        "dip_height": variable((), height, f"height above the floor of those profiles {RADII}"),
-        "stress_width": variable((), w, f"width w of the coarse-graining Gaussian {RADII}"),
-    }
-    return xr.Dataset(
-        data,
-        coords=axes(
-            case=OF_CASES,
-            x=(x, f"distance from the axis of the pile {RADII}"),
-            z=(z, f"height above the floor {RADII}"),
-        ),
+    line = fields(np.array([height]))[:, 0, :, 1, 1]
+    dips, of_mean = [central_dip(x, profile) for profile in line], central_dip(x, line[:2].mean(axis=0))
+    below = "how far the vertical stress on the axis is below the lower maximum beside it, per largest"
+    along = "vertical stress at the height of the dip, in weights per mean radius"
+    further = variables(
+        profile_zz=("case x", line, along),
+        dip=("case", dips, below),
+        dip_of_mean=("", of_mean, "the same of the mean of the two frictionless minima"),
+        dip_height=("", height, f"height above the floor of those profiles {RADII}"),
+        stress_width=("", w, f"width w of the coarse-graining Gaussian {RADII}"),
     )
+    coordinates = axes(
+        case=OF_CASES,
+        x=(x, f"distance from the axis of the pile {RADII}"),
+        z=(z, f"height above the floor {RADII}"),
+    )
+    stress = stress_components(("case", "z", "x"), fields(z), "in weights per mean radius")
+    return xr.Dataset(stress | further, coordinates)

@@ -76,6 +76,7 @@ def _against_mobilized(data: xr.Dataset) -> Figure:
     titles(panels, [PANELS[name] for name in names])
     part, delta = 100.0 * data["mobilized_part"].isel(margin=0).values, data["polydispersity"].values
     taps, gravity = data["tap_amplitude"].values, data["gravity"].values
+    frictions = list(family(np.unique(data["friction"].values), of="friction", marked=False))
     ways = [
         (text.removesuffix(" over"), markers[0], (taps == 0.0) & (gravity == name))
         for name, (text, _, markers) in WAYS.items()
@@ -87,7 +88,7 @@ def _against_mobilized(data: xr.Dataset) -> Figure:
     for axes, name in zip(panels, names, strict=True):
         force = data["force"].sel(name=name).values
         axes.axvspan(-LEAST_PART, LEAST_PART, color=style.FAINT, alpha=0.4, linewidth=0.0)
-        for friction, look in family(np.unique(data["friction"].values), of="friction", marked=False):
+        for friction, look in frictions:
             for place, (_, marker, prepared) in zip(np.linspace(-0.8, 0.8, len(ways)), ways, strict=True):
                 beside = np.where(part == 0.0, place * LEAST_PART, part)
                 alike = prepared & (data["friction"].values == friction)
@@ -103,10 +104,7 @@ def _against_mobilized(data: xr.Dataset) -> Figure:
         axes.xaxis.set_major_formatter("{x:g}")
         axes.yaxis.set_major_formatter("{x:g}")
     panels[0].set_ylabel(style.FORCE)
-    shown = [
-        (style.equals(style.FRICTION, mu), {"marker": "s", **look})
-        for mu, look in family(np.unique(data["friction"].values), of="friction", marked=False)
-    ]
+    shown = [(style.equals(style.FRICTION, mu), {"marker": "s", **look}) for mu, look in frictions]
     shown += [(text, {"marker": marker, "color": style.BLACK}) for text, marker, _ in ways]
     shown += [("disorder", {"marker": "o", "color": style.BLACK, "markerfacecolor": "none"})]
     handles = [Line2D([], [], linestyle="none", markersize=4.5, label=text, **look) for text, look in shown]
@@ -133,9 +131,8 @@ def _event(axes: Axes, events: xr.Dataset, slabs: list[tuple[float, float]]) -> 
         # an event at the first force of all has no lower end
         middle = np.where(come, np.sqrt(np.where(low > 0.0, low, high) * np.where(come, high, 1.0)), low)
         axes.plot([middle.min(), middle.max()], [row, row], color=style.FAINT, linewidth=2.0, linestyle="-", zorder=1)
-        for k, (force, there) in enumerate(zip(middle, come, strict=True)):
-            way, gravity = str(mine["way"].values[k]), str(mine["gravity"].values[k])
-            ramp, damping = float(mine["ramp_time"][k]), float(mine["damping_ratio"][k])
+        columns = (mine[name].values.tolist() for name in ("way", "gravity", "ramp_time", "damping_ratio"))
+        for force, there, way, gravity, ramp, damping in zip(middle, come, *columns, strict=True):
             name, colour, markers = WAYS[gravity]
             marker = markers[0]
             if gravity == "slow":

@@ -8,7 +8,7 @@ range ends, is measured on disordered and on tapped slabs too.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -29,6 +29,7 @@ from granular_response.sweeps.rest import rest_state
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.preparation.parameters import Parameters, Part
+from granular_response_paper.parameters import material
 from granular_response_paper.records import axes, column, record, table
 from granular_response_paper.tasks import computed
 
@@ -51,6 +52,10 @@ class Prepared:
         return cls(way, *given, scene.wall.friction)
 
 
+#: Counted in a slab at rest, for each of ``slab.MARGINS``.
+LIMITED = "contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit"
+
+
 @record
 class Rest:
     """The slab at rest."""
@@ -59,9 +64,7 @@ class Rest:
     level_force: float = column(
         f"mean normal force at rest of touching horizontal contacts in the central third {WEIGHTS}"
     )
-    rest_mobilised: FloatArray = column(
-        "contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit", "margin"
-    )
+    rest_mobilised: FloatArray = column(LIMITED, "margin")
 
 
 @record
@@ -73,10 +76,7 @@ class Mobilized:
     taps: int = column("how often the slab was tapped")
     tap_amplitude: float = column("largest acceleration of the box in a tap in g; 0 untapped")
     tap_duration: float = column("duration of a tap in sqrt(radius/g); 0 untapped")
-    mobilized_part: FloatArray = column(
-        "part of the contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit",
-        "margin",
-    )
+    mobilized_part: FloatArray = column(f"part of the {LIMITED}", "margin")
     force: FloatArray = column(f"force of the event; nan if it does not come {WEIGHTS}", "name")
 
 
@@ -90,14 +90,7 @@ class Outcome:
     rest: Rest
     measured: xr.Dataset
     events: list[slab.Event]
-
-    def mobilized(self, polydispersity: float, realization: int, taps: tuple[int, float, float]) -> Mobilized:
-        high = {event.name: event.high for event in self.events}
-        if polydispersity:
-            high["crossover"] = np.nan
-        part = self.rest.rest_mobilised / self.rest.contacts
-        at = np.array([high[name] for name in AGAINST])
-        return Mobilized(polydispersity, realization, *taps, part, at)
+    mobilized: Mobilized
 
 
 def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration: float) -> State:
@@ -137,16 +130,18 @@ def compute(
     pairs = path.rest.pairs
     level = pairs.touching & (network.lattice_direction(path.rest) == network.HORIZONTAL) & measures.near
     level_force = float(pairs.normal_force[level].mean()) if level.any() else 0.0
-    return Outcome(
-        Prepared.of(way, scene),
-        Rest(float(pairs.touching.sum()), level_force, np.array(measures.mobilised(path.rest))),
-        slab.measured(measures, states),
-        slab.locate(path, forces, slab.happenings(measures, states[0], asymmetry)),
-    )
+    rest = Rest(float(pairs.touching.sum()), level_force, np.array(measures.mobilised(path.rest)))
+    events = slab.locate(path, forces, slab.happenings(measures, states[0], asymmetry))
+    packing, high = scene.packing.model_dump(), {event.name: event.high for event in events}
+    if packing["polydispersity"]:
+        high["crossover"] = np.nan
+    part, against = rest.rest_mobilised / rest.contacts, np.array([high[name] for name in AGAINST])
+    mobilized = Mobilized(packing["polydispersity"], packing["realization"], *taps, part, against)
+    return Outcome(Prepared.of(way, scene), rest, slab.measured(measures, states), events, mobilized)
 
 
-#: Of a slab: polydispersity, friction of its walls and disks, way and part by their numbers, realization, and the
-#: number, amplitude and duration of taps.
+#: Of a slab, in the order in which they are stored: polydispersity, friction of its walls and disks, way and part by
+#: their numbers, realization, and the number, amplitude and duration of taps.
 Place = tuple[float, float, float, int, int, int, tuple[int, float, float]]
 
 
@@ -154,14 +149,10 @@ def tasks(parameters: Parameters) -> dict[Place, partial[Outcome]]:
     """A task for each part, way and realization, and for the taps of each."""
     return {
         (part.polydispersity, scene.wall.friction, scene.contact.friction, k, p, realization, taps): partial(
-            compute,
-            way.name,
-            scene,
-            taps,
-            tuple(force for force in parameters.forces if force <= part.to),
-            parameters.asymmetry,
+            compute, way.name, scene, taps, forces, parameters.asymmetry
         )
         for p, part in enumerate(parameters.parts)
+        for forces in [tuple(force for force in parameters.forces if force <= part.to)]
         for k, way in enumerate(parameters.ways)
         if not part.ways or way.name in part.ways
         for realization in range(part.realizations)
@@ -171,17 +162,9 @@ def tasks(parameters: Parameters) -> dict[Place, partial[Outcome]]:
 
 
 def _scene(base: Scene, part: Part, realization: int) -> Scene:
-    rough = part.walls == "rough"
-    changes: dict[str, Any] = {
-        "contact.friction": part.friction, "wall.friction": part.friction if rough else 0.0
-    }  # fmt: skip
-    if part.polydispersity:
-        changes |= {
-            "packing.polydispersity": part.polydispersity,
-            "packing.lattice_constant": TOUCHING_LARGEST,
-            "packing.realization": realization,
-        }
-    return base.updated(changes)
+    walls = part.friction if part.walls == "rough" else 0.0
+    scene = base.updated(material(part.polydispersity, realization, part.friction, walls))
+    return scene.updated({"packing.lattice_constant": TOUCHING_LARGEST}) if part.polydispersity else scene
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -189,32 +172,25 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
     The last one has the disordered and the tapped slabs too.
     """
-    asked = tasks(parameters)
+    asked, forces = tasks(parameters), parameters.forces
     # the longest ramps of gravity take longest
     found = computed(asked, "prepared slabs", work=lambda place: asked[place].args[1].preparation.ramp_time)
-    places = sorted(found)
-    outcomes = [found[place] for place in places if not place[0] and not place[-1][0]]
-    mobilized = table([found[place].mobilized(place[0], *place[-2:]) for place in places], "case")
-    mobilized = mobilized.assign(table([found[place].prepared for place in places], "case").variables).assign_coords(
-        axes(name=(AGAINST, "event"), margin=(slab.MARGINS, "fraction below the Coulomb limit"))
-    )
+    every = [found[place] for place in sorted(found)]
+    cases = [one for one in every if not one.mobilized.polydispersity and not one.mobilized.taps]
+    parts = [((k, slice(one.measured.sizes["state"])), one.measured) for k, one in enumerate(cases)]
+    response = slab.measured_dataset(("case", "force"), parts, (len(cases), len(forces)))
+    response = response.assign(table([one.rest for one in cases], "case").variables)
+    response = response.assign_coords(axes(force=(forces, f"applied force {WEIGHTS}")))
+    events = slab.events_dataset([event for one in cases for event in one.events])
+    names = axes(name=(AGAINST, "event"), margin=(slab.MARGINS, "fraction below the Coulomb limit"))
+    mobilized = table([one.mobilized for one in every], "case")
     datasets = {
-        "response": _response(outcomes, parameters.forces), "events": _events(outcomes), "mobilized": mobilized
-    }  # fmt: skip
+        "response": response.assign_coords(_prepared(cases, "case")),
+        "events": events.assign(_prepared([one for one in cases for _ in one.events], "event")),
+        "mobilized": mobilized.assign(_prepared(every, "case")).assign_coords(names),
+    }
     return labelled(datasets, parameters.base)
 
 
-def _response(outcomes: Sequence[Outcome], forces: Sequence[float]) -> xr.Dataset:
-    parts = [((k, slice(one.measured.sizes["state"])), one.measured) for k, one in enumerate(outcomes)]
-    dataset = slab.measured_dataset(("case", "force"), parts, (len(outcomes), len(forces)))
-    return (
-        dataset.assign(table([one.rest for one in outcomes], "case").variables)
-        .assign_coords(axes(force=(forces, f"applied force {WEIGHTS}")))
-        .assign_coords(table([one.prepared for one in outcomes], "case").variables)
-    )
-
-
-def _events(outcomes: Sequence[Outcome]) -> xr.Dataset:
-    """The events of all cases; the labels of their case stand beside them."""
-    dataset = slab.events_dataset([event for one in outcomes for event in one.events])
-    return dataset.assign(table([one.prepared for one in outcomes for _ in one.events], "event").variables)
+def _prepared(outcomes: Sequence[Outcome], dimension: str) -> Mapping[Any, xr.Variable]:
+    return table([one.prepared for one in outcomes], dimension).variables

@@ -22,19 +22,12 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
 from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import FloatArray, State
-from granular_response.store.variables import variable
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.groups.sensitivity.parameters import Parameters
-from granular_response_paper.records import axes, column, labels, record, table
+from granular_response_paper.records import axes, column, labels, record, table, variables
 from granular_response_paper.tasks import computed
 
 REFERENCE = "reference"
-
-#: Changes to the scene while the load acts, by variant: friction laws that statics does not have.
-LAWS_OF_MOTION: Mapping[str, Mapping[str, Any]] = {
-    "literal_friction": {"protocol.friction_law": "literal"},
-    "unloading_friction": {"protocol.friction_law": "unloading"},
-}
 
 
 @dataclass(frozen=True)
@@ -47,30 +40,40 @@ class Variant:
     load: Mapping[str, Any]
 
 
+#: What a variant changes, in words and by key of a scene.
+Change = tuple[str, Mapping[str, Any]]
+
+#: Changes to both stages.
+_BOTH: Mapping[str, Change] = {
+    REFERENCE: ("the paper's protocol as read here", {}),
+    "time_step_halved": ("time step halved", {"protocol.time_step": 2.5e-4}),
+    "gear": ("Gear at half the time step (its limit is lower)",
+             {"protocol.integrator": "gear", "protocol.time_step": 2.4e-4}),
+    "verlet": ("velocity Verlet in place of Beeman", {"protocol.integrator": "verlet"}),
+    "no_tensile_dashpot": ("normal force cut off at zero", {"protocol.tensile_dashpot": False}),
+    "damping_halved": ("dashpots halved", {"contact.damping_ratio": 0.25}),
+    "slow_gravity": ("gravity grows over 100 in place of at once", {"preparation.gravity": "slow"}),
+    "stop_1e-9": ("stopped at 1e-9 per disk, without the static finish",
+                  {"protocol.stop_kinetic_energy": 1e-9, "protocol.static_finish": False}),
+    "no_static_finish": ("stopped at 1e-13 per disk, without the static finish", {"protocol.static_finish": False}),
+}  # fmt: skip
+#: Changes to the load alone.
+_LOAD: Mapping[str, Change] = {
+    "ramp_80": ("load ramp of 80 in place of 20", {"protocol.ramp_time": 80.0}),
+    "sudden_load": ("load applied at once", {"protocol.ramp_time": 0.0}),
+    "path": ("quasi-static path in place of dynamics", {"protocol.method": "path"}),
+}
+#: Changes while the load acts: friction laws that statics does not have.
+LAWS_OF_MOTION: Mapping[str, Change] = {
+    "literal_friction": ("the paper's equation for the spring taken literally", {"protocol.friction_law": "literal"}),
+    "unloading_friction": ("the spring frozen at the limit, free to unload", {"protocol.friction_law": "unloading"}),
+}
+
+
 def variants() -> list[Variant]:
     """All variants, the reference first."""
-
-    def both(name: str, text: str, **changes: Any) -> Variant:
-        spelled = {key.replace("__", "."): value for key, value in changes.items()}
-        return Variant(name, text, spelled, spelled)
-
-    return [
-        Variant(REFERENCE, "the paper's protocol as read here", {}, {}),
-        both("time_step_halved", "time step halved", protocol__time_step=2.5e-4),
-        both("gear", "Gear at half the time step (its limit is lower)", protocol__integrator="gear",
-             protocol__time_step=2.4e-4),
-        both("verlet", "velocity Verlet in place of Beeman", protocol__integrator="verlet"),
-        both("no_tensile_dashpot", "normal force cut off at zero", protocol__tensile_dashpot=False),
-        both("damping_halved", "dashpots halved", contact__damping_ratio=0.25),
-        both("slow_gravity", "gravity grows over 100 in place of at once", preparation__gravity="slow"),
-        both("stop_1e-9", "stopped at 1e-9 per disk, without the static finish", protocol__stop_kinetic_energy=1e-9,
-             protocol__static_finish=False),
-        both("no_static_finish", "stopped at 1e-13 per disk, without the static finish",
-             protocol__static_finish=False),
-        Variant("ramp_80", "load ramp of 80 in place of 20", {}, {"protocol.ramp_time": 80.0}),
-        Variant("sudden_load", "load applied at once", {}, {"protocol.ramp_time": 0.0}),
-        Variant("path", "quasi-static path in place of dynamics", {}, {"protocol.method": "path"}),
-    ]  # fmt: skip
+    both = [Variant(name, text, changes, changes) for name, (text, changes) in _BOTH.items()]
+    return both + [Variant(name, text, {}, changes) for name, (text, changes) in _LOAD.items()]
 
 
 @record
@@ -93,21 +96,9 @@ def compute(scene: Scene, variant: Variant, steps: int) -> Outcome:
     rest = rest_state(Problem.from_scene(rest_scene))
     problem = Problem.from_scene(load_scene).with_loads(rest.position)
     if steps:
-        return _outcome(problem, rest, _by_another_law(problem, rest, LAWS_OF_MOTION[variant.name], steps))
-    _, (loaded,) = loaded_states(problem, rest, [1.0])
-    return _outcome(problem, rest, loaded)
-
-
-def _by_another_law(problem: Problem, rest: State, law: Mapping[str, Any], steps: int) -> State:
-    """The loaded state after a fixed time by a friction law that need not have a rest."""
-    other = Problem.from_scene(problem.scene.updated(law))
-    other = replace(other, load_disk=problem.load_disk, load=problem.load)
-    dynamics = Dynamics(other, rest, problem.scene.protocol.integrator, resolve_time_step(other))
-    ramp = (0.0, 1.0, problem.scene.protocol.ramp_time)
-    return relax(dynamics, Stop(1e-30, maximum_steps=steps), load=ramp)
-
-
-def _outcome(problem: Problem, rest: State, loaded: State) -> Outcome:
+        loaded = _by_another_law(problem, rest, LAWS_OF_MOTION[variant.name][1], steps)
+    else:
+        _, (loaded,) = loaded_states(problem, rest, [1.0])
     bottom = floor_disks([rest, loaded], np.flatnonzero(problem.packing.row == 0))
     total = float(np.hypot(problem.load[:, 0], problem.load[:, 1]).sum())
     certificate = loaded.reached.certificate
@@ -122,13 +113,18 @@ def _outcome(problem: Problem, rest: State, loaded: State) -> Outcome:
     )
 
 
+def _by_another_law(problem: Problem, rest: State, law: Mapping[str, Any], steps: int) -> State:
+    """The loaded state after a fixed time by a friction law that need not have a rest."""
+    other = Problem.from_scene(problem.scene.updated(law))
+    other = replace(other, load_disk=problem.load_disk, load=problem.load)
+    dynamics = Dynamics(other, rest, problem.scene.protocol.integrator, resolve_time_step(other))
+    ramp = (0.0, 1.0, problem.scene.protocol.ramp_time)
+    return relax(dynamics, Stop(1e-30, maximum_steps=steps), load=ramp)
+
+
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """One dataset for each coefficient of friction; see the module."""
-    known = [
-        *variants(),
-        Variant("literal_friction", "the paper's equation for the spring taken literally", {}, {}),
-        Variant("unloading_friction", "the spring frozen at the limit, free to unload", {}, {}),
-    ]
+    known = variants() + [Variant(name, text, {}, {}) for name, (text, _) in LAWS_OF_MOTION.items()]
     load = {"disk": "top-centre", "force": [0.0, -parameters.force]}
     tasks = {}
     for friction in parameters.friction:
@@ -148,14 +144,11 @@ def _dataset(known: list[Variant], outcomes: list[Outcome]) -> xr.Dataset:
     found = table(outcomes, "variant")
     response, x = found["floor_response"].values, found["x"].variable.isel(variant=0)
     difference = response - response[0]
-    derived = found.drop_vars("x").assign(
-        largest_difference=variable(
-            "variant", np.abs(difference).max(axis=1), "largest difference of the floor response"
-        ),
-        rms_difference=variable(
-            "variant", np.sqrt((difference**2).mean(axis=1)), "rms difference of the floor response"
-        ),
-        response_sum=variable("variant", response.sum(axis=1), "sum of the floor response"),
+    derived = variables(
+        largest_difference=("variant", np.abs(difference).max(axis=1), "largest difference of the floor response"),
+        rms_difference=("variant", np.sqrt((difference**2).mean(axis=1)), "rms difference of the floor response"),
+        response_sum=("variant", response.sum(axis=1), "sum of the floor response"),
     )
+    texts = labels("variant", known, text="what is changed")
     names = axes(variant=([one.name for one in known], "name of the variant"))
-    return derived.assign(labels("variant", known, text="what is changed")).assign_coords(names | {"x": x})
+    return found.drop_vars("x").assign(derived | texts).assign_coords(names | {"x": x})

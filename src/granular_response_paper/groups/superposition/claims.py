@@ -6,7 +6,7 @@ import numpy as np
 
 from ...claims import asked
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import Claims, Data, Finding, Measure, NotMeasured, Reading, at
+from ...claims.claim import Claims, Data, Finding, Measure, Reading, at
 from ...claims.words import Bounds
 
 GROUP = "superposition"
@@ -23,14 +23,8 @@ def superposition(force: float, word: str) -> Measure:
             worst = np.nanmax(error, axis=1)  # over distances
             typical = over_realizations(worst)
             texts.append(f"{text} {typical.text('%')}, {worst.max():.1%} in the worst")
-            readings.append(
-                Reading(
-                    text,
-                    asked.at_most(
-                        "largest difference of whole and sum, median of the realizations", typical, words, word, "%"
-                    ),
-                )
-            )
+            what = "largest difference of whole and sum, median of the realizations"
+            readings.append(Reading(text, asked.at_most(what, typical, words, word, "%")))
         return Finding(
             f"largest difference of whole and sum per largest added force, at the worst of {study.sizes['distance']} "
             f"distances, median of {len(worst)} realizations: " + "; ".join(texts),
@@ -64,19 +58,15 @@ CLAIMS.measures("U3")(superposition(1.0, "quite well"))
 def falls_with_depth(data: Data, words: Bounds) -> Finding:
     study = at(data.get(GROUP, "errors"), force=1.0).sortby("gap")
     error = study["row_error"].transpose("distance", "realization", "gap").values
-    if error.shape[2] < 2:
-        raise NotMeasured(f"data/{GROUP}.nc: errors holds one depth")
-    readings = []
-    for distance, one in zip(study["distance"].values.tolist(), error, strict=True):
-        fall = over_realizations(one[:, -1] / one.max(axis=1))
-        readings.append(
-            Reading(
-                f"loads {distance:g} apart",
-                asked.lower("difference in the deepest row per the largest of any row", fall, words, "marked"),
-            )
-        )
-    return Finding(
+    CLAIMS.needs(error.shape[2] > 1, "errors holds one depth")
+    falls = {
+        f"loads {distance:g} apart": over_realizations(one[:, -1] / one.max(axis=1))
+        for distance, one in zip(study["distance"].values.tolist(), error, strict=True)
+    }
+    return asked.each(
         "rms difference of whole and sum in the deepest row of contacts per the largest of any row, each per force in "
-        "its row: " + ", ".join(f"{r.conditions[0].found.value:.2f} ({r.name})" for r in readings),
-        readings,
+        "its row: ",
+        falls,
+        lambda fall: asked.lower("difference in the deepest row per the largest of any row", fall, words, "marked"),
+        form=".2f",
     )

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import network, style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
-from granular_response_paper.panels import family, titles, zero
+from granular_response_paper.panels import banded, family, titles, zero
 
 from .parameters import Parameters
 
@@ -137,9 +137,8 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
 def _mean_with_error(axes: Axes, at: FloatArray, values: FloatArray, look: dict[str, Any], label: str) -> None:
     """Mean over realizations (first axis) with a band of its standard error, if there are several."""
     mean = values.mean(axis=0)
-    if len(values) > 1:
-        error = values.std(axis=0, ddof=1) / np.sqrt(len(values))
-        axes.fill_between(
-            at, np.maximum(mean - error, 1e-9), mean + error, color=look["color"], alpha=0.18, linewidth=0.0
-        )
-    axes.plot(at, mean, **look, label=label)
+    if len(values) == 1:
+        axes.plot(at, mean, **look, label=label)
+        return
+    error = values.std(axis=0, ddof=1) / np.sqrt(len(values))
+    banded(axes, at, mean, (np.maximum(mean - error, 1e-9), mean + error), look, alpha=0.18, label=label)

@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 
 from granular_response.observe.difference import pair_force_difference
 from granular_response.observe.floor import floor_force, smoothed_response
-from granular_response.scene import Scene
+from granular_response.scene import Packing, Scene
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
-from granular_response.state import FloatArray, State
+from granular_response.state import Contacts, FloatArray, State
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.rest import rest_of
@@ -36,6 +36,10 @@ from granular_response_paper.tasks import computed
 
 #: Which forces act.
 PARTS = ("left", "right", "both")
+#: Sizes of an error, what of, and over which states the worst of a certificate is taken.
+TYPICAL = "root mean square of both - left - right over that of both"
+LARGEST = "largest |both - left - right| over largest |both|"
+VECTORS, ANY = "as vectors", "any force and part"
 
 
 @record
@@ -54,27 +58,21 @@ class Responses:
 class Errors:
     """Relative errors of the sum of floor or contact forces, and the worst entries of the certificates."""
 
-    floor_error: FloatArray = column("root mean square of both - left - right over that of both, floor forces", "force")
-    floor_error_largest: FloatArray = column("largest |both - left - right| over largest |both|, floor forces", "force")
-    contact_error: FloatArray = column(
-        "root mean square of both - left - right over that of both, contact forces as vectors", "force"
-    )
-    contact_error_largest: FloatArray = column(
-        "largest |both - left - right| over largest |both|, contact forces as vectors", "force"
-    )
+    floor_error: FloatArray = column(f"{TYPICAL}, floor forces", "force")
+    floor_error_largest: FloatArray = column(f"{LARGEST}, floor forces", "force")
+    contact_error: FloatArray = column(f"{TYPICAL}, contact forces {VECTORS}", "force")
+    contact_error_largest: FloatArray = column(f"{LARGEST}, contact forces {VECTORS}", "force")
     row_error: FloatArray = column(
-        "root mean square of both - left - right over that of both, contact forces between two rows, as vectors",
-        "force",
-        "gap",
+        f"{TYPICAL}, contact forces between two rows, {VECTORS}", "force", "gap"
     )  #: from above
-    certificate_force_residual: float = column(f"largest unbalanced force on a disk {WEIGHTS}, any force and part")
+    certificate_force_residual: float = column(f"largest unbalanced force on a disk {WEIGHTS}, {ANY}")
     certificate_torque_residual: float = column(
-        "largest unbalanced torque on a disk in mean weight times mean radius, any force and part"
+        f"largest unbalanced torque on a disk in mean weight times mean radius, {ANY}"
     )
     certificate_coulomb_excess: float = column(
-        f"largest excess of a tangential force over the Coulomb limit {WEIGHTS}, any force and part"
+        f"largest excess of a tangential force over the Coulomb limit {WEIGHTS}, {ANY}"
     )
-    certificate_negative_modes: float = column("unstable directions of the tangent stiffness, any force and part")
+    certificate_negative_modes: float = column(f"unstable directions of the tangent stiffness, {ANY}")
 
 
 @record
@@ -108,47 +106,35 @@ class Single:
 
 def load_pair(scene: Scene, rest: State, offset: int, forces: Sequence[float]) -> Pair:
     """Left, right and both, ``offset`` places from the middle of the top row; raises what the solvers raise."""
-    paths, load_x = [], np.empty(0)
-    for places in ((-offset,), (offset,), (-offset, offset)):
-        states, load_x = _path(scene, rest, places, forces)  # the last one gives both positions
-        paths.append(states)
-    packing = scene.packing.build()
-    count = len(forces)
-    rest, *flat = common_candidates([rest, *(state for path in paths for state in path)], packing.radius)
-    paths = [flat[part * count : (part + 1) * count] for part in range(len(PARTS))]
-    disks = np.flatnonzero(packing.row == 0)
-    at_rest = floor_force(rest, disks)
-    on_floor = np.array([[floor_force(state, disks) - at_rest for state in path] for path in paths])
-    at_contact = np.array([[pair_force_difference(rest, state) for state in path] for path in paths])
+    paths = [_path(scene, rest, places, forces) for places in ((-offset,), (offset,), (-offset, offset))]
+    states = [state for path, _ in paths for state in path]
+    packing, grid = scene.packing.build(), (len(PARTS), len(forces))
+    pairs, *added = _added(packing, rest, states)
+    on_floor, at_contact = (one.reshape(*grid, *one.shape[1:]) for one in added)
 
-    floor, contact = (
-        np.array([superposition_error(*one[:, f]) for f in range(count)]).T for one in (on_floor, at_contact)
-    )
-    below = np.minimum(packing.row[rest.pairs.first], packing.row[rest.pairs.second])
-    between = packing.row[rest.pairs.first] != packing.row[rest.pairs.second]
-    gaps = [between & (below == row) for row in range(int(packing.row.max()))]
-    rows = [[superposition_error(*at_contact[:, f, gap])[0] for gap in gaps[::-1]] for f in range(count)]
-    certificates = [state.certificate for state in flat]
+    def errors(force: FloatArray) -> FloatArray:
+        """(2, force) of forces (part, force, ...)."""
+        return np.array([superposition_error(*force[:, f]) for f in range(len(forces))]).T
+
+    first, second = packing.row[pairs.first], packing.row[pairs.second]
+    gap = np.where(first == second, -1, np.minimum(first, second))  # the row below it
+    rows = [errors(at_contact[:, :, gap == row])[0] for row in reversed(range(int(packing.row.max())))]
     entries = ("force_residual", "torque_residual", "coulomb_excess", "negative_modes")
-    worst = {f"certificate_{name}": max(getattr(one, name) for one in certificates) for name in entries}
-    moved = np.array([[by_motion(state) for state in path] for path in paths], np.int8).T
+    worst = {f"certificate_{name}": max(getattr(one.certificate, name) for one in states) for name in entries}
+    moved = np.array([by_motion(state) for state in states], np.int8).reshape(grid).T
     response = np.moveaxis(on_floor, 0, 1) / np.array(forces)[:, None, None]
-    return Pair(
-        Responses(response, moved), Errors(floor[0], floor[1], contact[0], contact[1], np.array(rows), **worst), load_x
-    )
+    found = (*errors(on_floor), *errors(at_contact), np.stack(rows, axis=1))
+    return Pair(Responses(response, moved), Errors(*found, **worst), paths[-1][1])
 
 
 def load_single(scene: Scene, rest: State, asked: Parameters) -> Single:
     """One load on the middle disk. Raises what the solvers raise."""
     states, (load_x,) = _path(scene, rest, (0,), asked.single_forces)
-    packing = scene.packing.build()
-    rest, *states = common_candidates([rest, *states], packing.radius)
-    disks = np.flatnonzero(packing.row == 0)
-    at_rest, per = floor_force(rest, disks), np.array(asked.single_forces)
-    response = np.array([floor_force(state, disks) - at_rest for state in states]) / per[:, None]
-    added = np.array([pair_force_difference(rest, state) for state in states]) / per[:, None, None]
+    packing, per = scene.packing.build(), np.array(asked.single_forces)
+    _, on_floor, at_contact = _added(packing, rest, states)
+    response, added = on_floor / per[:, None], at_contact / per[:, None, None]
     change = np.linalg.norm(added - added[0], axis=(1, 2)) / np.linalg.norm(added[0])
-    x = rest.position[disks, 0] - load_x
+    x = rest.position[packing.row == 0, 0] - load_x
     centre = smoothed_response([0.0], x, response, asked.width)[:, 0]
     return Single(centre, change, *linear_end(per, centre, asked.tolerance), load_x, x)
 
@@ -158,6 +144,14 @@ def _path(scene: Scene, rest: State, places: Sequence[int], forces: Sequence[flo
     loads = [{"disk": {"row": "top", "offset": place}, "force": [0.0, -1.0]} for place in places]
     problem = Problem.from_scene(scene.updated({"loads": loads})).with_loads(rest.position)
     return loaded_states(problem, rest, forces)[1], rest.position[problem.load_disk, 0]
+
+
+def _added(packing: Packing, rest: State, states: Sequence[State]) -> tuple[Contacts, FloatArray, FloatArray]:
+    """The contacts (m,) of all states, and what is added at rest: on the floor (state, disk), at them (state, m, 2)."""
+    rest, *loaded = common_candidates([rest, *states], packing.radius)
+    disks = np.flatnonzero(packing.row == 0)
+    on_floor = np.array([floor_force(state, disks) for state in loaded]) - floor_force(rest, disks)
+    return rest.pairs, on_floor, np.array([pair_force_difference(rest, state) for state in loaded])
 
 
 def superposition_error(left: FloatArray, right: FloatArray, both: FloatArray) -> tuple[float, float]:
@@ -181,8 +175,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     asked, offsets, with_pairs = parameters, parameters.offsets, range(parameters.pair_realizations)
     scenes = {r: asked.base.updated({"packing.realization": r}) for r in range(asked.realizations)}
     rests = computed({r: partial(rest_of, scene) for r, scene in scenes.items()}, "rest")
-    alone = {r: partial(load_single, scene, rests[r], asked) for r, scene in scenes.items()}
-    singles = computed(alone, "single loads")
+    singles = computed({r: partial(load_single, scene, rests[r], asked) for r, scene in scenes.items()}, "single loads")
     both = {
         (r, k): partial(load_pair, scenes[r], rests[r], offset, asked.forces)
         for r in with_pairs
@@ -190,28 +183,25 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     }
     pairs = computed(both, "pairs of loads")
 
-    packing = asked.base.packing.build()
-    gaps = np.sqrt(3.0) * (np.arange(int(packing.row.max())) + 0.5)
+    packing, middle = asked.base.packing.build(), f"from the middle disk on top {RADII}"
+    load_x = [[pairs[r, k].load_x - singles[r].load_x for k in range(len(offsets))] for r in with_pairs]
+    places = variables(
+        x=("realization floor_disk", [singles[r].x for r in with_pairs], f"rest position of a floor disk {middle}"),
+        load_x=("realization distance side", load_x, f"rest position of the loaded disks {middle}"),
+    )
     apart = "places between the two loaded disks, their distance in mean disk diameters"
     coordinates = axes(
-        distance=(2.0 * np.array(offsets), apart),
-        force=(asked.forces, f"each of the two applied forces {WEIGHTS}"),
+        distance=(2.0 * np.array(offsets), apart), force=(asked.forces, f"each of the two applied forces {WEIGHTS}")
     )
-    floor_x = [singles[r].x for r in with_pairs]
-    load_x = [[pairs[r, k].load_x - singles[r].load_x for k in range(len(offsets))] for r in with_pairs]
-    from_middle = f"from the middle disk on top {RADII}"
-    places = variables(
-        x=("realization floor_disk", floor_x, f"rest position of a floor disk {from_middle}"),
-        load_x=("realization distance side", load_x, f"rest position of the loaded disks {from_middle}"),
-    )
-    responses = table({place: pair.responses for place, pair in pairs.items()}, "realization", "distance")
     further = axes(
         floor_disk=(np.flatnonzero(packing.row == 0), "index of the floor disk"),
         part=(PARTS, "which of the forces act"),
         side=(PARTS[:2], "which of the loaded disks"),
     )
-    errors = table({place: pair.errors for place, pair in pairs.items()}, "realization", "distance")
+    gaps = np.sqrt(3.0) * (np.arange(int(packing.row.max())) + 0.5)
     depth = axes(gap=(gaps, f"depth below the top row, on the lattice {RADII}"))
+    responses = table({place: pair.responses for place, pair in pairs.items()}, "realization", "distance")
+    errors = table({place: pair.errors for place, pair in pairs.items()}, "realization", "distance")
     linear = table(list(singles.values()), "realization")
     linear.attrs.update(width=asked.width, tolerance=asked.tolerance)
     datasets = {

@@ -50,7 +50,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     handles: dict[str, Any] = {}
     if with_states:
         for panel, state in zip(axes[1], (1, 2), strict=True):
-            _network(panel, states.isel(state=0), states.isel(state=state), handles)
+            handles |= _network(panel, states.isel(state=0), states.isel(state=state))
             loads.append(_load(float(states["force"][state])))
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
     titles(axes.flat, loads, stem="fig16s_symmetry_breaking")
@@ -116,12 +116,12 @@ def _copies(panel: Axes, copies: xr.Dataset) -> None:
     panel.legend(**OVER)
 
 
-def _network(panel: Axes, rest: xr.Dataset, loaded: xr.Dataset, handles: dict[str, Any]) -> None:
-    """The central third of the contact network, contacts near the Coulomb limit marked."""
+def _network(panel: Axes, rest: xr.Dataset, loaded: xr.Dataset) -> dict[str, Any]:
+    """The central third of the contact network, contacts near the Coulomb limit marked; lines for a key by name."""
     limit = (1.0 - MARGIN) * float(rest["friction_coefficient"]) * loaded["contact_normal_force"].values
     drawn = draw_state_changes(panel, rest, loaded, np.abs(loaded["contact_tangential_force"].values) >= limit)
     names = {"sliding": f"within {MARGIN:.0%} of the Coulomb limit"}
-    handles.update({names.get(kind, kind): line for kind, line in drawn.items()})
+    return {names.get(kind, kind): line for kind, line in drawn.items()}
 
 
 def _load(force: float) -> str:

@@ -20,13 +20,8 @@ class Protocol(Description):
 
     def scene(self, base: Scene, time_step: float) -> Scene:
         """``base`` under this protocol with one of its time steps."""
-        return base.updated(
-            {
-                "protocol.method": "dynamics",
-                "protocol.ramp_time": self.ramp_time,
-                "protocol.time_step": time_step,
-            }
-        )
+        changes = {"method": "dynamics", "ramp_time": self.ramp_time, "time_step": time_step}
+        return base.updated({f"protocol.{key}": value for key, value in changes.items()})
 
 
 class Copies(Description):

@@ -32,7 +32,6 @@ from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.symmetry_breaking.parameters import Copies, Parameters, Protocol
 from granular_response_paper.records import axes, column, record, table, variables
-from granular_response_paper.slab_response import LoadPath, Measures
 from granular_response_paper.tasks import computed
 
 #: When a displaced equilibrium counts as settled, and how many steps it gets: growth from a small displacement
@@ -60,10 +59,11 @@ def ramps(asked: Parameters, rest: State, protocol: Protocol) -> list[BracketRes
     lose it there.
     """
     results: list[BracketResult] = []
+    first = None
     for time_step in protocol.time_steps:
-        found = results[-1].event if results else None
-        first = (found.low, found.high) if found is not None and 0.0 < found.low < found.high else None
         results.append(bracket(asked, rest, protocol, time_step, first))
+        found = results[-1].event
+        first = (found.low, found.high) if 0.0 < found.low < found.high else None
     return results
 
 
@@ -71,8 +71,8 @@ def bracket(
     asked: Parameters, rest: State, protocol: Protocol, time_step: float, first: tuple[float, float] | None
 ) -> BracketResult:
     """For one time step; the loss is looked for between ``first`` before anywhere else."""
-    path = LoadPath.of(protocol.scene(asked.scene, time_step), rest)
-    measures, above = Measures(path), asked.asymmetry
+    path = slab.LoadPath.of(protocol.scene(asked.scene, time_step), rest)
+    measures, above = slab.Measures(path), asked.asymmetry
 
     def asymmetric(force: float) -> bool:
         return force > 0.0 and measures.asymmetry(path.at(force)) > above
@@ -86,34 +86,30 @@ def bracket(
     except EventNotBracketed:
         low, high = (0.0, low) if asymmetric(low) else (high, float("nan"))
     forces = tuple(sorted(path.known))
-    text = (
-        f"dynamics with a ramp of {protocol.ramp_time:g} and a time step of "
-        f"{time_step:g}: the asymmetry of the floor response exceeds {above:g}"
-    )
+    how = f"dynamics with a ramp of {protocol.ramp_time:g} and a time step of {time_step:g}"
+    text = f"{how}: the asymmetry of the floor response exceeds {above:g}"
     event = slab.Event("loss_of_symmetry", measures.friction, low, high, text)
     ends = tuple(path.known[force] for force in (low, high) if force in path.known)
-    measured = slab.measured(measures, [path.known[force] for force in forces])
+    measured = slab.measured(measures, path.through(forces))
     return BracketResult(protocol.ramp_time, time_step, event, forces, measured, ends if len(ends) == 2 else ())
 
 
 def copied(scene: Scene, packing: Packing, force: float) -> xr.Dataset:
     """What is measured under one force on one copy of the packing, settled under gravity anew."""
-    path = LoadPath.of(scene, packing=packing)
-    return slab.measured(Measures(path), [path.at(force)])
+    path = slab.LoadPath.of(scene, packing=packing)
+    return slab.measured(slab.Measures(path), [path.at(force)])
 
 
 def held(scene: Scene, rest: State, forces: tuple[float, ...], displacement: float) -> xr.Dataset:
     """Equilibria at ``forces`` displaced by up to ``displacement``, settled under constant force and measured."""
-    path = LoadPath.of(scene, rest)
-    states = path.through(forces)
+    path = slab.LoadPath.of(scene, rest)
+    states, measures = path.through(forces), slab.Measures(path)
     settled = [_displaced(path.problem, state, displacement) for state in states]
-    measures = Measures(path)
     moved = [np.abs(after.position - before.position).max() for before, after in zip(states, settled, strict=True)]
     branch = slab.measured(measures, states)
-    asymmetry, response = branch["asymmetry"].values, branch["floor_response"].values
     further = variables(
-        branch_asymmetry=("force", asymmetry, "asymmetry of the floor response before the displacement"),
-        branch_response=("force floor_disk", response, "floor response before the displacement"),
+        branch_asymmetry=("force", branch["asymmetry"], "asymmetry of the floor response before the displacement"),
+        branch_response=("force floor_disk", branch["floor_response"], "floor response before the displacement"),
         moved=("force", moved, f"largest distance from the place before {RADII}"),
         displacement=("", displacement, f"largest random displacement {RADII}"),
     )
@@ -151,14 +147,14 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     tasks |= {name: partial(copied, first, copy, force) for name, copy in copies.items()}
     done = computed(tasks, "loss of symmetry")
     found: list[BracketResult] = [result for k in range(len(protocols)) for result in done[k]]
+    problem = Problem.from_scene(base).with_loads(rest.position)
     datasets = {
         "brackets": slab.events_dataset([one.event for one in found]).assign(table(found, "event").variables),
         "runs": _runs_dataset(found),
         "held": done["held"],
         "copies": _copies_dataset({name: done[name] for name in copies}, force),
+        "states": slab.states_picture([rest, *found[0].states], problem),
     }
-    problem = Problem.from_scene(base).with_loads(rest.position)
-    datasets["states"] = slab.states_picture([rest, *found[0].states], problem)
     for dataset in datasets.values():
         dataset["friction_coefficient"] = variable((), base.contact.friction, "coefficient of friction between disks")
     return labelled(datasets, base)
@@ -166,13 +162,11 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
 def _copies(given: Copies, packing: Packing) -> dict[str, Packing]:
     copies = {"as it is": packing, "numbered from right to left": mirrored(packing)}
-    for seed in given.seeds:
-        copies[f"numbered at random, seed {seed}"] = shuffled(packing, seed)
+    copies |= {f"numbered at random, seed {seed}": shuffled(packing, seed) for seed in given.seeds}
     for seed in given.seeds:
         shift = _random_shift(packing.position.shape, given.displacement, seed)
-        for image in (False, True):
-            name = f"displaced at random, seed {seed}" + (", mirror image" if image else "")
-            copies[name] = displaced(packing, shift, mirror_image=image)
+        copies[f"displaced at random, seed {seed}"] = displaced(packing, shift)
+        copies[f"displaced at random, seed {seed}, mirror image"] = displaced(packing, shift, mirror_image=True)
     return copies
 
 
