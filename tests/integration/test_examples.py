@@ -42,6 +42,8 @@ def test_there_are_examples():
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
 def test_an_example_comes_to_a_certified_equilibrium(path):
+    scene = Scene.from_yaml(path)
+    assert Scene.from_text(scene.to_yaml(), folder=scene.folder) == scene and scene.packing.build().n > 1
     result = to_dataset(solve_scene(small(path)))
     assert result.attrs["stable"] == "yes"
     assert result.attrs["settled"] == "yes"

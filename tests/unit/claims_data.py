@@ -16,9 +16,13 @@ STARTS = ["touching-largest", "2.0"]
 
 
 def dataset(coords=None, **variables):
-    return xr.Dataset(
+    """A dataset that can be stored: every variable has its labels."""
+    made = xr.Dataset(
         {name: value if isinstance(value, tuple) else ((), value) for name, value in variables.items()}, coords=coords
     )
+    for name, one in made.variables.items():
+        one.attrs = {"long_name": str(name), "units": "1"}
+    return made
 
 
 def events(*rows):

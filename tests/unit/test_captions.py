@@ -77,13 +77,6 @@ def test_letters_of_a_picture_are_those_that_are_drawn():
     assert style.drawn_letters(figure) == ["e", "f", "g"]
 
 
-@pytest.mark.parametrize("group", NAMES)
-def test_every_group_has_captions_with_both_texts(group):
-    assert callable(group_member(group, "draw", "captions"))
-    templates = yaml.read((GROUPS / group / captions.TEMPLATES).read_text("utf-8"))
-    assert all(list(one) == ["text", "alternative"] for one in templates.values())
-
-
 def test_fields_of_a_template_are_filled_in_and_lists_put_in_words():
     given = {"numerics": {"friction": 0.2}}
     parameters = SimpleNamespace(
@@ -136,9 +129,11 @@ def test_captions_are_made_from_the_parameters_that_the_file_stores(tmp_path):
 @pytest.mark.parametrize("group", NAMES)
 def test_captions_begin_with_their_message(group):
     """A sentence of its own stands before the panels and the mark of a picture that the paper does not have."""
+    assert callable(group_member(group, "draw", "captions"))
     templates = yaml.read((GROUPS / group / captions.TEMPLATES).read_text("utf-8"))
     assert set(templates) == {path.stem for path in STORED[group].parent.glob("*.png")}
     for stem, one in templates.items():
+        assert list(one) == ["text", "alternative"], stem
         message = one["text"].split(". ")[0]
         assert not re.search(r"^Not in the paper|\([a-z]\) ", message), f"{stem}: {message}"
         assert one["text"].endswith("Not in the paper.") or "Not in the paper" not in one["text"], stem

@@ -788,13 +788,7 @@ def test_labels_are_found_exactly():
 
 
 def test_stored_table_and_metrics_agree(tmp_path):
-    labels = {"long_name": "test", "units": "1"}
-    pile = {}
-    for name, data in pile_study().items():
-        pile[name] = data.copy()
-        for variable in pile[name].variables.values():
-            variable.attrs.update(labels)
-    store.write(tmp_path / "data" / "pile_dip.nc", pile)
+    store.write(tmp_path / "data" / "pile_dip.nc", pile_study())
     found = table.write(tmp_path / "claims.json", tmp_path / "data")
     stored = json.loads((tmp_path / "claims.json").read_text())
     assert stored == found == stored_table.read(tmp_path / "claims.json")

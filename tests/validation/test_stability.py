@@ -263,8 +263,6 @@ def test_a_rest_state_disturbed_in_its_last_digits_gives_the_same_response():
 
 # The study
 
-REDUCED = reduced.parameters("stability")
-
 
 def test_the_study_and_its_figures(tmp_path_factory):
     datasets = reduced.datasets("stability", tmp_path_factory)
