@@ -4,7 +4,7 @@ import ast
 import functools
 from pathlib import Path
 
-SOURCE = Path(__file__).parents[1] / "src"
+from places import SOURCE
 
 
 @functools.cache

@@ -12,11 +12,11 @@ from pathlib import Path
 
 import pytest
 from commands import refused, succeeded
+from places import ROOT
 
 from granular_response_paper.archive import ArchiveError, crate, lock
 from granular_response_paper.archive.restore import restore
 
-ROOT = Path(__file__).parents[2]
 SCRIPT = """\
 import pathlib
 import sys

@@ -1,11 +1,10 @@
 """Results as others read them, as versions before wrote them, and sealed files that are no results."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
 from commands import refused, succeeded
+from places import DATA
 from small_scenes import scene
 
 import granular_response as gr
@@ -14,7 +13,7 @@ from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
 from granular_response.store.result import ResultError, indexed, load_coordinates, solution_from, state_from, to_dataset
 
-OLDER = Path(__file__).parents[1] / "data" / "result_layout_1.nc"
+OLDER = DATA / "result_layout_1.nc"
 
 
 @pytest.fixture(scope="module")

@@ -15,13 +15,13 @@ import signal
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 import yaml
 from commands import LIBRARY, OF_THE_PAPER, PAPER, SCENE, call, process, refused, succeeded
+from places import DATA, ROOT
 
 from granular_response import __version__
 from granular_response.cli import main as cli
@@ -29,7 +29,6 @@ from granular_response.machine import floating_point
 from granular_response.store import files as store
 from granular_response_paper import cli as paper
 
-ROOT = Path(__file__).parents[2]
 COMMANDS = ["example", "run", "continue", "show", "plot", "keys", "export", "cite", "version"]
 PROGRAMS = {LIBRARY: "granular-response", PAPER: "granular-response-paper"}
 
@@ -267,7 +266,7 @@ def test_a_failed_run_keeps_the_old_result(tmp_path):
 
 
 def test_disks_of_another_program_are_solved_and_handed_back(tmp_path):
-    shutil.copy(Path(__file__).parents[1] / "data" / "packings" / "shrink_wrapped.dump", tmp_path / "a.dump")
+    shutil.copy(DATA / "packings" / "shrink_wrapped.dump", tmp_path / "a.dump")
     packing = "{kind: file, path: a.dump, width: 6, origin: [0, 0]}"
     (tmp_path / "scene.yaml").write_text(f"packing: {packing}\ncontact: {{friction: 0.2}}\nloads: []\n")
     succeeded("run", "scene.yaml", "-o", "a.nc", folder=tmp_path)

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 from commands import SCENE, process, refused, succeeded
+from places import ROOT
 
 from granular_response.cli import main as cli
 from granular_response.store import atomic
@@ -21,7 +22,6 @@ from granular_response.store.files import StoreError
 from granular_response_paper import cli as paper
 from granular_response_paper.archive import crate
 
-ROOT = Path(__file__).parents[2]
 TABLE = "packing: {kind: file, path: disks.nc, width: 6}\ncontact: {friction: 0.0}\n"
 #: For each command that writes: arguments, and those of its inputs that an output can be confused with.
 COMMANDS = {

@@ -17,6 +17,7 @@ import yaml
 from commands import PAPER, package_of, refused
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from places import ROOT
 
 from granular_response.cli import main as cli
 from granular_response.scene import Scene, SceneError
@@ -26,7 +27,6 @@ from granular_response.store.result import to_dataset
 from granular_response_paper import cli as paper
 from granular_response_paper.pipeline import GroupError, simulation
 
-ROOT = Path(__file__).parents[2]
 KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "20"))
 SCENE = {
     "packing": {"kind": "slab", "layers": 5, "disks_per_row": 11},

@@ -1,15 +1,13 @@
 """Datasets in which every claim of the paper holds, small ones, for tests that then plant wrong data."""
 
-from pathlib import Path
-
 import numpy as np
 import xarray as xr
 import yaml
+from places import ROOT
 
 from granular_response.state import SLIDING, STICKING
 from granular_response_paper.groups.theory import simulate as theory
 
-ROOT = Path(__file__).parents[2]
 FORCES = np.unique(np.concatenate([0.1 * 1.05 ** np.arange(141), [15.0, 50.0]]))
 X = np.linspace(-60.0, 60.0, 61)
 STARTS = ["touching-largest", "2.0"]

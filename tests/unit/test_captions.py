@@ -3,11 +3,11 @@
 import json
 import re
 from collections import defaultdict
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from places import ROOT
 
 from granular_response.plot import style
 from granular_response.scene import PilePacking, Scene
@@ -19,7 +19,6 @@ from granular_response_paper.groups import NAMES
 from granular_response_paper.pipeline import GroupError, drawing, group_member
 from granular_response_paper.pipeline import stored as stored_data
 
-ROOT = Path(__file__).parents[2]
 GROUPS = ROOT / "src" / "granular_response_paper" / "groups"
 STORED = {group: ROOT / "figures" / group / captions.FILE for group in NAMES}
 

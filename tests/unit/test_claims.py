@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 import yaml
 from claims_data import FORCES, STARTS, dataset, everything, pile_study
+from places import ROOT
 from scipy.stats import binom
 
 from granular_response.state import SLIDING, STICKING
@@ -42,7 +43,6 @@ from granular_response_paper.groups.phase_diagram.claims import (
     trend,
 )
 
-ROOT = Path(__file__).parents[2]
 CLAIM = {claim.id: claim for claim in table.CLAIMS}
 ALGEBRA = {"F11", "K2", "K3", "S1a"}
 #: Claims of the paper itself.

@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import xarray as xr
+from places import ROOT
 
 import granular_response as gr
 from granular_response.scene import FilePacking, Scene, SceneError
@@ -245,7 +246,7 @@ QUANTITIES = ("place, radius", "mass", "width, sides", "angle", "contact forces"
 
 def carried() -> dict[str, dict[str, str]]:
     """The table of the user guide: for each ending of a name its columns."""
-    guide = (Path(__file__).parents[2] / "docs" / "own-scenes.md").read_text(encoding="utf-8")
+    guide = (ROOT / "docs" / "own-scenes.md").read_text(encoding="utf-8")
     head, _, *rows = re.search(r"^\| file \| states \|(?:.*\n\|)*.*", guide, re.MULTILINE)[0].splitlines()
     cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in (head, *rows)]
     return {

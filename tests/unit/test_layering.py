@@ -8,11 +8,11 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from imported import SOURCE, imported
+from imported import imported
+from places import ROOT, SOURCE
 
 from granular_response.machine.machine_code import SOURCES
 
-ROOT = Path(__file__).parents[2]
 PACKAGE = SOURCE / "granular_response"
 PAPER = SOURCE / "granular_response_paper"
 

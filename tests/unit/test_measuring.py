@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from claims_data import pile_study
+from places import ROOT
 
 from granular_response.store import files as store
 from granular_response_paper.groups import NAMES
@@ -38,7 +39,7 @@ def test_claims_are_measured_on_the_group_alone(tmp_path, monkeypatch):
     }
 
 
-@pytest.mark.parametrize("path", sorted(Path(__file__).parents[2].glob("figures/metrics/*.json")), ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", sorted(ROOT.glob("figures/metrics/*.json")), ids=lambda p: p.stem)
 def test_stored_numbers_are_few_and_have_names_in_words(path):
     """Flat, so that ``dvc metrics show`` has them as they stand; the number of a claim beside its code."""
     found = json.loads(path.read_text())

@@ -1,12 +1,11 @@
 """The shape of a response, the crossover of a path, and their statistics on hand-made ensembles."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
 import yaml
 from claims_data import dataset
+from places import ROOT
 
 from granular_response.plot import style
 from granular_response.store import files as store
@@ -38,7 +37,6 @@ from granular_response_paper.survey.crossover import (
     weights,
 )
 
-ROOT = Path(__file__).parents[2]
 X = np.arange(0.0, 30.5, 0.5)
 
 

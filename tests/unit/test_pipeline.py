@@ -8,15 +8,14 @@ from pathlib import Path
 
 import pytest
 import yaml
-from imported import SOURCE, imported
+from imported import imported
+from places import ROOT, SOURCE
 
 from granular_response.scene import SceneError
 from granular_response.store import files as store
 from granular_response_paper import groups, pipeline
 from granular_response_paper.groups import NAMES
 from granular_response_paper.pipeline import drawing, measuring, simulation
-
-ROOT = Path(__file__).parents[2]
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C, where PyYAML has it: every process reads these files
 

@@ -2,10 +2,10 @@
 
 import math
 import pickle
-from pathlib import Path
 
 import numpy as np
 import pytest
+from places import ROOT
 
 from granular_response.scene import (
     Contact,
@@ -20,7 +20,7 @@ from granular_response.scene import (
 )
 from granular_response.scene.protocol import PAPERS_TIME_STEP
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = ROOT / "examples"
 
 
 def test_defaults_are_the_papers():
