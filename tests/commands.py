@@ -18,6 +18,12 @@ from pathlib import Path
 LIBRARY, PAPER = "granular_response", "granular_response_paper"
 #: Commands of the reproduction; all others are the library's.
 OF_THE_PAPER = ("simulate", "draw", "measure", "claims", "groups", "report", "notebooks", "archive", "restore")
+#: A scene that is solved at once.
+SCENE = """\
+packing: {kind: slab, layers: 3, disks_per_row: 5}
+contact: {friction: 0.0}
+loads: [{disk: top-centre, force: [0.0, -1.0]}]
+"""
 #: Of a command, in seconds.
 LONGEST = 120.0
 
@@ -49,6 +55,21 @@ def call(
         if child.is_alive():
             child.kill()
         return subprocess.CompletedProcess(argv, child.exitcode, *(one.read_text(encoding="utf-8") for one in streams))
+
+
+def succeeded(*arguments: object, folder: str | Path | None = None) -> str:
+    """What a command prints that must end well."""
+    done = call(*arguments, folder=folder)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def refused(*arguments: object, folder: str | Path | None = None) -> str:
+    """The one line in which a command says why it does nothing."""
+    done = call(*arguments, folder=folder)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done.stderr
+    assert done.stderr.startswith("granular-response")
+    return done.stderr
 
 
 def _run(argv: Sequence[str], folder: str, environment: dict[str, str], out: str, err: str) -> None:

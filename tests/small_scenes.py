@@ -5,7 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from granular_response.scene import Packing, Scene
+from granular_response.solvers.equations import Configuration
 from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
+from granular_response.solvers.system import StaticSystem
 from granular_response.state import State
 
 
@@ -28,6 +31,19 @@ def free_disks(position, radius=None, *, width=1000.0, velocity=None, spin=None,
     if spin is not None:
         state = replace(state, angular_velocity=np.array(spin, float))
     return problem, state
+
+
+def at_rest(described: Scene) -> tuple[Problem, State]:
+    """The problem of a scene with its loads on their disks, and its rest state."""
+    problem = Problem.from_scene(described)
+    rest = rest_state(problem)
+    return problem.with_loads(rest.position), rest
+
+
+def started(problem: Problem, state: State) -> tuple[StaticSystem, Configuration]:
+    """The static equations of a state, and what is known of it where they start."""
+    system = StaticSystem(problem, state)
+    return system, system.start(state)
 
 
 def shaken(problem: Problem, seed=0, *, size=2e-3, spring=2e-4) -> State:

@@ -14,22 +14,11 @@ def head_on(
     damping_ratio: float, step: float, integrator: str = "beeman", wall: bool = False, law: str = "linear"
 ) -> Dynamics:
     """Two disks on their way to each other, or a disk to the floor, 0.01 apart with a relative speed of 1."""
+    places, velocity = [[500.0, 50.0], [502.01, 50.0]], [(0.5, 0.0), (-0.5, 0.0)]
     if wall:
-        problem, state = free_disks(
-            [[500.0, 1.01]],
-            velocity=[(0.0, -1.0)],
-            contact__friction=0.0,
-            contact__law=law,
-            wall__damping_ratio=damping_ratio,
-        )
-    else:
-        problem, state = free_disks(
-            [[500.0, 50.0], [502.01, 50.0]],
-            velocity=[(0.5, 0.0), (-0.5, 0.0)],
-            contact__friction=0.0,
-            contact__law=law,
-            contact__damping_ratio=damping_ratio,
-        )
+        places, velocity = [[500.0, 1.01]], [(0.0, -1.0)]
+    damping = {"wall__damping_ratio" if wall else "contact__damping_ratio": damping_ratio}
+    problem, state = free_disks(places, velocity=velocity, contact__friction=0.0, contact__law=law, **damping)
     dynamics = Dynamics(problem, state, integrator, step)
     dynamics.set_ramps(gravity=(0.0, 0.0, 0.0))
     return dynamics

@@ -11,12 +11,12 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from commands import call
+from commands import refused, succeeded
+from places import ROOT
 
 from granular_response_paper.archive import ArchiveError, crate, lock
 from granular_response_paper.archive.restore import restore
 
-ROOT = Path(__file__).parents[2]
 SCRIPT = """\
 import pathlib
 import sys
@@ -228,8 +228,6 @@ def test_damaged_archives_are_refused(archived, checkout, tmp_path, damage):
 
 
 def test_the_command_line_says_it_in_one_line(archived, checkout):
-    run = call("restore", archived, "--root", checkout)
-    assert run.returncode == 0 and str(checkout / "data" / "a.nc") in run.stdout, run.stderr
+    assert str(checkout / "data" / "a.nc") in succeeded("restore", archived, "--root", checkout)
     for archive, said in ((checkout / "LICENSE", "is no zip file"), (checkout / "none.zip", "No such file")):
-        run = call("restore", archive, "--root", checkout)
-        assert (run.returncode, run.stderr.count("\n")) == (2, 1) and said in run.stderr
+        assert said in refused("restore", archive, "--root", checkout)

@@ -2,17 +2,15 @@
 
 import re
 from collections import Counter
-from pathlib import Path
 
 import broken_files
 import counts
 import pytest
 import unlike_scenes
+from places import ROOT
 
 from granular_response.inputs import read_json
 from granular_response_paper.trials import random_scenes
-
-ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize("seed", range(2))

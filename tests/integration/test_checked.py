@@ -1,11 +1,10 @@
 """Results as others read them, as versions before wrote them, and sealed files that are no results."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
-from commands import call
+from commands import refused, succeeded
+from places import DATA
 from small_scenes import scene
 
 import granular_response as gr
@@ -14,7 +13,7 @@ from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
 from granular_response.store.result import ResultError, indexed, load_coordinates, solution_from, state_from, to_dataset
 
-OLDER = Path(__file__).parents[1] / "data" / "result_layout_1.nc"
+OLDER = DATA / "result_layout_1.nc"
 
 
 @pytest.fixture(scope="module")
@@ -105,30 +104,27 @@ def test_the_record_of_a_state_comes_back(solution, path):
         for name in ("method", "settled", "steps", "factorisations", "kinetic_energy", "time", "increments"):
             assert getattr(back, name) == getattr(state.reached, name), name
             assert type(getattr(back, name)) is type(getattr(state.reached, name)), name
-    shown = call("show", path, folder=path.parent).stdout
+    shown = succeeded("show", path, folder=path.parent)
     assert "work" in shown and "factorisations" in shown
 
 
 def test_what_xarray_writes_is_shown_and_exported(solution, tmp_path):
     to_dataset(solution).to_netcdf(tmp_path / "by_xarray.nc")
-    shown = call("show", "by_xarray.nc", folder=tmp_path)
-    assert shown.returncode == 0, shown.stderr
-    assert "not sealed: rewritten by another program, so its numbers are not vouched for\n" in shown.stdout
-    assert "force residual" in shown.stdout
-    assert call("export", "by_xarray.nc", "-o", "a.xyz", folder=tmp_path).returncode == 0
+    shown = succeeded("show", "by_xarray.nc", folder=tmp_path)
+    assert "not sealed: rewritten by another program, so its numbers are not vouched for\n" in shown
+    assert "force residual" in shown
+    succeeded("export", "by_xarray.nc", "-o", "a.xyz", folder=tmp_path)
     xr.Dataset({"a": ("n", [1.0])}).to_netcdf(tmp_path / "foreign.nc")
-    finished = call("show", "foreign.nc", folder=tmp_path)
-    assert (finished.returncode, finished.stderr.count("\n")) == (2, 1)
+    refused("show", "foreign.nc", folder=tmp_path)
 
 
 def test_an_altered_result_is_shown_as_not_sealed(path, tmp_path):
     altered = xr.load_dataset(path)
     altered["floor_response"] = 2.0 * altered["floor_response"]
     altered.to_netcdf(tmp_path / "altered.nc")
-    lines = {file: call("show", file, folder=tmp_path).stdout.splitlines() for file in (path, "altered.nc")}
+    lines = {file: succeeded("show", file, folder=tmp_path).splitlines() for file in (path, "altered.nc")}
     assert [sum("not sealed" in line for line in shown) for shown in lines.values()] == [0, 1]
-    refused = call("plot", "altered.nc", "-o", "a.png", folder=tmp_path)
-    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+    refused("plot", "altered.nc", "-o", "a.png", folder=tmp_path)
 
 
 def spoil(data: xr.Dataset, name: str, value: float) -> xr.Dataset:
@@ -178,11 +174,9 @@ def test_a_sealed_file_that_is_no_result(solution, tmp_path, damage):
 
 def test_commands_say_so_in_one_line(solution, tmp_path):
     store.write(tmp_path / "bad.nc", spoil(to_dataset(solution), "position", np.nan))
-    for arguments in (["show", "bad.nc"], ["continue", "bad.nc", "--to", "3"], ["export", "bad.nc"]):
-        more = [] if arguments[0] == "show" else ["-o", {"continue": "a.nc", "export": "a.xyz"}[arguments[0]]]
-        finished = call(*arguments, *more, folder=tmp_path)
-        assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
-        assert "bad.nc: is not a whole result: variable position: must be finite" in finished.stderr
+    for command, *more in (["show"], ["continue", "--to", "3", "-o", "a.nc"], ["export", "-o", "a.xyz"]):
+        said = refused(command, "bad.nc", *more, folder=tmp_path)
+        assert "bad.nc: is not a whole result: variable position: must be finite" in said
 
 
 def test_every_result_that_is_written_is_whole(solution):
@@ -194,11 +188,10 @@ def test_every_result_that_is_written_is_whole(solution):
 def test_what_a_file_says_is_shown_as_it_is(solution, tmp_path):
     data = to_dataset(solution).assign_attrs(title="[red]not[/red] red [/] \x1b[31m:smile:", history="[bold")
     store.write(tmp_path / "result.nc", data, {"note": "[/nothing]"})
-    shown = call("show", "result.nc", folder=tmp_path)
-    assert shown.returncode == 0, shown.stderr
+    shown = succeeded("show", "result.nc", folder=tmp_path)
     for text in ("[red]not[/red] red [/]", ":smile:", "[bold", "[/nothing]"):
-        assert text in shown.stdout
-    assert "\x1b" not in shown.stdout
+        assert text in shown
+    assert "\x1b" not in shown
 
 
 def test_results_of_the_layout_before_are_read(tmp_path):
@@ -211,7 +204,7 @@ def test_results_of_the_layout_before_are_read(tmp_path):
     again = to_dataset(solution_from(data))
     for name in ("position", "contact_force", "wall_force", "load_factor", "floor_response"):
         np.testing.assert_array_equal(again[name], data[name])
-    assert call("show", OLDER, folder=tmp_path).returncode == 0
-    assert call("continue", OLDER, "--to", 2.5, "-o", "more.nc", folder=tmp_path).returncode == 0
+    succeeded("show", OLDER, folder=tmp_path)
+    succeeded("continue", OLDER, "--to", 2.5, "-o", "more.nc", folder=tmp_path)
     with xr.open_dataset(tmp_path / "more.nc") as more:
         assert more["load_factor"].values.tolist() == [0.5, 1.0, 2.0, 2.5]

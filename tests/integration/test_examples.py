@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 from commands import call
 from nbclient import NotebookClient
+from places import ROOT
 
 from granular_response.scene import Scene
 from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.result import to_dataset
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = ROOT / "examples"
 #: The slabs of the examples are cut to this size here.
 SMALL = {"layers": 5, "disks_per_row": 15}
 
@@ -42,6 +43,8 @@ def test_there_are_examples():
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
 def test_an_example_comes_to_a_certified_equilibrium(path):
+    scene = Scene.from_yaml(path)
+    assert Scene.from_text(scene.to_yaml(), folder=scene.folder) == scene and scene.packing.build().n > 1
     result = to_dataset(solve_scene(small(path)))
     assert result.attrs["stable"] == "yes"
     assert result.attrs["settled"] == "yes"
@@ -117,7 +120,7 @@ def test_an_example_runs_on_the_command_line_from_another_folder(tmp_path):
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.ipynb")), ids=lambda path: path.stem)
 def test_a_notebook_runs(path, tmp_path, monkeypatch):
-    source = str(Path(__file__).parents[2] / "src")
+    source = str(ROOT / "src")
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([source, os.environ.get("PYTHONPATH", "")]))
     monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
     monkeypatch.delenv("MPLBACKEND", raising=False)  # the notebook's own

@@ -4,16 +4,12 @@ import ast
 import re
 from pathlib import Path
 
-import matplotlib
 import matplotlib.pyplot as plt
 import pytest
+from places import ROOT
 
 import granular_response as gr
 
-matplotlib.use("Agg")
-
-
-ROOT = Path(__file__).parents[2]
 SCRIPTS = sorted((ROOT / "examples" / "gallery").glob("*.py"))
 
 SMALL = {"LAYERS": 5, "DISKS": 9}

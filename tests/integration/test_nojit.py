@@ -5,11 +5,9 @@ import os
 import subprocess
 import sys
 from functools import cache
-from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).parents[2]
+from places import ROOT
 
 #: Five disks: dynamics with two integrators, static finish, load path, minimisation.
 SCRIPT = """

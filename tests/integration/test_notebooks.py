@@ -1,7 +1,6 @@
 """The notebook of every figure group, made from its parameters, runs at reduced size and shows its figures."""
 
 import os
-from pathlib import Path
 
 import nbformat
 import pytest
@@ -9,12 +8,12 @@ import reduced
 from jupyter_client import KernelManager
 from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell
+from places import ROOT
 
 from granular_response_paper import notebooks
 from granular_response_paper.groups import NAMES
 from granular_response_paper.pipeline import GroupError, group_member, simulation
 
-ROOT = Path(__file__).parents[2]
 OWN = ROOT / "params.yaml"
 #: Groups whose reduced datasets are looked at by tests of their own: their notebooks here draw these.
 LOOKED_AT = ["stability", *(group for group in NAMES if (ROOT / f"tests/regression/test_{group}.py").exists())]

@@ -4,11 +4,11 @@ import io
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from places import ROOT
 from rich.console import Console
 
 import granular_response as gr
@@ -244,7 +244,7 @@ def test_load_factors_that_are_none_are_one_line_before_anything_is_solved(facto
 
 
 def test_the_sweep_of_the_notes_runs_as_a_script_with_workers(tmp_path):
-    text = (Path(__file__).parents[2] / "docs" / "own-scenes.md").read_text()
+    text = (ROOT / "docs" / "own-scenes.md").read_text()
     code = re.search(r"## Many scenes.*?```python\n(.*?)```", text, re.DOTALL)[1]
     smaller = 'gr.Scene().updated({"packing.layers": 4, "packing.disks_per_row": 9})'
     for old, new in {

@@ -2,7 +2,6 @@
 
 import contextlib
 import os
-import random
 import resource
 import subprocess
 import sys
@@ -15,6 +14,8 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
 
 from granular_response import __version__
 from granular_response.store import atomic
@@ -158,35 +159,32 @@ def test_missing_and_foreign_files(path, tmp_path):
         store.read(tmp_path / "foreign.nc")
 
 
-def test_truncated_anywhere_is_an_error_of_one_line(path):
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The bytes of a file with two datasets."""
+    path = tmp_path_factory.mktemp("whole") / "result.nc"
     store.write(path, {"a": dataset(1), "b": dataset(2)})
-    whole = path.read_bytes()
-    generator = random.Random(0)
-    for length in [1, 8, len(whole) - 1, *(generator.randrange(1, len(whole)) for _ in range(200))]:
-        path.write_bytes(whole[:length])
-        with pytest.raises(StoreError, match=r"result.nc: is truncated or damaged") as caught:
-            store.read(path)
-        assert "\n" not in str(caught.value)
+    assert store.read(path)
+    return path.read_bytes()
 
 
-def test_a_damaged_value_is_never_read(path):
-    store.write(path, xr.Dataset({"a": ("n", np.random.default_rng(0).normal(size=20_000), LABEL)}))
-    whole = path.read_bytes()
-    generator = random.Random(0)
-    for _ in range(100):
-        damaged = bytearray(whole)
-        damaged[generator.randrange(len(whole))] ^= 1 << generator.randrange(8)
-        path.write_bytes(damaged)
-        with pytest.raises(StoreError):
-            store.read(path)
-    path.write_bytes(whole)
-    store.read(path)
-
-
-def test_other_programs_read_the_file(path):
-    store.write(path, dataset())
-    with xr.open_dataset(path, decode_timedelta=False) as read:
-        xr.testing.assert_equal(read.load(), dataset())
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(cut=st.floats(0.0, 1.0), place=st.floats(0.0, 0.999), flip=st.integers(1, 255))
+@example(cut=0.0, place=0.0, flip=1)
+@example(cut=1.0, place=0.0, flip=1)
+def test_a_damaged_file_is_never_read(tmp_path, whole, cut, place, flip):
+    """Truncated anywhere, but for nothing left, or with bits of one byte the other way round."""
+    path = tmp_path / "damaged.nc"
+    path.write_bytes(whole[: 1 + int(cut * (len(whole) - 2))])
+    with pytest.raises(StoreError, match=r"damaged.nc: is truncated or damaged") as caught:
+        store.read(path)
+    assert "\n" not in str(caught.value)
+    damaged = bytearray(whole)
+    damaged[int(place * len(whole))] ^= flip
+    path.write_bytes(damaged)
+    with pytest.raises(StoreError) as caught:
+        store.read(path)
+    assert "\n" not in str(caught.value)
 
 
 def test_a_file_written_anew_by_another_program_is_not_ours(path, tmp_path):

@@ -65,16 +65,6 @@ def expected(tmp_path_factory):
     return path.read_bytes()
 
 
-@pytest.fixture(scope="module")
-def cluster():
-    """A scheduler and two worker processes, each started again when it dies."""
-    distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50, host="127.0.0.1"
-    ) as cluster:
-        yield cluster
-
-
 @pytest.fixture
 def only_dask(monkeypatch):
     """No task runs here or in a process of ours."""
@@ -99,17 +89,12 @@ def test_two_local_workers_write_the_same_bytes(folder, expected, monkeypatch) -
     assert command(monkeypatch, "--workers", "2") == expected
 
 
-def test_a_cluster_named_on_the_command_line_writes_the_same_bytes(
-    folder, expected, cluster, only_dask, monkeypatch
-) -> None:
-    assert command(monkeypatch, "--scheduler", cluster.scheduler_address) == expected
-
-
-def test_a_cluster_named_by_the_environment_writes_the_same_bytes(
-    folder, expected, cluster, only_dask, monkeypatch
-) -> None:
-    monkeypatch.setenv(tasks.SCHEDULER_VARIABLE, cluster.scheduler_address)
-    assert command(monkeypatch) == expected
+@pytest.mark.parametrize("by", ["command line", "environment"])
+def test_a_named_cluster_writes_the_same_bytes(folder, expected, cluster, only_dask, monkeypatch, by) -> None:
+    named = ["--scheduler", cluster.scheduler_address] if by == "command line" else []
+    if not named:
+        monkeypatch.setenv(tasks.SCHEDULER_VARIABLE, cluster.scheduler_address)
+    assert command(monkeypatch, *named) == expected
 
 
 def test_a_dask_worker_killed_in_mid_sweep_changes_nothing(folder, expected, cluster, only_dask) -> None:

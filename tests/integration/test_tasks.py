@@ -66,11 +66,25 @@ def assert_same(one, other):
         assert a.tobytes() == b.tobytes()
 
 
-def test_results_are_equal_for_any_number_of_workers():
-    expected = [response(item) for item in ITEMS]
-    assert_same(map_tasks(response, ITEMS, workers=1), expected)
-    assert_same(map_tasks(response, ITEMS, workers=2), expected)
-    assert_same(map_tasks(response, iter(ITEMS)), expected)
+def resources(place, request):
+    """Where tasks run, as keyword arguments of ``map_tasks``."""
+    if place != "cluster":
+        return {"here": {"workers": 1}, "processes": {"workers": 2}, "anywhere": {}}[place]
+    return {"scheduler": request.getfixturevalue("cluster").scheduler_address}
+
+
+@pytest.fixture(params=["here", "processes", "anywhere", "cluster"])
+def everywhere(request):
+    return resources(request.param, request)
+
+
+@pytest.fixture(params=["processes", "cluster"])
+def elsewhere(request):
+    return resources(request.param, request)
+
+
+def test_results_are_the_same_everywhere(everywhere):
+    assert_same(map_tasks(response, iter(ITEMS), **everywhere), [response(item) for item in ITEMS])
 
 
 def test_results_have_the_order_of_the_items():
@@ -88,10 +102,9 @@ def test_progress_counts_to_the_end(workers):
     assert calls == [(done, 4, "scenes") for done in range(5)]
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_a_failing_task_is_named(workers):
+def test_a_failing_task_is_named(everywhere):
     with pytest.raises(SweepError, match=r"task 4 of 6 \(3\) failed: ValueError: no equilibrium") as caught:
-        map_tasks(fail_at_three, range(6), workers=workers)
+        map_tasks(fail_at_three, range(6), **everywhere)
     assert isinstance(caught.value.__cause__, ValueError)
 
 
@@ -106,9 +119,9 @@ def raise_unreadable(item):
     raise Unreadable(item, "more")
 
 
-def test_an_exception_that_cannot_be_sent_is_told_as_text():
+def test_an_exception_that_cannot_be_sent_is_told_as_text(elsewhere):
     with pytest.raises(SweepError, match=r"task [12] of 2 \([12]\) failed: Unreadable: [12] and more") as caught:
-        map_tasks(raise_unreadable, [1, 2], workers=2)
+        map_tasks(raise_unreadable, [1, 2], **elsewhere)
     assert "in raise_unreadable" in str(caught.value.__cause__)
 
 
@@ -174,14 +187,14 @@ def test_what_cannot_be_sent_is_named():
         map_tasks(ajar, [1, 2], workers=2)
 
 
-def test_lambdas_and_functions_of_a_function_run_in_processes():
+def test_lambdas_and_functions_of_a_function_run_elsewhere(elsewhere):
     factor = 3
 
     def scaled(item):
         return factor * item
 
-    assert map_tasks(scaled, range(4), workers=2) == [0, 3, 6, 9]
-    assert map_tasks(lambda item: item + factor, range(4), workers=2) == [3, 4, 5, 6]
+    assert map_tasks(scaled, range(4), **elsewhere) == [0, 3, 6, 9]
+    assert map_tasks(lambda item: item + factor, range(4), **elsewhere) == [3, 4, 5, 6]
 
 
 NOTEBOOK = """
@@ -391,27 +404,8 @@ def test_another_function_or_item_finds_nothing(tmp_path):
     assert [len(starts(marks, item)) for item in range(4)] == [1, 2, 2, 2]
 
 
-@pytest.fixture(scope="module")
-def cluster():
-    """Two worker processes and a scheduler on this machine."""
-    distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(
-        n_workers=2,
-        threads_per_worker=1,
-        processes=True,
-        dashboard_address=None,
-        silence_logs=50,
-        host="127.0.0.1",
-    ) as cluster:
-        yield cluster
-
-
 class TestDask:
     """A real cluster."""
-
-    def test_results_are_equal_to_local_ones(self, cluster):
-        results = map_tasks(response, ITEMS, scheduler=cluster.scheduler_address)
-        assert_same(results, map_tasks(response, ITEMS, workers=1))
 
     def test_the_environment_names_the_scheduler(self, cluster, tmp_path, monkeypatch):
         monkeypatch.setenv("DASK_SCHEDULER_ADDRESS", cluster.scheduler_address)
@@ -437,10 +431,6 @@ class TestDask:
         with pytest.warns(UserWarning, match=r"Dask workers, the first of them tcp://.* last digits may differ"):
             map_tasks(response, ITEMS[:2], scheduler=cluster.scheduler_address)
 
-    def test_a_failing_task_is_named(self, cluster):
-        with pytest.raises(SweepError, match=r"task 4 of 6 \(3\) failed: ValueError: no equilibrium"):
-            map_tasks(fail_at_three, range(6), scheduler=cluster.scheduler_address)
-
     def test_no_cluster_is_an_error_of_one_line(self, monkeypatch):
         with pytest.raises(SweepError, match=r"no Dask scheduler answers at nowhere://") as caught:
             map_tasks(response, ITEMS, scheduler="nowhere://127.0.0.1:1")
@@ -450,14 +440,6 @@ class TestDask:
         monkeypatch.setitem(sys.modules, "distributed", None)
         with pytest.raises(SweepError, match=r"granular-response\[dask\]"):
             map_tasks(response, ITEMS, scheduler="tcp://127.0.0.1:8786")
-
-    def test_a_function_of_a_function_runs_on_the_cluster(self, cluster):
-        factor = 3
-        assert map_tasks(lambda item: factor * item, range(3), scheduler=cluster.scheduler_address) == [0, 3, 6]
-
-    def test_an_exception_that_cannot_be_sent_is_told_as_text(self, cluster):
-        with pytest.raises(SweepError, match=r"failed: Unreadable: [12] and more"):
-            map_tasks(raise_unreadable, [1, 2], scheduler=cluster.scheduler_address)
 
 
 def one_process(*command):

@@ -2,11 +2,8 @@
 
 import numpy as np
 import pytest
-import reduced
 
 from granular_response_paper.groups.contact_law import draw
-
-PARAMETERS = reduced.parameters("contact_law")
 
 
 def test_both_laws_are_at_rest_and_matched(datasets):

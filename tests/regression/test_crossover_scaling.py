@@ -1,4 +1,4 @@
-"""Crossovers of slabs of 5 to 9 layers, from parameters through a file to figures and claims."""
+"""Crossovers of slabs of 5 to 9 layers, through a file to the lines of the document."""
 
 from itertools import product
 
@@ -6,38 +6,20 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response_paper.claims.claim import Data
-from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.crossover_scaling import simulate
-from granular_response_paper.groups.crossover_scaling.claims import CLAIMS
 from granular_response_paper.groups.crossover_scaling.parameters import Parameters
 from granular_response_paper.groups.frictionless_crossover import simulate as frictionless
 from granular_response_paper.report import beyond
 
-PARAMETERS = reduced.parameters("crossover_scaling")
-
 
 @pytest.fixture(scope="module")
 def parameters():
-    return Parameters.model_validate(PARAMETERS)
+    return Parameters.model_validate(reduced.parameters("crossover_scaling"))
 
 
 def of(datasets, series):
     slabs = datasets["slabs"]
     return slabs.isel(slab=np.flatnonzero(slabs["series"].values == series))
-
-
-def test_values_are_the_stored_ones(datasets, num_regression):
-    slabs, powers = datasets["slabs"], datasets["powers"]
-    num_regression.check(
-        {
-            "crossover": slabs["crossover_bracket"].values.ravel(),
-            "first_opening": slabs["first_opening_bracket"].values.ravel(),
-            "linear_opening": slabs["linear_opening"].values,
-            "exponent": powers["exponent"].sel(event="crossover").values.ravel(),
-        },
-        default_tolerance={"rtol": 1e-6, "atol": 1e-9},
-    )
 
 
 def opening_of_springs(layers, across, confinement):
@@ -147,15 +129,3 @@ def test_the_document_gets_a_line_for_each_series_of_layers(datasets):
     assert first.startswith("| 0, constant | 5 to 9 | {:.2f} ({:.2f} to {:.2f}) |".format(*exponent))
     surveyed = datasets["slabs"].assign_coords(surveyed=("slab", (datasets["slabs"]["layers"].values == 9).astype(int)))
     assert "| 5 to 9, from 9 on the survey's |" in beyond.crossovers({**datasets, "slabs": surveyed}).splitlines()[2]
-
-
-def test_claims_are_judged(datasets):
-    data = Data({"crossover_scaling": datasets})
-    allowed = {"reproduced", "depends on the interpretation", "undecided"}
-    assert {judge(claim, data).verdict for claim in CLAIMS} <= allowed
-    grown = datasets["powers"].copy(deep=True)
-    grown["exponent"][:] = 2.0
-    assert [judge(claim, Data({"crossover_scaling": {"powers": grown}})).verdict for claim in CLAIMS] == [
-        "reproduced",
-        "reproduced",
-    ]

@@ -1,4 +1,4 @@
-"""Packings of the experiments at small size, from parameters through a file to the figures."""
+"""Packings of the experiments at small size, from parameters through a file."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import reduced
 
 from granular_response.observe.stress import contact_forces, line_forces
 from granular_response.state import FLOOR
-from granular_response_paper.groups.experiments import draw, simulate
+from granular_response_paper.groups.experiments import simulate
 from granular_response_paper.groups.experiments.parameters import Parameters
 from granular_response_paper.slab_response import LoadPath
 
@@ -40,15 +40,3 @@ def test_statistics_of_known_profiles():
     assert abs(found["chain"] - 60.0) <= 1.0 and found["contrast"] > 3.0 and found["dip"] == 0.0
     assert found["power"][:, 0] == pytest.approx([1.0, 1.0], abs=0.02)
     assert found["slope"] == pytest.approx([np.sqrt(np.sqrt(2.0) - 1.0), 0.4417], abs=0.01)
-
-
-def test_values_are_the_stored_ones(datasets, num_regression):
-    means = datasets["means"].sel(estimate="mean")
-    found = {name: means[name].values.ravel() for name in ("direction", "contrast", "power", "slope")}
-    num_regression.check(found, default_tolerance={"rtol": 1e-5, "atol": 1e-8})
-
-
-def test_the_figures(datasets, looks_as_stored):
-    drawn = draw.draw(datasets)
-    assert list(drawn) == ["experiments", "experiments_images"]
-    looks_as_stored(drawn)

@@ -9,13 +9,18 @@ from granular_response_paper.pipeline import group_member
 
 GROUPS = (
     "crossover_scaling",
+    "experiments",
+    "hysteresis",
     "influence",
     "moduli",
+    "network",
     "peak_width",
     "polydisperse_averages",
+    "rolling_resistance",
     "slab_comparison",
     "stiffness_ratio_crossover",
     "superposition",
+    "tangent_moduli",
 )
 
 

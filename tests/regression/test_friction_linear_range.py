@@ -2,13 +2,9 @@
 
 import numpy as np
 import pytest
-import reduced
 
 from granular_response.state import SLIDING
-from granular_response.store import files as store
 from granular_response_paper.groups.friction_linear_range import draw as figures
-
-PARAMETERS = reduced.parameters("friction_linear_range")
 
 
 def bracket(datasets, name, friction):
@@ -91,9 +87,8 @@ def test_stored_states_show_the_contact_changes(datasets):
     assert near[0] == 0 < near[1] <= int(opened[7])
 
 
-def test_datasets_are_stored_and_drawn(datasets, tmp_path, looks_as_stored):
-    store.write(tmp_path / "group.nc", datasets)
-    drawn = figures.draw(store.read(tmp_path / "group.nc"))
+def test_datasets_are_drawn(datasets, looks_as_stored):
+    drawn = figures.draw(datasets)
     assert set(drawn) == {
         "fig06_linear_range",
         "fig07_friction_response",

@@ -13,6 +13,7 @@ SERIES = {"name": "one", "friction": 0.0, "layers": [5, 7]}
 WIDTH = {"polydispersity": 0.1, "friction": 0.2, "layers": [4], "realizations": 2}
 LOOP = {"polydispersity": 0.1, "friction": 0.2, "forces": [0.3, 1.0], "increments": 2}
 WAY = {"name": "x", "changes": {}}
+PICTURE = {"polydispersity": 0.3, "friction": 0.2, "force": 5.0, "realization": 0}
 TAPS = {"number": 1, "amplitudes": [0.5], "durations": [3.0]}
 
 #: For each group: changes to its section of the notebooks' parameters (None: left out), and what is said.
@@ -67,6 +68,16 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"spacing": 0.5}, "must be below a tenth of reach"),
     ],
     "pile_dip": [({"dip_height": -1.0}, r"dip_height = -1\.0: must be a number greater than 0")],
+    "polydisperse_averages": [
+        ({"collapse_depth": 0.0}, "collapse_depth = 0.*: must be"),
+        ({"realizations": 0}, "realizations = 0.*: must be"),
+        (
+            {"cases": [{"polydispersities": [0.0], "friction": 0.0, "forces": [2.0, 1.0]}]},
+            r"cases\[0\].forces = .*: must be",
+        ),
+        ({"forces_picture": PICTURE}, "forces_picture = .*: must be"),
+        ({"individual": reduced.parameters("polydisperse_averages")["individual"] | {"force": 7.0}}, "individual = "),
+    ],
     "preparation": [
         ({"ways": [WAY | {"changes": {"contact.friction": 1.0}}]}, "must be one of preparation.gravity"),
         ({"ways": [WAY, WAY]}, "must have different names"),

@@ -1,26 +1,9 @@
-"""Widths of the response in slabs of 4 to 12 layers, from parameters through a file to figures and claims."""
+"""Widths of the response in slabs of 4 to 12 layers, from parameters through a file."""
 
 import numpy as np
 import pytest
 
-from granular_response_paper.claims.claim import Data
-from granular_response_paper.claims.verdict import judge
-from granular_response_paper.groups.peak_width.claims import CLAIMS
-
 SMALL, LARGE, DISORDERED = 0, 1, 2
-
-
-def test_values_are_the_stored_ones(datasets, num_regression):
-    inside, floors = datasets["inside"], datasets["floors"]
-    num_regression.check(
-        {
-            "inside": inside["length"].isel(definition=slice(0, 2)).values.ravel(),
-            "floors": floors["length"].isel(definition=slice(0, 2)).values.ravel(),
-            "powers": floors["power"].isel(definition=slice(0, 2)).values.ravel(),
-            "intervals": floors["interval"].isel(definition=slice(0, 2)).values.ravel(),
-        },
-        default_tolerance={"rtol": 1e-6, "atol": 1e-9},
-    )
 
 
 def test_beside_smooth_walls_every_line_bears_the_whole_force(datasets):
@@ -51,15 +34,3 @@ def test_intervals_hold_the_power(datasets):
     value = floors["power"].isel(fit=0).values
     assert (low <= value).all() and (value <= high).all()
     assert (low < high).all()
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "verdict"), [("B6", 1.0, "reproduced"), ("B6", 0.5, "contradicted"), ("B7", 0.76, "undecided")]
-)
-def test_the_claims_follow_the_powers(datasets, name, value, verdict):
-    changed = {key: data.copy() for key, data in datasets.items()}
-    for data in changed.values():
-        data["power"] = data["power"].fillna(0.0) * 0.0 + value
-        data["interval"] = data["interval"].fillna(0.0) * 0.0 + value + np.array([-0.02, 0.02])
-    claim = next(one for one in CLAIMS if one.id == name)
-    assert judge(claim, Data({"peak_width": changed})).verdict == verdict

@@ -1,7 +1,6 @@
 """Figs. 2 and 19 to 21 on slabs of 5 layers, from parameters through a file to figures."""
 
 import numpy as np
-import pytest
 import reduced
 import xarray as xr
 
@@ -12,16 +11,6 @@ from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_RE
 from granular_response_paper.groups.polydisperse_averages import simulate as study
 
 PARAMETERS = reduced.parameters("polydisperse_averages")
-
-
-def test_averages(datasets, num_regression) -> None:
-    data = datasets["averages"]
-    values = {
-        f"case{c}_force{data['force'].values[c, s]:g}": data["mean"].values[1, c, s]
-        for c in range(data.sizes["case"])
-        for s in np.flatnonzero(np.isfinite(data["force"].values[c]))
-    }
-    num_regression.check(values, default_tolerance={"rtol": 1e-4, "atol": 1e-6})
 
 
 def test_mean_is_that_of_the_realizations_at_rest(datasets) -> None:
@@ -89,22 +78,3 @@ def test_collapse_and_failure_are_reported() -> None:
     failed = realizations.realize(scene.updated({"protocol.maximum_steps": 100}), (1.0, 2.0), 1e-3)
     assert failed.outcome.tolist() == [FAILED, NOT_REACHED]
     assert failed.message.startswith("gravity: ")
-
-
-@pytest.mark.parametrize(
-    ("key", "value", "named"),
-    [
-        ("collapse_depth", 0.0, "collapse_depth = 0"),
-        ("realizations", 0, "realizations = 0"),
-        ("cases", [{"polydispersities": [0.0], "friction": 0.0, "forces": [2.0, 1.0]}], r"cases\[0\].forces = "),
-        (
-            "forces_picture",
-            {"polydispersity": 0.3, "friction": 0.2, "force": 5.0, "realization": 0},
-            "forces_picture = ",
-        ),
-        ("individual", {**PARAMETERS["individual"], "force": 7.0}, "individual = "),
-    ],
-)
-def test_bad_parameter_is_named(key, value, named) -> None:
-    with pytest.raises(ValueError, match=f"{named}.*: must be"):
-        study.Parameters(**{**PARAMETERS, key: value})

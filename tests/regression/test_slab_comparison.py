@@ -3,14 +3,6 @@
 import numpy as np
 
 
-def test_distances(datasets, num_regression) -> None:
-    slabs = datasets["slabs"]
-    num_regression.check(
-        {name: slabs[name].values for name in ("distance", "distance_other_floor", "open_at_rest")},
-        default_tolerance={"rtol": 1e-4, "atol": 1e-9},
-    )
-
-
 def test_deeper_slabs_are_nearer_to_the_elastic_one(datasets) -> None:
     slabs = datasets["slabs"]
     distance = slabs["distance"].values

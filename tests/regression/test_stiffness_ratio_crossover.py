@@ -9,14 +9,6 @@ from granular_response.theory import crossover
 PARAMETERS = reduced.parameters("stiffness_ratio_crossover")
 
 
-def test_response(datasets, num_regression) -> None:
-    response = datasets["response"]
-    num_regression.check(
-        {name: response[name].values for name in ("response_at_centre", "central_dip", "opened_contacts")},
-        default_tolerance={"rtol": 1e-6, "atol": 1e-9},
-    )
-
-
 def test_two_peaks_turn_into_one(datasets) -> None:
     response, events = datasets["response"], datasets["events"]
     assert response["double_peaked"].values.tolist() == [1, 1, 1, 0, 0, 0]

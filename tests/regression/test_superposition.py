@@ -9,15 +9,7 @@ from granular_response.sweeps.rest import rest_of
 from granular_response_paper.groups.superposition import simulate as study
 
 PARAMETERS = reduced.parameters("superposition")
-ERRORS = ("floor_error", "floor_error_largest", "contact_error", "contact_error_largest")
 CERTIFIED = ("force_residual", "torque_residual", "coulomb_excess")
-
-
-def test_errors(datasets, num_regression) -> None:
-    errors = datasets["errors"].isel(force=slice(1, None))
-    num_regression.check(
-        {name: errors[name].values.ravel() for name in ERRORS}, default_tolerance={"rtol": 1e-4, "atol": 1e-7}
-    )
 
 
 def test_every_state_is_certified(datasets) -> None:

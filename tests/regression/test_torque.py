@@ -7,13 +7,6 @@ from granular_response_paper.groups.torque import draw as figures
 CHANGES = ("force_change", "stress_change", "antisymmetric_change")
 
 
-def test_reach(datasets, num_regression) -> None:
-    reach = datasets["reach"]
-    num_regression.check(
-        {name: reach[name].values.ravel() for name in CHANGES}, default_tolerance={"rtol": 1e-5, "atol": 1e-8}
-    )
-
-
 def test_changes_grow_with_the_torque_and_fall_with_the_distance(datasets) -> None:
     reach = datasets["reach"]
     for name in CHANGES:

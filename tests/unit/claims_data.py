@@ -1,34 +1,36 @@
 """Datasets in which every claim of the paper holds, small ones, for tests that then plant wrong data."""
 
-from pathlib import Path
-
 import numpy as np
 import xarray as xr
 import yaml
+from places import ROOT
 
 from granular_response.state import SLIDING, STICKING
 from granular_response_paper.groups.theory import simulate as theory
 
-ROOT = Path(__file__).parents[2]
 FORCES = np.unique(np.concatenate([0.1 * 1.05 ** np.arange(141), [15.0, 50.0]]))
 X = np.linspace(-60.0, 60.0, 61)
 STARTS = ["touching-largest", "2.0"]
 
 
 def dataset(coords=None, **variables):
-    return xr.Dataset(
+    """A dataset that can be stored: every variable has its labels."""
+    made = xr.Dataset(
         {name: value if isinstance(value, tuple) else ((), value) for name, value in variables.items()}, coords=coords
     )
+    for name, one in made.variables.items():
+        one.attrs = {"long_name": str(name), "units": "1"}
+    return made
+
+
+def by_row(dimension, names, rows):
+    """Variables along one dimension from a table."""
+    columns = zip(*rows, strict=True)
+    return {name: (dimension, np.array(column)) for name, column in zip(names.split(), columns, strict=True)}
 
 
 def events(*rows):
-    names, frictions, low, high = zip(*rows, strict=True)
-    return dataset(
-        name=("event", list(names)),
-        friction=("event", np.array(frictions, float)),
-        low=("event", np.array(low, float)),
-        high=("event", np.array(high, float)),
-    )
+    return dataset(**by_row("event", "name friction low high", rows))
 
 
 def by_friction(*rows):
@@ -143,15 +145,8 @@ def preparation_study():
     }
 
     def labels(dimension, rows):
-        friction, wall, way = zip(*rows, strict=True)
-        gravity, ramp, damping = zip(*way, strict=True)
-        return {
-            "gravity": (dimension, list(gravity)),
-            "ramp_time": (dimension, list(ramp)),
-            "damping_ratio": (dimension, list(damping)),
-            "friction": (dimension, list(friction)),
-            "wall_friction": (dimension, list(wall)),
-        }
+        names = "friction wall_friction gravity ramp_time damping_ratio"
+        return by_row(dimension, names, [(friction, wall, *way) for friction, wall, way in rows])
 
     rows = [(case, name) for case in cases for name in comes]
     table = dataset(
@@ -368,12 +363,7 @@ def disordered_cases():
     """Coordinates of the cases: the lattice, three frictions at three disorders, and the literal start."""
     cases = [(delta, mu, STARTS[0]) for delta in (0.0, 0.01, 0.1, 0.25) for mu in (0.0, 0.2, 1.0)]
     cases += [(0.01, mu, STARTS[1]) for mu in (0.0, 0.2)]
-    delta, mu, start = zip(*cases, strict=True)
-    return {
-        "polydispersity": ("case", list(delta)),
-        "friction": ("case", list(mu)),
-        "lattice_constant": ("case", list(start)),
-    }
+    return by_row("case", "polydispersity friction lattice_constant", cases)
 
 
 #: Draws of the planted bootstrap, the same part of the crossover in every case.
@@ -387,7 +377,7 @@ def phases_study():
     force = np.array([f for row in grid for f in row])
     interval = np.stack([0.95 * force, force, 1.05 * force], axis=-1)
     draws = force[:, None] * DRAWS
-    mu, delta = np.array(cases["friction"][1]), np.array(cases["polydispersity"][1])
+    mu, delta = cases["friction"][1], cases["polydispersity"][1]
     n, few = len(mu), 8
     dip = np.where(mu == 0.0, 0.8, -0.05)
     levels = {"width": [3.0, 6.0], "level": [0.025, 0.5, 0.975]}
@@ -674,10 +664,8 @@ def experiments_study():
     loads += [("nearly equal", 150.0, angle) for angle in (45.0, 30.0)]
     loads += [("bidisperse", force, 90.0) for force in (150.0, 15.0, 3.0)]
     loads += [("deep", force, 90.0) for force in (3.0, 1.5)]
-    names, forces, angles = zip(*loads, strict=True)
-    coordinates = {name: ("case", np.array(values)) for name, values in
-                   (("packing", names), ("force_applied", forces), ("angle_applied", angles))}  # fmt: skip
-    near, deep = np.array([name == "nearly equal" for name in names]), np.array([name == "deep" for name in names])
+    coordinates = by_row("case", "packing force_applied angle_applied", loads)
+    near, deep = (coordinates["packing"][1] == name for name in ("nearly equal", "deep"))
 
     def estimates(values):
         return ("case", "estimate"), np.multiply.outer(np.broadcast_to(values, len(loads)), [1.0, 0.99, 1.01])
@@ -691,7 +679,7 @@ def experiments_study():
             coordinates | {"definition": ["half_maximum", "half_force"], "estimate": ["mean", "low", "high"],
                            "depth": [5.0, 10.0]},
             chain=estimates(60.0), contrast=estimates(np.where(near, 2.0, 1.1)), vertical=estimates(1.5),
-            strongest=estimates(angles), dip=estimates(0.01),
+            strongest=estimates(coordinates["angle_applied"][1]), dip=estimates(0.01),
             power=(("case", "definition", "fit", "estimate"), power),
             slope=(("case", "definition", "estimate"), power[:, :, 0]),
             stress=(("case", "depth", "x", "estimate"), np.ones((len(loads), 2, 3, 3))),

@@ -2,7 +2,6 @@
 
 import io
 
-import matplotlib
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -11,8 +10,6 @@ from PIL import Image
 import granular_response as gr
 from granular_response.plot import animation, style
 from granular_response.plot.pictures import PictureError
-
-matplotlib.use("Agg")
 
 SCENE = {
     "packing": {"kind": "slab", "layers": 5, "disks_per_row": 11},

@@ -29,6 +29,12 @@ def solution() -> Solution:
     return solve_scene(scene(contact__friction=0.2, wall__friction=0.1, loads=load))
 
 
+@pytest.fixture
+def state(solution):
+    """Under the load."""
+    return solution.loaded[0]
+
+
 def with_entry(contacts: Contacts, which: int, **values: float) -> Contacts:
     """Contacts with one entry of some arrays replaced."""
     changed = {}
@@ -59,8 +65,7 @@ def test_solved_states_pass(solution):
     assert (solution.loaded[0].pairs.status == SLIDING).any()  # or Coulomb's limit would not have been tried
 
 
-def test_a_moved_disk_is_found(solution):
-    (state,) = solution.loaded
+def test_a_moved_disk_is_found(solution, state):
     position = state.position.copy()
     position[5, 0] += 1e-6
     found = check(solution, replace(state, position=position))
@@ -70,8 +75,7 @@ def test_a_moved_disk_is_found(solution):
 
 
 @pytest.mark.parametrize("side", ["pairs", "walls"])
-def test_a_contact_that_is_not_listed_is_found(solution, side):
-    (state,) = solution.loaded
+def test_a_contact_that_is_not_listed_is_found(solution, state, side):
     contacts = getattr(state, side)
     known = np.flatnonzero(contacts.touching & (contacts.spring != 0))
     which = int(known[np.argmax(contacts.normal_force[known])])
@@ -82,8 +86,7 @@ def test_a_contact_that_is_not_listed_is_found(solution, side):
 
 @pytest.mark.parametrize("side", ["pairs", "walls"])
 @pytest.mark.parametrize("name", ["normal_force", "tangential_force"])
-def test_a_wrong_recorded_force_is_found(solution, side, name):
-    (state,) = solution.loaded
+def test_a_wrong_recorded_force_is_found(solution, state, side, name):
     contacts = getattr(state, side)
     which = int(np.argmax(contacts.normal_force))
     tampered = replace(state, **{side: with_entry(contacts, which, **{name: getattr(contacts, name)[which] + 1e-3})})
@@ -91,16 +94,14 @@ def test_a_wrong_recorded_force_is_found(solution, side, name):
     assert "a recorded contact force is off by 0.001" in complaint(solution, tampered)
 
 
-def test_friction_beyond_the_limit_is_found(solution):
-    (state,) = solution.loaded
+def test_friction_beyond_the_limit_is_found(solution, state):
     which = int(np.flatnonzero(state.pairs.status == SLIDING)[0])
     tampered = replace(state, pairs=with_entry(state.pairs, which, spring=1.001 * state.pairs.spring[which]))
     assert check(solution, tampered).coulomb_excess > 1e-6
     assert complaint(solution, tampered)
 
 
-def test_a_spring_of_an_open_contact_and_a_lost_disk_are_found(solution):
-    (state,) = solution.loaded
+def test_a_spring_of_an_open_contact_and_a_lost_disk_are_found(solution, state):
     which = int(np.flatnonzero(state.pairs.status == OPEN)[0])
     tampered = replace(state, pairs=with_entry(state.pairs, which, spring=1e-5))
     assert check(solution, tampered).stale_springs == 1
@@ -113,20 +114,17 @@ def test_a_spring_of_an_open_contact_and_a_lost_disk_are_found(solution):
 @pytest.mark.parametrize(
     ("name", "value"), [("force_residual", 1e-3), ("torque_residual", 1e-3), ("coulomb_excess", 1e-3)]
 )
-def test_a_certificate_that_says_something_else_is_found(solution, name, value):
-    (state,) = solution.loaded
+def test_a_certificate_that_says_something_else_is_found(solution, state, name, value):
     certificate = replace(state.certificate, **{name: value})
     tampered = replace(state, reached=replace(state.reached, certificate=certificate))
     assert complaint(solution, tampered).startswith(f"{name} is")
 
 
-def test_a_state_without_a_certificate_is_found(solution):
-    (state,) = solution.loaded
+def test_a_state_without_a_certificate_is_found(solution, state):
     assert complaint(solution, replace(state, reached=Reached())) == "a state without a certificate"
 
 
-def test_a_load_that_is_not_the_scenes_is_found(solution):
-    (state,) = solution.loaded
+def test_a_load_that_is_not_the_scenes_is_found(solution, state):
     assert check(solution, replace(state, load_factor=0.999)).force_residual > 1e-3
 
 
@@ -200,8 +198,7 @@ def test_a_compression_that_statics_completes_is_no_fall():
     assert anachronism(solution, solution.rest, check(solution, solution.rest), 0.0) == ""
 
 
-def test_another_load_factor_than_was_asked_for_is_found(solution):
-    (state,) = solution.loaded
+def test_another_load_factor_than_was_asked_for_is_found(solution, state):
     found = check(solution, state)
     assert anachronism(solution, state, found, 1.0) == ""
     assert "said to be at rest" in anachronism(solution, state, found, 2.0)
@@ -251,8 +248,7 @@ def test_heaps_of_unlike_disks_are_as_unlike_as_they_are_said_to_be():
     assert 30.0 < radius <= RADIUS_RATIO and 1e6 < mass <= MASS_RATIO
 
 
-def test_a_disk_out_of_balance_by_a_part_of_what_it_bears_is_found(solution):
-    (state,) = solution.loaded
+def test_a_disk_out_of_balance_by_a_part_of_what_it_bears_is_found(solution, state):
     found = replace(check(solution, state), relative_residual=1e-3)
     said = contradiction(state, found, rounding_of(solution))
     assert said == "certified as stable with a disk out of balance by 0.001 of what it bears"

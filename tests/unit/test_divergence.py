@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_scenes import free_disks, scene
+from small_scenes import at_rest, free_disks, scene, started
 
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.equilibrium import external_force, newton
@@ -21,8 +21,7 @@ def balanced(places, radius, mass, **changes):
     problem, _ = free_disks(places, radius, contact__friction=0.0, wall__friction=0.0, **changes)
     problem = Problem.from_scene(problem.scene, replace(problem.packing, given_mass=np.array(mass)))
     state = problem.bare_state()
-    system = StaticSystem(problem, state)
-    known = system.start(state)
+    system, known = started(problem, state)
     trial, report = newton(system, known, external_force(problem, 0.0))
     assert np.abs(trial.contact_force + external_force(problem, 0.0)).max() < 1e-12 and report.iterations
     return system, trial
@@ -78,9 +77,7 @@ def test_an_upright_column_has_an_unstable_direction_for_each_contact_between_di
 def sliding(layers, across, force):
     """A slab with friction 0.5 under an oblique force: its state, and the trial that this is."""
     loads = [{"disk": "top-centre", "force": [0.15 * force, -force]}]
-    problem = Problem.from_scene(scene(layers, across, contact__friction=0.5, wall__friction=0.5, loads=loads))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
+    problem, rest = at_rest(scene(layers, across, contact__friction=0.5, wall__friction=0.5, loads=loads))
     (state,) = follow(problem, rest, [1.0])
     assert state.certificate.stable and not any(event.lost for event in state.reached.events)
     system = StaticSystem(problem, state)

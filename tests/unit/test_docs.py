@@ -6,9 +6,9 @@ import ast
 import pkgutil
 import re
 from functools import cache
-from pathlib import Path
 
 import pytest
+from places import ROOT
 
 from granular_response.cli import scene_reference
 from granular_response.scene import LaboratoryUnits, Scene, SceneError
@@ -16,7 +16,6 @@ from granular_response.scene.base import UNITS
 from granular_response.scene.material import Contact
 from granular_response.store import generated
 
-ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 

@@ -4,11 +4,11 @@ import csv
 import io
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from places import DATA
 from rich.console import Console
 from small_scenes import scene
 
@@ -23,7 +23,7 @@ from granular_response.store.export import export
 from granular_response.store.result import ResultError, chosen_states, events_from, state_from, to_dataset
 from granular_response.store.summary import summarise
 
-BEFORE = Path(__file__).parents[1] / "data" / "result_before_events.nc"
+BEFORE = DATA / "result_before_events.nc"
 LOAD = [{"disk": "top-centre", "force": [0.0, -6.0]}]
 SCENE = scene(4, 9, contact__friction=0.2, loads=LOAD)
 FACTORS = (0.5, 1.0, 0.25)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from places import ROOT
 
 import granular_response as gr
 from granular_response.machine import memory
@@ -328,7 +329,7 @@ def test_a_file_without_a_box_needs_a_width(tmp_path):
 
 
 #: Packings of other programs, with what is right in README.md beside them.
-PACKINGS = Path(__file__).parents[1] / "data" / "packings"
+PACKINGS = ROOT / "tests" / "data" / "packings"
 
 
 def floor_of(packing: dict, **changes) -> np.ndarray:

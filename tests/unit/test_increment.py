@@ -4,21 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_scenes import scene
+from small_scenes import at_rest, scene, started
 
 from granular_response.solvers import increment as module
 from granular_response.solvers.equilibrium import external_force
 from granular_response.solvers.increment import Work, solve_increment
-from granular_response.solvers.problem import Problem
-from granular_response.solvers.solution import rest_state
 from granular_response.solvers.system import StaticSystem
 
 
 @pytest.fixture(scope="module")
 def start():
-    problem = Problem.from_scene(scene(6, 13, loads=[{"disk": "top-centre", "force": [0.0, -1.0]}]))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
+    problem, rest = at_rest(scene(6, 13, loads=[{"disk": "top-centre", "force": [0.0, -1.0]}]))
     system = StaticSystem(problem, rest)
     return problem, system, system.start(rest)
 
@@ -61,9 +57,7 @@ def test_a_minimisation_ends_where_steps_no_longer_pay(start, monkeypatch):
     problem, system, known = start
     external = external_force(problem, 0.5)
     limits = np.full(len(known.spring), 0.2)
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, most=25))
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, rough=0.0))
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, still=0.0))
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, most=25, rough=0.0, still=0.0))
     long, short = Work(), Work()
     assert module.minimise_with_limits(system, known, external, known.q, limits, long) is None
     assert long.factorisations == 25  # rounding never lets the residual vanish
@@ -75,19 +69,15 @@ def test_a_minimisation_ends_where_steps_no_longer_pay(start, monkeypatch):
 
 def test_hopeless_increment_returns_none():
     """A sideways pull far beyond what a frictionless-walled free surface holds."""
-    problem = Problem.from_scene(scene(2, 4, loads=[{"disk": "top-centre", "force": [0.0, 50.0]}]))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
-    system = StaticSystem(problem, rest)
-    known = system.start(rest)
+    problem, rest = at_rest(scene(2, 4, loads=[{"disk": "top-centre", "force": [0.0, 50.0]}]))
+    system, known = started(problem, rest)
     assert solve_increment(system, known, external_force(problem, 1.0), known.q, Work()) is None
 
 
 def test_an_increment_gives_up_after_its_work(start, monkeypatch):
     """That of one minimisation, which leaves no work for further rounds."""
     problem, system, known = start
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, direct=1))
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, most=0))
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, direct=1, most=0))
     work = Work()
     assert solve_increment(system, known, external_force(problem, 0.5), known.q, work) is None
     assert work.factorisations == 1

@@ -8,44 +8,29 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from imported import imported
+from places import ROOT, SOURCE
 
 from granular_response.machine.machine_code import SOURCES
 
-ROOT = Path(__file__).parents[2]
-SOURCE = ROOT / "src"
 PACKAGE = SOURCE / "granular_response"
 PAPER = SOURCE / "granular_response_paper"
 
 
-@functools.cache
-def imports(path: Path) -> list[ast.Import | ast.ImportFrom]:
-    """Import statements of a file, wherever in it."""
-    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-    return [node for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom))]
+def imported_by(part: Path) -> set[str]:
+    """All that the files of a part import, types too."""
+    paths = part.rglob("*.py") if part.is_dir() else [part]
+    return {name for path in paths for name in imported(path, for_types=True)}
 
 
-def outside_imports(part: Path) -> dict[str, str]:
-    """Packages that neither Python nor this project brings, each with a place where it is imported."""
-    found = {}
-    for path in sorted(part.rglob("*.py")) if part.is_dir() else [part]:
-        for node in imports(path):
-            if isinstance(node, ast.Import):
-                names = [alias.name for alias in node.names]
-            elif isinstance(node, ast.ImportFrom) and node.level == 0:
-                names = [node.module or ""]
-            else:
-                continue
-            for name in (name.partition(".")[0] for name in names):
-                if name not in sys.stdlib_module_names and name not in (PACKAGE.name, PAPER.name):
-                    found[name] = f"{path.relative_to(ROOT)}:{node.lineno}"
-    return found
+def outside_imports(part: Path) -> set[str]:
+    """Packages that neither Python nor this project brings."""
+    return {name.partition(".")[0] for name in imported_by(part)} - sys.stdlib_module_names - {PACKAGE.name, PAPER.name}
 
 
 def test_the_library_imports_its_own_by_relative_names():
-    for path in sorted(PACKAGE.rglob("*.py")):
-        nodes = [node for node in imports(path) if isinstance(node, ast.ImportFrom)]
-        absolute = [str(node.module) for node in nodes if node.level == 0]
-        assert not [name for name in absolute if name.startswith("granular_response")], path
+    absolute = re.compile(r"^\s*(from|import) granular_response", re.MULTILINE)
+    assert [path for path in sorted(PACKAGE.rglob("*.py")) if absolute.search(path.read_text("utf-8"))] == []
 
 
 PARTS = sorted(
@@ -68,23 +53,9 @@ def table_of_imports() -> dict[str, set[str]]:
 
 
 def inside_imports(part: Path) -> set[str]:
-    """Other parts of the package that a part imports, wherever in its files."""
-    own = {path.stem for path in PARTS}
-    found: set[str] = set()
-    for path in sorted(part.rglob("*.py")) if part.is_dir() else [part]:
-        depth = len(path.relative_to(ROOT / "src").parts) - 1
-        for node in imports(path):
-            if not isinstance(node, ast.ImportFrom):
-                continue
-            module = (node.module or "").split(".") if node.module else []
-            if node.level == 0:
-                if module[0] != "granular_response":
-                    continue
-                module = module[1:]
-            elif node.level < depth or part == PAPER:
-                continue  # within the part
-            found |= {module[0]} if module else {alias.name for alias in node.names}
-    return found & own - {part.stem}
+    """Other parts of the package that a part imports."""
+    ours = {name.split(".")[1] for name in imported_by(part) if name.startswith(f"{PACKAGE.name}.")}
+    return ours & {path.stem for path in PARTS} - {part.stem}
 
 
 def test_every_part_is_in_the_table_of_imports():

@@ -2,13 +2,11 @@
 
 import tomllib
 from importlib import metadata
-from pathlib import Path
 
 from packaging.requirements import Requirement
 from packaging.specifiers import SpecifierSet
 from packaging.version import Version
-
-ROOT = Path(__file__).parents[2]
+from places import ROOT
 
 
 def test_pinned_versions_run_on_every_python_that_is_promised():

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from small_scenes import free_disks, scene
+from small_scenes import free_disks, scene, started
 
 from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.energy import energy, minimise
 from granular_response.solvers.equilibrium import EquilibriumError, external_force, finish
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.system import StaticSystem
 
 
 def test_one_disk_on_the_floor_by_hand():
@@ -33,8 +32,7 @@ def test_minimum_is_where_dynamics_ends():
 def test_energy_is_lowest_there():
     problem = Problem.from_scene(scene(contact__friction=0.0))
     state = minimise(problem, problem.bare_state())
-    system = StaticSystem(problem, state)
-    known = system.start(state)
+    system, known = started(problem, state)
     external = external_force(problem, 0.0)
     lowest = energy(system, system.trial(known, known.q), external)
     rng = np.random.default_rng(0)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
-from small_scenes import scene
+from small_scenes import at_rest, scene, started
 
 from granular_response.linalg import Sequence, multifrontal, nearby, ordering
 from granular_response.linalg.dissection import Dissection
@@ -41,6 +41,13 @@ def pattern(dissection, first, second, freedoms):
     return full
 
 
+def dissected(columns, rows, freedoms=2):
+    """The nested dissection of a lattice, and a random matrix of its pattern."""
+    position, first, second = lattice(columns, rows)
+    dissection = Dissection(position, first, second)
+    return dissection, pattern(dissection, first, second, freedoms)
+
+
 def counted(monkeypatch, owner, name):
     """A list that grows with every call of a method."""
     method, calls = getattr(owner, name), []
@@ -70,9 +77,8 @@ def test_fronts_cover_every_disk_and_tie(columns, rows):
 
 @pytest.mark.parametrize("freedoms", [2, 3])
 def test_lu_solves_what_a_general_solver_does(freedoms):
-    position, first, second = lattice(23, 31)
-    dissection = Dissection(position, first, second)
-    matrix = shifted(pattern(dissection, first, second, freedoms), 6.0)
+    dissection, matrix = dissected(23, 31, freedoms)
+    matrix = shifted(matrix, 6.0)
     right = np.random.default_rng(2).normal(size=matrix.shape[0])
     x = Multifrontal(dissection, freedoms).factor(matrix).solve(right)
     assert x == pytest.approx(spsolve(matrix, right), rel=1e-8, abs=1e-10)
@@ -80,9 +86,7 @@ def test_lu_solves_what_a_general_solver_does(freedoms):
 
 @pytest.mark.parametrize("shift", [60.0, 2.0])
 def test_symmetric_matrices_are_solved_where_definite_and_their_negative_eigenvalues_counted(shift):
-    position, first, second = lattice(15, 20)
-    dissection = Dissection(position, first, second)
-    matrix = pattern(dissection, first, second, 2)
+    dissection, matrix = dissected(15, 20)
     matrix = shifted(matrix + matrix.T, shift)
     expected = int((np.linalg.eigvalsh(matrix.toarray()) < 0).sum())
     assert (expected > 0) == (shift < 10.0)
@@ -96,10 +100,9 @@ def test_symmetric_matrices_are_solved_where_definite_and_their_negative_eigenva
 
 
 def test_singular_matrix_is_an_error():
-    position, first, second = lattice(3, 2)
-    dissection = Dissection(position, first, second)
+    dissection, matrix = dissected(3, 2)
     with pytest.raises(RuntimeError, match="singular"):
-        Multifrontal(dissection, 2).factor(0.0 * pattern(dissection, first, second, 2))
+        Multifrontal(dissection, 2).factor(0.0 * matrix)
 
 
 def split(monkeypatch):
@@ -109,9 +112,7 @@ def split(monkeypatch):
 @pytest.mark.parametrize("kind", ["unsymmetric", "definite", "indefinite"])
 def test_the_bits_are_those_of_one_thread(monkeypatch, kind):
     split(monkeypatch)
-    position, first, second = lattice(60, 25)
-    dissection = Dissection(position, first, second)
-    matrix = pattern(dissection, first, second, 3)
+    dissection, matrix = dissected(60, 25, 3)
     matrix = shifted(matrix if kind == "unsymmetric" else matrix + matrix.T, 80.0 if kind == "definite" else 3.0)
     right = np.random.default_rng(5).normal(size=matrix.shape[0])
     solutions, rough, negatives = [], [], []
@@ -139,10 +140,9 @@ def test_the_bits_are_those_of_one_thread(monkeypatch, kind):
 
 def test_a_split_singular_matrix_is_an_error(monkeypatch):
     split(monkeypatch)
-    position, first, second = lattice(30, 25)
-    dissection = Dissection(position, first, second)
+    dissection, matrix = dissected(30, 25)
     with threads.using(2), pytest.raises(RuntimeError, match="singular"):
-        Multifrontal(dissection, 2).factor(0.0 * pattern(dissection, first, second, 2))
+        Multifrontal(dissection, 2).factor(0.0 * matrix)
 
 
 def test_less_than_one_thread_is_an_error():
@@ -171,9 +171,8 @@ def test_a_packing_is_solved_alike_by_band_and_fronts(monkeypatch):
 def factorised(monkeypatch):
     """A pattern that is split into subtrees, a matrix of it with its rough LU, and a copy with changes in one place."""
     monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
-    position, first, second = lattice(23, 31)
-    dissection = Dissection(position, first, second)
-    matrix = shifted(pattern(dissection, first, second, 3), 12.0)
+    dissection, matrix = dissected(23, 31, 3)
+    matrix = shifted(matrix, 12.0)
     fronts = Multifrontal(dissection, 3)
     assert len(fronts.ranges) > 8 and len(fronts.above) > 4
     changed = matrix.copy()
@@ -221,9 +220,8 @@ def test_an_lu_is_left_where_little_or_too_much_has_changed(factorised):
 
 
 def test_a_small_packing_has_no_rough_factor_nor_has_a_singular_matrix(monkeypatch):
-    position, first, second = lattice(23, 31)
-    dissection = Dissection(position, first, second)
-    matrix = shifted(pattern(dissection, first, second, 3), 12.0)
+    dissection, matrix = dissected(23, 31, 3)
+    matrix = shifted(matrix, 12.0)
     assert Multifrontal(dissection, 3).rough_factor(matrix) is None
     monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
     assert Multifrontal(dissection, 3).rough_factor(0.0 * matrix) is None
@@ -279,9 +277,7 @@ def test_a_sequence_of_solutions_renews_what_serves_and_leaves_the_rest_to_exact
 
 def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
     loads = [{"disk": "top-centre", "force": [0.0, -12.0]}]
-    problem = Problem.from_scene(scene(9, 19, contact__friction=0.2, preparation__gravity="frictionless", loads=loads))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
+    problem, rest = at_rest(scene(9, 19, contact__friction=0.2, preparation__gravity="frictionless", loads=loads))
     roughly = counted(monkeypatch, Multifrontal, "rough_factor")
     alone = follow(problem, rest, [1.0])[0]
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
@@ -298,8 +294,7 @@ def test_a_renewed_factor_is_kept_for_its_statuses_unless_it_has_a_shift(monkeyp
     monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
     problem = Problem.from_scene(scene(9, 19, contact__friction=0.2, preparation__gravity="frictionless"))
     state = rest_state(problem)
-    system = StaticSystem(problem, state)
-    known = system.start(state)
+    system, known = started(problem, state)
     trial = system.trial(known, known.q)
     force = np.random.default_rng(5).normal(size=system.dof)
     system.step(trial, force)
@@ -315,9 +310,8 @@ def test_no_other_factorisation_is_in_memory_when_eigenvalues_are_looked_for(mon
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
     monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
     loads = [{"disk": "top-centre", "force": [0.0, -28.0]}]
-    problem = Problem.from_scene(scene(4, 9, contact__friction=1.0, preparation__gravity="frictionless", loads=loads))
-    rest = rest_state(problem)
-    state = follow(problem.with_loads(rest.position), rest, [1.0])[0]
+    problem, rest = at_rest(scene(4, 9, contact__friction=1.0, preparation__gravity="frictionless", loads=loads))
+    state = follow(problem, rest, [1.0])[0]
     system = StaticSystem(problem, state)
     trial = system.at(state)
     force = np.ones(system.dof)

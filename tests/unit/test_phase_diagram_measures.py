@@ -1,11 +1,11 @@
 """The shape of a response, the crossover of a path, and their statistics on hand-made ensembles."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
 import yaml
+from claims_data import dataset
+from places import ROOT
 
 from granular_response.plot import style
 from granular_response.store import files as store
@@ -37,7 +37,6 @@ from granular_response_paper.survey.crossover import (
     weights,
 )
 
-ROOT = Path(__file__).parents[2]
 X = np.arange(0.0, 30.5, 0.5)
 
 
@@ -310,42 +309,30 @@ def stored(tmp_path_factory):
     rng = np.random.default_rng(2)
     for block, (delta, mu, count) in SIZES.items():
         force = np.array([1.0, 2.0, 4.0, 8.0, 16.0])[: 4 if block != "many" else 5]
-        response = np.full((1, count, force.size, len(disks)), np.nan)
-        for r in range(count):
-            for k, f in enumerate(force):
-                shift = rng.normal(0.0, 1.0) if count > 1 else 0.0
-                away = max(0.0, 4.0 + 3.0 * np.log2(f) - (3.0 if mu > 0.2 else 0.0) + shift)
-                both = np.exp(-(((disks - away) / 6.0) ** 2)) + np.exp(-(((disks + away) / 6.0) ** 2))
-                response[0, r, k] = both / both.sum()
+        shift = rng.normal(0.0, 1.0, (count, force.size)) if count > 1 else 0.0
+        away = np.maximum(0.0, 4.0 + 3.0 * np.log2(force) - (3.0 if mu > 0.2 else 0.0) + shift)
+        sides = (disks + side * np.broadcast_to(away, (1, count, force.size))[..., None] for side in (-1.0, 1.0))
+        response = sum(np.exp(-((x / 6.0) ** 2)) for x in sides)
+        response /= response.sum(axis=-1, keepdims=True)
         outcome = np.zeros((1, count, force.size), np.int8)
         if block == "few":  # one collapses under the largest force
             outcome[0, 0, -1], response[0, 0, -1] = COLLAPSED, np.nan
-        cases = {
-            "polydispersity": (("case",), [delta]),
-            "friction": (("case",), [mu]),
-            "wall_friction": (("case",), [mu]),
-            "lattice_constant": (("case",), ["touching-largest"]),
-            "realizations": (("case",), [count]),
-        }
-        ensembles = xr.Dataset(
-            {
-                "force": (("case", "step"), force[None]),
-                "x": (("case", "realization", "slot"), np.tile(disks, (1, count, 1))),
-                "floor_response": (("case", "realization", "step", "slot"), response),
-                "outcome": (("case", "realization", "step"), outcome),
-            },
-            coords=cases,
+        cases = {"polydispersity": delta, "friction": mu, "wall_friction": mu, "lattice_constant": "touching-largest"}
+        cases = {name: ("case", [value]) for name, value in (cases | {"realizations": count}).items()}
+        ensembles = dataset(
+            cases,
+            force=(("case", "step"), force[None]),
+            x=(("case", "realization", "slot"), np.tile(disks, (1, count, 1))),
+            floor_response=(("case", "realization", "step", "slot"), response),
+            outcome=(("case", "realization", "step"), outcome),
         )
         several = rng.normal(0.0, 0.01, (1, count))
         contacts = {"coordination_number_with_walls": 4.0, "horizontal_contacts": 0.9, "oblique_contacts": 1.8}
         if delta:  # three of the four missing contacts are horizontal
             contacts = {"coordination_number_with_walls": 4.2, "horizontal_contacts": 0.6, "oblique_contacts": 1.7}
-        packings = xr.Dataset(
-            {name: (("case", "realization"), value + several) for name, value in contacts.items()}, coords=cases
+        packings = dataset(
+            cases, **{name: (("case", "realization"), value + several) for name, value in contacts.items()}
         )
-        for dataset in (ensembles, packings):
-            for variable in dataset.variables.values():
-                variable.attrs.update(long_name="made by hand", units="1")
         store.write(folder / f"{block}.nc", {"ensembles": ensembles, "packings": packings})
     return folder
 
@@ -380,8 +367,8 @@ def parameters(stored, **changes) -> Parameters:
 def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
     found = simulate(parameters(stored))
     again = simulate(parameters(stored))
-    for name, dataset in found.items():
-        xr.testing.assert_identical(dataset, again[name])
+    for name, one in found.items():
+        xr.testing.assert_identical(one, again[name])
     data = found["crossovers"]
     assert data["kind"].values[1].tolist() == [FOUND] * 3
     force, interval = data["force"].values[1], data["interval"].values[1]

@@ -13,8 +13,6 @@ import granular_response as gr
 from granular_response.plot import field, network, pictures, style
 from granular_response.state import Box
 
-matplotlib.use("Agg")
-
 LOADS = [{"disk": {"row": "top"}, "force": [0.5, -4.0], "torque": 0.2}, {"disk": 40, "force": [0.0, -1.0]}]
 SCENE = {"packing": {"kind": "slab", "layers": 5, "disks_per_row": 15}, "loads": LOADS}
 

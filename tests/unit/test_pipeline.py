@@ -1,6 +1,5 @@
 """The declared dependencies of every stage against what its modules really import."""
 
-import ast
 import functools
 import json
 import re
@@ -9,15 +8,14 @@ from pathlib import Path
 
 import pytest
 import yaml
+from imported import imported
+from places import ROOT, SOURCE
 
 from granular_response.scene import SceneError
 from granular_response.store import files as store
 from granular_response_paper import groups, pipeline
 from granular_response_paper.groups import NAMES
 from granular_response_paper.pipeline import drawing, measuring, simulation
-
-ROOT = Path(__file__).parents[2]
-SOURCE = ROOT / "src"
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C, where PyYAML has it: every process reads these files
 
@@ -93,24 +91,8 @@ def file_of(module: str) -> Path | None:
 
 @functools.cache
 def imports(module: str) -> frozenset[str]:
-    """Modules of ours that running ``module`` may import, wherever in the file the import stands."""
-    path = file_of(module)
-    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
-    found = set()
-    tree = ast.parse(path.read_text())
-    for node in ast.walk(tree):  # what stands there for the type checker alone is never run
-        if isinstance(node, ast.If) and ast.unparse(node.test) in ("TYPE_CHECKING", "typing.TYPE_CHECKING"):
-            node.body = []
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            found.update(alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                parents = package.split(".")
-                base = ".".join(parents[: len(parents) - node.level + 1] + ([base] if base else []))
-            found.add(base)
-            found.update(f"{base}.{alias.name}" for alias in node.names)
+    """Modules of ours that running ``module`` may import."""
+    found = imported(file_of(module), for_types=False)
     return frozenset(name for name in found if name.startswith("granular_response") and file_of(name))
 
 

@@ -192,27 +192,6 @@ def test_a_stored_result_is_the_result(result, tmp_path):
     np.testing.assert_array_equal(further.loaded[-1].position, result.continued([1.5]).loaded[-1].position)
 
 
-def test_a_load_is_selected_by_its_factor_with_xarray_alone(result, tmp_path):
-    result.continued([0.5]).save(tmp_path / "result.nc")
-    with xr.open_dataset(tmp_path / "result.nc") as plain:
-        response = plain["floor_response"]
-        np.testing.assert_array_equal(response.sel(load=1.0), result.floor_response.isel(load=1))
-        up, down = response.sel(load=0.5).values  # on the way up and down, along another branch
-        assert np.abs(up - down).max() > 1e-3 and down.sum() == pytest.approx(1.0, abs=1e-8)
-        with pytest.raises(KeyError):
-            response.sel(load=2.0)
-
-
-def test_what_is_no_result_is_said(tmp_path):
-    from granular_response.store import files
-    from granular_response.store.result import ResultError
-
-    labels = {"long_name": "nothing", "units": "1"}
-    files.write(tmp_path / "study.nc", {"a": xr.Dataset({"b": ("c", [1.0], labels)})})
-    with pytest.raises(ResultError, match=r"study\.nc: holds no states, must be a result"):
-        gr.open_result(tmp_path / "study.nc")
-
-
 def test_scenes_come_from_files_and_mappings(tmp_path, result):
     path = tmp_path / "scene.yaml"
     path.write_text(gr.Scene.from_dict(SMALL).to_yaml())

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from small_scenes import free_disks, scene, shaken
+from small_scenes import free_disks, scene, shaken, started
 
 from granular_response.solvers.equilibrium import finish
 from granular_response.solvers.path import OPTIONS, PathError, PathRecord, follow
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.rates import RateProblem
-from granular_response.solvers.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 
@@ -83,8 +82,7 @@ def test_rates_of_random_packings_do_not_contradict_themselves():
         )  # fmt: skip
         state = shaken(problem, seed, size=2e-4, spring=1e-5)
         problem = problem.with_loads(state.position)
-        system = StaticSystem(problem, state)
-        known = system.start(state)
+        system, known = started(problem, state)
         trial = system.trial(known, known.q)
         friction = np.repeat([0.3, 0.2], [len(system.first), len(system.wall_disk)])
         limit = friction * trial.normal

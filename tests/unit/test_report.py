@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from chromium import BROWSER, Chromium
 from PIL import Image, ImageSequence
+from places import ROOT
 from xarray import Dataset
 
 from granular_response.store import files as store
@@ -30,7 +31,6 @@ from granular_response_paper.groups.sensitivity import simulate as sensitivity
 from granular_response_paper.report import against, benchmarks, explorer, pictures, readings
 from granular_response_paper.report.typeset import typeset
 
-ROOT = Path(__file__).parents[2]
 FORCES = (0.0, 1.0, 4.0, 90.0)
 #: The documents with generated lines, by their kind.
 DOCUMENTS = {

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from small_scenes import free_disks, scene, shaken
+from small_scenes import at_rest, free_disks, scene, shaken, started
 from test_next_changes import added_to_tangent, fall
 from test_statics import dense_tangent, numerical_tangent
 
@@ -131,8 +131,7 @@ def rolled(spring=1e-5, roll=2e-4):
 @pytest.mark.parametrize("roll", [1e-6, 5e-3], ids=["held", "rolls"])
 def test_forces_agree_with_dynamics_at_rest_and_the_tangent_is_their_derivative(roll):
     problem, state = rolled(roll=roll)
-    system = StaticSystem(problem, state)
-    known = system.start(state)
+    system, known = started(problem, state)
     q = known.q + np.random.default_rng(1).normal(0, 1e-7, system.dof)
     trial = system.trial(known, known.q)
     force = Dynamics(problem, state).memory[0] / problem.inverse_mass
@@ -199,9 +198,7 @@ def test_a_changed_status_is_the_difference_of_tangents():
 def test_a_path_does_not_depend_on_where_it_is_cut():
     """Contacts that have just closed, to rounding, are closed along the rolling too: else they are 5e-6 off."""
     loads = [{"disk": "top-centre", "force": [0.0, -4.0]}]
-    problem = Problem.from_scene(scene(5, 9, loads=loads, **SLAB))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
+    problem, rest = at_rest(scene(5, 9, loads=loads, **SLAB))
     whole, cut = (follow(problem, rest, np.linspace(0.0, 1.0, k + 1)[1:])[-1] for k in (1, 40))
     assert whole.pairs.rolling_force == pytest.approx(cut.pairs.rolling_force, abs=1e-9)
 

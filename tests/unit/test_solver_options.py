@@ -5,7 +5,7 @@ import re
 from dataclasses import fields, replace
 
 import pytest
-from small_scenes import free_disks, scene
+from small_scenes import at_rest, free_disks, scene
 
 from granular_response.linalg import multifrontal, nearby
 from granular_response.solvers import dynamics, energy, equilibrium, increment, path, rates, system
@@ -14,7 +14,6 @@ from granular_response.solvers.energy import minimise
 from granular_response.solvers.equilibrium import EquilibriumError, external_force, finish, newton
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.solution import rest_state
 from granular_response.solvers.stability import OPTIONS, negative_modes
 from granular_response.solvers.system import StaticSystem
 from granular_response.state import State
@@ -100,11 +99,10 @@ def test_a_relaxation_is_looked_at_as_often_as_its_options_say(monkeypatch):
 
 def test_changed_stiffnesses_make_no_factorisation_up_to_a_number(monkeypatch):
     loads = [{"disk": "top-centre", "force": [0.0, -12.0]}]
-    problem = Problem.from_scene(scene(6, 13, contact__friction=0.2, loads=loads))
-    rest = rest_state(problem)
+    problem, rest = at_rest(scene(6, 13, contact__friction=0.2, loads=loads))
 
     def factorisations() -> int:
-        return follow(problem.with_loads(rest.position), rest, [1.0])[0].reached.factorisations
+        return follow(problem, rest, [1.0])[0].reached.factorisations
 
     few = factorisations()
     monkeypatch.setattr(system, "OPTIONS", replace(system.OPTIONS, most_changed=0))

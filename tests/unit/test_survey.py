@@ -1,11 +1,10 @@
 """The survey's parameters, that its runs go on where they were, and packings that it makes for figure groups."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import reduced
 import yaml
+from places import ROOT
 
 from granular_response.scene import SceneError
 from granular_response.store import files as store
@@ -16,8 +15,6 @@ from granular_response_paper.pipeline import group_member
 from granular_response_paper.records import column, record
 from granular_response_paper.survey import packings
 from granular_response_paper.survey import simulate as survey
-
-ROOT = Path(__file__).parents[2]
 
 SMALL = {
     "method": "auto",

@@ -50,7 +50,7 @@ def test_literal_friction_rule_never_settles_and_says_so():
     literal = scene(protocol__friction_law="literal", protocol__maximum_steps=40_000)
     problem = Problem.from_scene(literal)
     state = relax(Dynamics(problem, problem.bare_state()), Stop(1e-13, maximum_steps=40_000))
-    assert state.reached.settled is False
+    assert state.reached.settled is False and state.reached.relaxation_steps == 40_000
     assert state.reached.kinetic_energy > 1e-9
     with pytest.raises(NotSettled, match=r"did not come to rest under gravity within protocol\.maximum_steps = 40000"):
         solve_scene(literal)

@@ -1,15 +1,13 @@
 """Floor forces of the paper's slab against LAMMPS (tests/data/README.md)."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
+from places import DATA
 from solved import FLOOR_DISKS, response, slab
 
 from granular_response.observe.floor import floor_force
-
-DATA = Path(__file__).parents[1] / "data"
 
 #: Largest difference of the normalised response: dynamics as in LAMMPS, and the quasi-static limit of the ramp.
 LIMITS = {

@@ -4,7 +4,7 @@ from itertools import pairwise, product
 
 import numpy as np
 import pytest
-from small_scenes import free_disks, scene
+from small_scenes import at_rest, free_disks, scene
 from solved import slab
 
 import granular_response as gr
@@ -15,7 +15,7 @@ from granular_response.solvers.equilibrium import finish
 from granular_response.solvers.path import PathError, PathRecord, follow
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.rates import RateProblem
-from granular_response.solvers.solution import continue_solution, rest_state, solve_scene
+from granular_response.solvers.solution import continue_solution, solve_scene
 from granular_response.state import OPEN, SLIDING, STICKING, State
 from granular_response.store import files as store
 from granular_response.store.result import solution_from, to_dataset
@@ -27,9 +27,7 @@ LOAD = [{"disk": "top-centre", "force": [0.0, -1.0]}]
 @pytest.fixture(scope="module")
 def settled():
     """A small frictional slab at rest, ready to be loaded with unit force."""
-    problem = Problem.from_scene(scene(6, 13, loads=LOAD))
-    rest = rest_state(problem)
-    return problem.with_loads(rest.position), rest
+    return at_rest(scene(6, 13, loads=LOAD))
 
 
 def test_dynamics_approaches_the_path_as_its_ramp_grows(settled):
@@ -78,9 +76,7 @@ def test_passes_the_load_where_contacts_begin_to_slide_together():
 @pytest.mark.parametrize("friction", [0.05, 0.2, 1.0])
 def test_responses_and_open_contacts_are_those_of_small_increments(friction):
     load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
-    problem = Problem.from_scene(scene(8, 21, contact__friction=friction, loads=load))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
+    problem, rest = at_rest(scene(8, 21, contact__friction=friction, loads=load))
     forces = [4.0] if friction < 0.1 else [4.0, 15.0, 50.0]  # increments are dear with little friction
     states, fine = follow(problem, rest, forces), follow(problem, rest, forces, together=0.04)
     bottom = np.arange(21)
@@ -103,9 +99,7 @@ def test_a_contact_that_slides_for_a_moment_is_seen():
     slab = {"kind": "slab", "layers": 5, "disks_per_row": 9, "polydispersity": 0.25, "seed": 986}
     slab["lattice_constant"] = 2.0
     wall = {"friction": 2.89, "normal_stiffness": 928.7}
-    problem = Problem.from_scene(gr.Scene.from_dict({"packing": slab, "contact": rubs, "wall": wall, "loads": loads}))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
+    problem, rest = at_rest(gr.Scene.from_dict({"packing": slab, "contact": rubs, "wall": wall, "loads": loads}))
     (fine,), (state,) = follow(problem, rest, [1.0], together=5e-4 * problem.load_size), follow(problem, rest, [1.0])
     assert np.abs(_walls(state) - _walls(fine)).max() <= 3e-6 * problem.load_size
 
@@ -118,9 +112,7 @@ def test_a_small_load_is_not_crossed_in_one_increment():
     rubs = {"normal_stiffness": 1941.8, "stiffness_ratio": 0.8, "friction": 0.0}
     described = {"packing": row, "contact": rubs, "loads": loads, "preparation": {"gravity": "frictionless"}}
     described["wall"] = {"friction": 0.709, "normal_stiffness": 7966.0}
-    problem = Problem.from_scene(gr.Scene.from_dict(described))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
+    problem, rest = at_rest(gr.Scene.from_dict(described))
     fine = follow(problem, rest, [0.5, 1.5], together=1e-4 * problem.load_size)
     for state, other in zip(follow(problem, rest, [0.5, 1.5]), fine, strict=True):
         assert np.abs(_walls(state) - _walls(other)).max() <= 2e-3 * problem.load_size * state.load_factor
@@ -148,9 +140,7 @@ def test_a_state_that_leaves_in_one_sense_alone_is_left_in_its_mirror_image_too(
 
 def loaded(changes) -> tuple[Problem, State]:
     """A small scene at rest, its loads on their disks."""
-    problem = Problem.from_scene(scene(**{"contact__friction": 0.2, "wall__friction": 0.2, **changes}))
-    rest = rest_state(problem)
-    return problem.with_loads(rest.position), rest
+    return at_rest(scene(**{"contact__friction": 0.2, "wall__friction": 0.2, **changes}))
 
 
 def pushed(x, z, torque=0.0):
@@ -294,9 +284,7 @@ def test_a_lost_equilibrium_is_an_event_with_its_displacement():
 def prepared(packing, contact, wall, load):
     """A problem with a load on the top disk, and its rest state."""
     described = {"packing": {"kind": "slab", **packing}, "contact": contact, "wall": wall, "loads": pushed(*load)}
-    problem = Problem.from_scene(gr.Scene.from_dict(described | {"protocol": {"time_step": "auto"}}))
-    rest = rest_state(problem)
-    return problem.with_loads(rest.position), rest
+    return at_rest(gr.Scene.from_dict(described | {"protocol": {"time_step": "auto"}}))
 
 
 @pytest.mark.parametrize("part", [1e-6, 1e-9])
@@ -304,9 +292,7 @@ def test_motion_leaves_a_lost_equilibrium_under_hardly_more_than_it_bears(part):
     """So little is out of balance there that the packing counts as at rest before it moves."""
     changes = {"packing__polydispersity": 0.1, "packing__lattice_constant": "touching-largest"}
     changes |= {"packing__realization": 1, "contact__friction": 0.2, "wall__friction": 0.0, "loads": LOAD}
-    problem = Problem.from_scene(scene(5, 13, **changes))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
+    problem, rest = at_rest(scene(5, 13, **changes))
     (state,) = follow(problem, rest, [1.25])
     (lost,) = [event for event in state.reached.events if event.lost]
     (just_beyond,) = follow(problem, rest, [lost.load_factor * (1.0 + part)])
@@ -383,16 +369,15 @@ def test_the_load_never_goes_back():
     """An event that Newton's method finds at a smaller load is on another branch: no path goes back to it."""
     packing = {"kind": "slab", "layers": 8, "disks_per_row": 33, "sides": "periodic"}
     loads = [{"disk": "top-centre", "force": [0.0, -2.0]}]
-    problem = Problem.from_scene(
+    problem, rest = at_rest(
         gr.Scene.from_dict({"packing": packing, "contact": {"friction": 0.2, "law": "hertz"}, "loads": loads})
     )
-    rest = rest_state(problem)
     factors: list[float] = []
 
     def progress(factor):
         factors.append(factor)
         assert len(factors) < 500
 
-    (state,) = follow(problem.with_loads(rest.position), rest, [0.3], progress=progress)
+    (state,) = follow(problem, rest, [0.3], progress=progress)
     assert state.certificate.stable
     assert np.diff(factors).min() > -1e-9

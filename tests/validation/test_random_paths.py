@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from small_scenes import scene
+from small_scenes import at_rest, scene
 
 from granular_response.scene import Scene
 from granular_response.solvers.path import PathRecord, follow
-from granular_response.solvers.problem import Problem
-from granular_response.solvers.solution import rest_state
 
 
 def drawn(seed: int) -> Scene:
@@ -53,22 +51,20 @@ def drawn(seed: int) -> Scene:
     ],
 )
 def test_paths_end(seed):
-    problem = Problem.from_scene(drawn(seed))
-    rest = rest_state(problem)
+    problem, rest = at_rest(drawn(seed))
     record = PathRecord()
 
     def check(_: float) -> None:
         assert record.work.increments < 150
         assert sum(event.lost for event in record.events) < 10
 
-    (state,) = follow(problem.with_loads(rest.position), rest, [1.0], record=record, progress=check)
+    (state,) = follow(problem, rest, [1.0], record=record, progress=check)
     assert state.certificate.stable
 
 
 def test_a_path_of_no_length_ends():
     """Neighbours in a row touch at no force: whether they are closed is a matter of rounding, and so is stability."""
     loads = [{"disk": "top-centre", "force": [0.0, -0.05]}]
-    problem = Problem.from_scene(scene(3, 10, packing__sides="periodic", contact__friction=0.5, loads=loads))
-    rest = rest_state(problem)
-    same, loaded = follow(problem.with_loads(rest.position), rest, [0.0, 1.0])
+    problem, rest = at_rest(scene(3, 10, packing__sides="periodic", contact__friction=0.5, loads=loads))
+    same, loaded = follow(problem, rest, [0.0, 1.0])
     assert same.certificate == rest.certificate and loaded.certificate.stable

@@ -1,15 +1,13 @@
 """Small packings with rolling resistance against LAMMPS (tests/data/README.md), and the path against slow ramps."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
+from places import DATA
 
 from granular_response.scene import Scene
 from granular_response.solvers.solution import solve_scene
-
-DATA = Path(__file__).parents[1] / "data"
 
 #: Largest difference of the normalised floor response, by motion as in LAMMPS and along a path, and of a floor force at
 #: rest. A random packing remembers its fall: of forces at rest up to 2 %, of the response little.

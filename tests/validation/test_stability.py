@@ -1,11 +1,11 @@
 """Stress tests: time steps, energy, rolling, and random scenes whose results are checked from positions alone."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import reduced
+from places import ROOT
 
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.settle import NotSettled
@@ -16,7 +16,7 @@ from granular_response_paper.trials import closed_forms, random_scenes, time_ste
 from granular_response_paper.trials.rounding import disturb
 from granular_response_paper.trials.time_steps import SETTLES, tried
 
-PARAMETERS = simulation.parameters("stability", Path(__file__).parents[2] / "params.yaml")[0]
+PARAMETERS = simulation.parameters("stability", ROOT / "params.yaml")[0]
 SEED = PARAMETERS["seed"]
 INTEGRATORS = ["beeman", "verlet", "leapfrog", "gear"]
 SMALL = {"packing": {"kind": "slab", "layers": 4, "disks_per_row": 7}, "loads": []}
@@ -262,8 +262,6 @@ def test_a_rest_state_disturbed_in_its_last_digits_gives_the_same_response():
 
 
 # The study
-
-REDUCED = reduced.parameters("stability")
 
 
 def test_the_study_and_its_figures(tmp_path_factory):

@@ -2,11 +2,11 @@
 
 from dataclasses import astuple, replace
 from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from places import ROOT
 
 from granular_response.observe.floor import smoothed_response
 from granular_response.store import files as store
@@ -16,7 +16,6 @@ from granular_response_paper.records import columns
 from granular_response_paper.survey import packings
 from granular_response_paper.survey import simulate as survey
 
-ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "survey"
 PARAMETERS = survey.read_parameters(FOLDER / "params.yaml")
 BLOCKS = list(PARAMETERS.blocks)
