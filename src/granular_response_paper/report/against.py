@@ -88,14 +88,14 @@ _OF: Mapping[str, Callable[[NDArray[Any]], Any]] = {
     "realizations": _realizations,
     "numbers": _numbers,
 }
-_STATED = resources.files(__package__).joinpath("stated.csv").read_text(encoding="utf-8")
+_HEADING, *_STATED = csv.reader(
+    resources.files(__package__).joinpath("stated.csv").read_text(encoding="utf-8").splitlines(), delimiter="|"
+)
 
 #: In the order of the paper. Values that the paper gives only on its plots are not in its text.
 ROWS: tuple[Row, ...] = tuple(
     Row(int(figure), panels, parameter, tuple(map(float, paper.split())), source, remark, _OF[of])
-    for figure, panels, parameter, paper, source, remark, of in list(csv.reader(_STATED.splitlines(), delimiter="|"))[
-        1:
-    ]
+    for figure, panels, parameter, paper, source, remark, of in _STATED
 )
 
 

@@ -94,6 +94,7 @@ def time_step(data: Data, words: Bounds) -> Finding:
 def integrators(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "integrators")
     CLAIMS.needs(study["integrator"].values[0] == "beeman", "integrators compares with another method than beeman")
+    CLAIMS.needs("gear" in study["integrator"].values, "integrators holds no Gear's method")
     difference = float(study["difference"].sel(integrator="gear"))
     return Finding(f"the responses differ by {difference:.1e} of the largest value", [_unseen(difference, words)])
 
