@@ -56,9 +56,16 @@ def write(
 ) -> list[Path]:
     """Write ``folder/GROUP.ipynb`` for each group, without outputs; returns the paths.
 
-    ``own`` has the parameters of the reproduction, ``reduced`` those that the notebook begins with. Raises what
-    ``simulation.parameters`` raises of them, and OSError if a notebook cannot be written, or would replace a parameter
-    file.
+    ``own`` has the parameters of the reproduction, ``reduced`` those that the notebook begins with.
+
+    Raises
+    ------
+    granular_response_paper.pipeline.GroupError
+        If there is no such group, or a parameter file or a section of it is missing.
+    granular_response.scene.SceneError
+        If a parameter is not what it must be.
+    OSError
+        If a notebook cannot be written, or would replace a parameter file.
     """
     made = {
         folder / f"{group}.ipynb": json.dumps(_notebook(group, own, reduced), indent=1, ensure_ascii=False) + "\n"

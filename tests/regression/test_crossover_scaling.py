@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 import reduced
 
+from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.crossover_scaling import simulate
+from granular_response_paper.groups.crossover_scaling.claims import CLAIMS
 from granular_response_paper.groups.crossover_scaling.parameters import Parameters
 from granular_response_paper.groups.frictionless_crossover import simulate as frictionless
 from granular_response_paper.report import beyond
@@ -129,3 +132,15 @@ def test_the_document_gets_a_line_for_each_series_of_layers(datasets):
     assert first.startswith("| 0, constant | 5 to 9 | {:.2f} ({:.2f} to {:.2f}) |".format(*exponent))
     surveyed = datasets["slabs"].assign_coords(surveyed=("slab", (datasets["slabs"]["layers"].values == 9).astype(int)))
     assert "| 5 to 9, from 9 on the survey's |" in beyond.crossovers({**datasets, "slabs": surveyed}).splitlines()[2]
+
+
+def test_claims_are_judged(datasets):
+    data = Data({"crossover_scaling": datasets})
+    allowed = {"reproduced", "depends on the interpretation", "undecided"}
+    assert {judge(claim, data).verdict for claim in CLAIMS} <= allowed
+    grown = datasets["powers"].copy(deep=True)
+    grown["exponent"][:] = 2.0
+    assert [judge(claim, Data({"crossover_scaling": {"powers": grown}})).verdict for claim in CLAIMS] == [
+        "reproduced",
+        "reproduced",
+    ]

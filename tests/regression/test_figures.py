@@ -23,6 +23,12 @@ GROUPS = (
     "tangent_moduli",
 )
 
+#: Of groups with several, in the order in which they are drawn.
+ORDER = {
+    "experiments": ["experiments", "experiments_images"],
+    "rolling_resistance": ["rolling_resistance", "rolling_resistance_torque"],
+}
+
 
 @pytest.fixture(params=GROUPS)
 def group(request):
@@ -38,6 +44,7 @@ def test_figures_look_as_stored_and_have_captions(group, looks_as_stored, tmp_pa
     datasets = reduced.datasets(group, tmp_path_factory)
     drawn = group_member(group, "draw", "draw")(datasets)
     assert {path.stem for path in (Path(__file__).parent / f"test_{group}").glob("*.png")} == set(drawn)
+    assert list(drawn) == ORDER.get(group, list(drawn))
     looks_as_stored(drawn)
     parameters = group_member(group, "parameters", "Parameters")(**reduced.parameters(group))
     assert set(group_member(group, "draw", "captions")(datasets, parameters)) == set(drawn)

@@ -6,7 +6,10 @@ import reduced
 from small_scenes import at_rest
 
 from granular_response.solvers.solution import loaded_states
+from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.hysteresis import simulate
+from granular_response_paper.groups.hysteresis.claims import CLAIMS
 from granular_response_paper.groups.hysteresis.parameters import Parameters
 from granular_response_paper.report import beyond
 
@@ -90,3 +93,10 @@ def test_the_document_gets_a_line_for_each_packing_and_how_the_books_close(datas
 
 def test_loads_of_all_ways_are_the_same():
     assert simulate.grid([1.0, 4.0], 2) == [0.0, 0.5, 1.0, 2.5, 4.0]
+
+
+def test_the_claims_are_measured(datasets):
+    found = [judge(claim, Data({"hysteresis": datasets})) for claim in CLAIMS]
+    assert all(entry.finding is not None for entry in found)
+    without = found[0].finding.readings[0].conditions[0]
+    assert without.outcome == "fails" and without.found.low > 1.0

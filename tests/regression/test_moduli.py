@@ -7,7 +7,10 @@ from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import response_of_layers
+from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.moduli import simulate
+from granular_response_paper.groups.moduli.claims import CLAIMS
 
 
 def test_lattices_have_the_moduli_of_the_closed_form(datasets):
@@ -76,3 +79,10 @@ def test_a_root_is_found_between_points():
     x = 0.25 + 0.01 * y + 1e-3 * y**2
     assert simulate.root(x, y) == pytest.approx(0.25)
     assert np.isnan(simulate.root(x, x))
+
+
+def test_claims_are_judged(datasets):
+    for claim in CLAIMS:
+        entry = judge(claim, Data({"moduli": datasets}))
+        assert len(entry.finding.readings) == 2  # of the case with friction and the one without
+        assert "without friction" in entry.finding.summary

@@ -3,6 +3,10 @@
 import numpy as np
 import pytest
 
+from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.verdict import judge
+from granular_response_paper.groups.peak_width.claims import CLAIMS
+
 SMALL, LARGE, DISORDERED = 0, 1, 2
 
 
@@ -34,3 +38,15 @@ def test_intervals_hold_the_power(datasets):
     value = floors["power"].isel(fit=0).values
     assert (low <= value).all() and (value <= high).all()
     assert (low < high).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "verdict"), [("B6", 1.0, "reproduced"), ("B6", 0.5, "contradicted"), ("B7", 0.76, "undecided")]
+)
+def test_the_claims_follow_the_powers(datasets, name, value, verdict):
+    changed = {key: data.copy() for key, data in datasets.items()}
+    for data in changed.values():
+        data["power"] = data["power"].fillna(0.0) * 0.0 + value
+        data["interval"] = data["interval"].fillna(0.0) * 0.0 + value + np.array([-0.02, 0.02])
+    claim = next(one for one in CLAIMS if one.id == name)
+    assert judge(claim, Data({"peak_width": changed})).verdict == verdict

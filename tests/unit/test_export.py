@@ -240,6 +240,34 @@ def test_a_series_for_paraview(result, data, tmp_path):
     np.testing.assert_allclose(mesh.point_data["added_stress_zz"][disk], stress.values[0, 0, 1, 1], rtol=1e-9)
 
 
+@pytest.fixture(scope="module")
+def pyvista():
+    """VTK's own reader, if it is there: `pip install pyvista`."""
+    return pytest.importorskip("pyvista", reason="pyvista is not installed")
+
+
+@pytest.mark.parametrize("index", [0, -1])
+def test_vtu_by_vtk(result, data, tmp_path, pyvista, index):
+    mesh = pyvista.read(export(result, tmp_path / "result.vtu", state=index))
+    n, state = data.sizes["disk"], data.isel(state=index)
+    np.testing.assert_array_equal(mesh.points[:n, :2], state["position"])
+    np.testing.assert_array_equal(mesh.point_data["radius"][:n], data["radius"])
+    assert set(np.unique(mesh.celltypes)) == {pyvista.CellType.VERTEX, pyvista.CellType.LINE}
+    assert mesh.n_cells == int((mesh.celltypes == pyvista.CellType.LINE).sum()) + n
+
+
+def test_a_series_by_vtk(result, data, tmp_path, pyvista):
+    reader = pyvista.get_reader(export(result, tmp_path / "result.pvd"))
+    assert reader.time_values == [0.0, 1.0]
+    for index, time in enumerate(reader.time_values):
+        reader.set_active_time_value(time)
+        (mesh,) = reader.read()
+        n = data.sizes["disk"]
+        np.testing.assert_array_equal(mesh.points[:n, :2], data["position"][index])
+        stress = mesh.point_data["added_stress_zz"][:n]
+        assert np.all(stress == 0.0) if index == 0 else stress.max() > 0.05
+
+
 #: What a table of the user guide says of a format.
 QUANTITIES = ("place, radius", "mass", "width, sides", "angle", "contact forces", "springs of friction")
 

@@ -342,7 +342,10 @@ class Result:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Store as netCDF-4, atomically; :func:`open_result` and ``xarray.open_dataset`` read it.
 
-        Raises StoreError if the file cannot be written.
+        Raises
+        ------
+        granular_response.StoreError
+            If the file cannot be written.
 
         Examples
         --------
@@ -362,8 +365,10 @@ class Result:
         state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last
             in a file of one.
 
-        Raises ExportError for another ending, a state that does not exist, a missing library, or a place that cannot be
-        written.
+        Raises
+        ------
+        granular_response.ExportError
+            For another ending, a state that does not exist, a missing library, or a place that cannot be written.
 
         Examples
         --------
@@ -495,8 +500,14 @@ def _places(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:
 def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] | None = None) -> Result:
     """A stored result.
 
-    ``folder`` is that of the scene file, where a packing from a table is to be continued. Raises StoreError if the file
-    cannot be read, ResultError if it holds something else than a whole result.
+    ``folder`` is that of the scene file, where a packing from a table is to be continued.
+
+    Raises
+    ------
+    granular_response.StoreError
+        If the file cannot be read.
+    granular_response.ResultError
+        If it holds something else than a whole result.
 
     Examples
     --------
