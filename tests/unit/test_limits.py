@@ -15,7 +15,7 @@ from granular_response.solvers.equilibrium import EquilibriumError, finish
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import CROSSING, PROTOCOL, NotSettled, settle
 from granular_response.solvers.solution import rest_state, solve_scene
-from granular_response.solvers.stability import negative_modes, unstable_direction
+from granular_response.solvers.stability import Spectrum
 from granular_response.solvers.system import StaticSystem
 from granular_response.solvers.timestep import resolve_time_step
 
@@ -46,8 +46,8 @@ def test_a_disk_that_slides_alone_has_no_unstable_direction():
     tangent = system.tangent(trial, 1e-6).toarray()
     assert np.linalg.eigvalsh(tangent + tangent.T).min() < -0.1
     assert np.linalg.eigvals(tangent).real.min() > 0.0
-    assert negative_modes(system, trial) == 0
-    assert np.abs(unstable_direction(system, trial)).max() == 1.0
+    assert Spectrum(system, trial).negative_modes == 0
+    assert np.abs(Spectrum(system, trial).direction).max() == 1.0
 
 
 def test_fast_disks_in_long_steps_are_followed_and_not_taken_for_a_blow_up():

@@ -17,7 +17,7 @@ from granular_response.machine import threads
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state
-from granular_response.solvers.stability import negative_modes
+from granular_response.solvers.stability import Spectrum
 from granular_response.solvers.system import StaticSystem
 
 
@@ -332,6 +332,6 @@ def test_no_other_factorisation_is_in_memory_when_eigenvalues_are_looked_for(mon
     system.definite_step(trial, force, 4.0 * problem.stiffness)
     assert len(alive) == 1  # that of the step
     before = len(most)
-    assert negative_modes(system, trial) == 0
+    assert Spectrum(system, trial).negative_modes == 0
     assert len(most) > before + 1  # it was a suspicion
     assert max(most[before:]) == 1

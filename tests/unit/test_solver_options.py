@@ -14,7 +14,7 @@ from granular_response.solvers.energy import minimise
 from granular_response.solvers.equilibrium import EquilibriumError, external_force, finish, newton
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.stability import OPTIONS, negative_modes
+from granular_response.solvers.stability import OPTIONS, Spectrum
 from granular_response.solvers.system import StaticSystem
 from granular_response.state import State
 
@@ -113,6 +113,6 @@ def test_regularisation_holds_what_nothing_holds():
     problem, state = free_disks([[500.0, 1.0], [505.0, 3.0]], contact__friction=0.0)
     equations = StaticSystem(problem, state)
     trial = equations.trial(known := equations.start(state), known.q)
-    assert negative_modes(equations, trial) == 0
+    assert Spectrum(equations, trial).negative_modes == 0
     diagonal = equations.tangent(trial, system.OPTIONS.regularisation * problem.stiffness).diagonal()
     assert (diagonal >= system.OPTIONS.regularisation * problem.stiffness).all()

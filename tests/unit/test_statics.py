@@ -15,7 +15,7 @@ from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.pattern import Pattern
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import solve_scene
-from granular_response.solvers.stability import negative_modes, unstable_direction
+from granular_response.solvers.stability import Spectrum
 from granular_response.solvers.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
@@ -201,8 +201,8 @@ def test_an_instability_is_found_beside_disks_that_roll_freely(rollers):
     values, vectors = np.linalg.eig(system.tangent(trial, 1e-6).toarray() / mass[:, None])
     every = values.real
     assert (every < 0).sum() == 1 and every.min() < -1e-3 * problem.stiffness
-    assert negative_modes(system, trial) == 1
-    lowest, found = system.deinterleave(vectors[:, np.argmin(every)].real), unstable_direction(system, trial)
+    assert Spectrum(system, trial).negative_modes == 1
+    lowest, found = system.deinterleave(vectors[:, np.argmin(every)].real), Spectrum(system, trial).direction
     lowest, found = (v[: 2 * problem.n] / v[1] for v in (lowest, found))  # along x of the disk on top
     np.testing.assert_allclose(found, lowest, atol=1e-6)
 
@@ -246,4 +246,4 @@ def test_disks_that_slide_alone_call_for_no_eigenvalues(monkeypatch):
         raise AssertionError("eigenvalues were asked for")
 
     monkeypatch.setattr(stability, "lowest_real", none_asked)
-    assert negative_modes(system, trial) == 0
+    assert Spectrum(system, trial).negative_modes == 0

@@ -36,10 +36,13 @@ class LowestOptions:
 
 OPTIONS = LowestOptions()
 
+#: A real eigenvalue and its vector (n,).
+Eigenpair = tuple[float, FloatArray]
+
 
 def lowest_real(
     inverse: Callable[[float], Callable[[FloatArray], FloatArray]], n: int, left: float
-) -> tuple[float, FloatArray] | None:
+) -> Eigenpair | None:
     """The lowest real eigenvalue, if it is negative, else one at or above zero; and its vector (n,). None: not found.
 
     Parameters
@@ -55,16 +58,25 @@ def lowest_real(
         distance = abs(value - point)
         error = OPTIONS.certain * residual * distance
         if value.imag == 0.0 and value.real + error < 0.0:
-            beside = value.real * (1.0 + OPTIONS.beside) - error
-            value, vector, _ = nearest(inverse(beside), vector, beside, OPTIONS.vector)
-            if value.imag == 0.0 and value.real < 0.0:
-                return float(value.real), vector
+            found = followed(inverse, (value.real - error, vector))
+            if found is not None:
+                return found
         if point + distance - error >= 0.0:
             return abs(value), vector
         if error >= distance:
             break
         point += distance - error
     return None
+
+
+def followed(inverse: Callable[[float], Callable[[FloatArray], FloatArray]], near: Eigenpair) -> Eigenpair | None:
+    """The eigenvalue beside one that is ``near``, with its vector (n,), if it is real and negative; else None.
+
+    ``inverse`` as in :func:`lowest_real`; ``near`` may be of another matrix that differs by little.
+    """
+    beside = near[0] * (1.0 + OPTIONS.beside)
+    value, vector, _ = nearest(inverse(beside), near[1], beside, OPTIONS.vector)
+    return (float(value.real), vector) if value.imag == 0.0 and value.real < 0.0 else None
 
 
 def nearest(

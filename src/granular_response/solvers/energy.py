@@ -22,7 +22,7 @@ from .equilibrium import OPTIONS as NEWTON
 from .equilibrium import EquilibriumError, Rearranged, attainable, certify, external_force
 from .line_search import shortened
 from .problem import Problem
-from .stability import negative_modes, unstable_direction
+from .stability import Spectrum
 from .system import OPTIONS as EQUATIONS
 from .system import StaticSystem, Trial
 
@@ -130,7 +130,7 @@ class _Descent:
         look = settled or self.iterations % OPTIONS.look_every == OPTIONS.look_every - 1
         if look and self.system.meets_unlisted(self.q):
             raise Rearranged("the packing rearranges on its way to a minimum of the energy; use method dynamics")
-        return settled and negative_modes(self.system, self.trial) == 0
+        return settled and Spectrum(self.system, self.trial).negative_modes == 0
 
     def go_on(self) -> None:
         """One iteration: away from a saddle, or a damped step, or more damping where a step would be no good."""
@@ -168,13 +168,13 @@ class _Descent:
         if self._large:
             self._go_down_from_saddle()
         else:
-            q = self.q + 1e-4 * unstable_direction(self.system, self.trial)
+            q = self.q + 1e-4 * Spectrum(self.system, self.trial).direction
             self._move(q, self.system.trial(self.known, q))
             self.damping = 1e-4 * self.stiffness
 
     def _go_down_from_saddle(self) -> None:
         """Go from near a saddle along its unstable direction, in doubled lengths as long as energy falls."""
-        direction = unstable_direction(self.system, self.trial)
+        direction = Spectrum(self.system, self.trial).direction
         best = (self.q, self.trial)
         for sense in (1.0, -1.0):
             length = OPTIONS.shortest_escape / self.stiffness * sense

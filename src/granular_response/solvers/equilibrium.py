@@ -18,7 +18,7 @@ import numpy as np
 from ..errors import SolveError
 from ..state import Certificate, FloatArray, State
 from .problem import Problem
-from .stability import negative_modes
+from .stability import Spectrum
 from .system import Configuration, StaticSystem, Trial
 
 
@@ -276,7 +276,7 @@ def finish(problem: Problem, state: State) -> State:
         raise EquilibriumError(
             f"the equilibrium that Newton's method finds is {moved:.2g} mean radii away; {_cure(problem)}"
         )
-    certificate = certify(problem, solved, modes=negative_modes(system, trial))
+    certificate = certify(problem, solved, modes=Spectrum(system, trial).negative_modes)
     if not certificate.balanced:
         raise EquilibriumError(
             f"a disk is out of balance by {certificate.unbalanced_part:.1g} of what it bears; {_cure(problem)}"

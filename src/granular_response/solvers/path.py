@@ -32,6 +32,7 @@ from scipy.optimize import brentq
 
 from ..errors import SolveError
 from ..kernels import events
+from ..linalg.lowest import Eigenpair
 from ..linalg.updated import Updated
 from ..state import OPEN, ROLLING_EVENTS, SLIDING, STICKING, Event, FloatArray, Reached, State
 from .dynamics import Stop
@@ -41,7 +42,7 @@ from .increment import Work, solve_increment
 from .problem import Problem
 from .rates import Changes, RateProblem, Rates, changed
 from .settle import CROSSING, CROSSING_STOP, NotSettled, nudged, settle
-from .stability import divergence, negative_modes
+from .stability import Spectrum, divergence
 from .system import Configuration, StaticSystem, Trial
 
 
@@ -283,7 +284,11 @@ class _Path:
 
     def _direction(self, trial: Trial, sense: np.ndarray) -> FloatArray | None:
         """(dof,) direction in which an equilibrium diverges with signed statuses ``sense``, or None."""
-        return divergence(self.system, self.system.trial(trial.configuration, trial.configuration.q, fixed=sense))
+        return divergence(self._spectrum(trial, sense))
+
+    def _spectrum(self, trial: Trial, sense: np.ndarray, near: Eigenpair | None = None) -> Spectrum:
+        """The spectrum with signed statuses ``sense``."""
+        return Spectrum(self.system, self.system.trial(trial.configuration, trial.configuration.q, fixed=sense), near)
 
     def _count(self) -> None:
         """Add the factorisations of tangents with kept statuses to what the path has cost."""
@@ -304,6 +309,7 @@ class _Path:
         turned, moved = state.angle - self.start.angle, state.position - self.start.position
         self.origin = np.concatenate([moved.T.ravel(), turned])[: self.system.dof]
         self.suspect = 0  #: negative pivots at the last point
+        self.unstable: Eigenpair | None = None  #: a negative eigenvalue there
         return Point(state.load_factor, trial, trial.sense, trial.sense)
 
     def _balanced(self, point: Point) -> Point:
@@ -343,7 +349,9 @@ class _Path:
         self.suspect = negative
         # one real eigenvalue is negative, or real ones have passed zero; where contacts slide these may not go along
         if negative % 2 or negative not in (0, before):
-            direction = self._direction(point.trial, rates.sense)
+            spectrum = self._spectrum(point.trial, rates.sense, self.unstable if negative == before else None)
+            self.unstable = spectrum.lowest if spectrum.negative_modes else None
+            direction = divergence(spectrum)
             if direction is not None:
                 return self._by_motion(point, "bifurcation", "unstable", direction)
         landed = self._landed(point, rates)
@@ -548,7 +556,7 @@ class _Path:
 
         def accept(state: State) -> bool:
             found[:] = [self._at(state)]
-            return state.certificate.stable is True or divergence(self.system, found[0].trial) is None
+            return state.certificate.stable is True or divergence(Spectrum(self.system, found[0].trial)) is None
 
         protocol = self.problem.scene.protocol
         try:
@@ -584,8 +592,9 @@ class _Path:
         sense = self.system.coupled(np.concatenate([along, trial.sense[len(overlap) :]]))
         trial = self.system.trial(point.known, point.known.q, fixed=sense)
         state = self.system.state(trial, point.factor)
-        modes = negative_modes(self.system, trial)
-        if modes and divergence(self.system, trial) is None:
+        spectrum = Spectrum(self.system, trial)
+        modes = spectrum.negative_modes
+        if modes and divergence(spectrum) is None:
             modes = 0
         self._count()
         work = self.record.work

@@ -15,7 +15,7 @@ from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
 from .equilibrium import EquilibriumError, finish
 from .problem import Problem
-from .stability import unstable_direction
+from .stability import Spectrum
 from .system import StaticSystem
 from .timestep import resolve_time_step
 
@@ -103,7 +103,7 @@ def settle(
             if how.nudged and attempt > 2:
                 spent += dynamics.steps
                 system = StaticSystem(problem, found)
-                displaced = nudged(problem, found, unstable_direction(system, system.at(found)))
+                displaced = nudged(problem, found, Spectrum(system, system.at(found)).direction)
                 dynamics = Dynamics(problem, displaced, integrator, time_step)
         except EquilibriumError as error:
             why = f": {error}"

@@ -8,8 +8,8 @@ may not do: see :func:`divergence`. Complex pairs of eigenvalues, which exist wh
 they oscillate, and decay or grow (flutter) by the dashpots.
 
 That statuses which contradict a direction change until none does follows S. McNamara and H. J. Herrmann, Phys. Rev. E
-74, 061303 (2006). :func:`negative_modes` counts, :func:`unstable_direction` gives the lowest, :func:`divergence` the
-one that contacts go along with.
+74, 061303 (2006). :class:`Spectrum` counts, and gives the lowest direction; :func:`divergence` the one that contacts go
+along with.
 """
 
 from __future__ import annotations
@@ -17,13 +17,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
 from ..errors import SolveError
 from ..kernels.events import SLIDES, STICKS
-from ..linalg.lowest import lowest_real
+from ..linalg.lowest import Eigenpair, followed, lowest_real
 from ..state import SLIDING, STICKING, FloatArray
 from .rates import next_changes
 from .system import StaticSystem, Trial
@@ -57,60 +58,102 @@ class Clustered(SolveError, ArithmeticError):
         super().__init__("the lowest eigenvalues of an equilibrium lie so near each other that none of them is found")
 
 
-def negative_modes(system: StaticSystem, trial: Trial) -> int | None:
-    """Number of real negative eigenvalues with the statuses of a trial; None where it cannot be determined.
+class Spectrum:
+    """Lowest eigenvalue of ``M^-1 K`` with the statuses of a trial: looked for when asked for, and once.
 
-    Where contacts slide it is 1 if there are any. No eigenvalue has a smaller real part than the lowest of the
-    symmetric part (Bendixson): if that is not negative there are none, else they are looked for
-    (:func:`..linalg.lowest.lowest_real`).
+    ``near`` : a negative one, and its vector, of a state just before, which is followed where it can be.
     """
-    matrix, _ = _scaled(system, trial)
-    modes = system.storage.negative_eigenvalues(system.pattern.symmetric_part(matrix))
-    if modes == 0:
-        return None if _too_light(system, trial) else 0
-    if not _slides(trial):
-        return modes
-    try:
-        return int(_lowest(system, matrix)[0] < 0.0)
-    except Clustered:
-        return None
+
+    def __init__(self, system: StaticSystem, trial: Trial, near: Eigenpair | None = None):
+        self.system, self.trial = system, trial
+        self._matrix, self._scale = _scaled(system, trial)
+        self._known = None if near is None else followed(self._inverse, near)
+
+    @cached_property
+    def negative_modes(self) -> int | None:
+        """Number of real negative eigenvalues; None where it cannot be determined.
+
+        Where contacts slide it is 1 if there are any. No eigenvalue has a smaller real part than the lowest of the
+        symmetric part (Bendixson): if that is not negative there are none, else they are looked for
+        (:func:`..linalg.lowest.lowest_real`).
+        """
+        if self._known is not None:
+            return 1
+        modes = self.system.storage.negative_eigenvalues(self._symmetric)
+        if modes == 0:
+            return None if _too_light(self.system, self.trial) else 0
+        if not _slides(self.trial):
+            return modes
+        try:
+            return int(self.lowest[0] < 0.0)
+        except Clustered:
+            return None
+
+    @cached_property
+    def direction(self) -> FloatArray:
+        """(dof,) direction of the lowest real eigenvalue, of largest component 1 or -1.
+
+        Where none is negative, that of one near zero. It leads to the right as far as it leads to a side, so that of
+        two mirror images one is chosen by rule.
+
+        Raises
+        ------
+        Clustered
+            If none is found.
+        """
+        system = self.system
+        direction = system.deinterleave(self._scale * self.lowest[1])
+        direction /= np.abs(direction).max()
+        sideways = float(direction[: system.problem.n].sum())
+        if abs(sideways) <= OPTIONS.least_sideways:
+            sideways = float(direction[np.argmax(np.abs(direction))])
+        return -direction if sideways < 0.0 else direction
+
+    @cached_property
+    def lowest(self) -> Eigenpair:
+        """The lowest real eigenvalue if it is negative, else one near zero; and its vector (dof,), scaled.
+
+        Raises
+        ------
+        Clustered
+            If none is found.
+        """
+        if self._known is not None:
+            return self._known
+        self.system.forget()
+        for left in OPTIONS.left_of_all:
+            shifted = self.system.pattern.with_shift(self._symmetric, left * self.system.problem.stiffness)
+            if self.system.storage.definite_factor(shifted) is not None:
+                break
+        found = lowest_real(self._inverse, self.system.dof, -left * self.system.problem.stiffness)
+        if found is None:
+            raise Clustered
+        return found
+
+    @cached_property
+    def _symmetric(self) -> sp.csc_array:
+        return self.system.pattern.symmetric_part(self._matrix)
+
+    def _inverse(self, point: float) -> Callable[[FloatArray], FloatArray]:
+        """What solves with the matrix less a point."""
+        matrix = self._matrix if _slides(self.trial) else self._symmetric
+        return self.system.storage.factor(self.system.pattern.with_shift(matrix, -point)).solve
 
 
-def unstable_direction(system: StaticSystem, trial: Trial) -> FloatArray:
-    """(dof,) direction of the lowest real eigenvalue with the statuses of a trial, of largest component 1 or -1.
-
-    Where none is negative, that of one near zero. It leads to the right as far as it leads to a side, so that of two
-    mirror images one is chosen by rule.
-
-    Raises
-    ------
-    Clustered
-        If none is found.
-    """
-    matrix, scale = _scaled(system, trial)
-    _, vector = _lowest(system, matrix if _slides(trial) else system.pattern.symmetric_part(matrix))
-    direction = system.deinterleave(scale * vector)
-    direction /= np.abs(direction).max()
-    sideways = float(direction[: system.problem.n].sum())
-    if abs(sideways) <= OPTIONS.least_sideways:
-        sideways = float(direction[np.argmax(np.abs(direction))])
-    return -direction if sideways < 0.0 else direction
-
-
-def divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
+def divergence(spectrum: Spectrum) -> FloatArray | None:
     """(dof,) direction in which an equilibrium leaves by itself; None where there is none, or none is determined.
 
     An unstable direction of the tangent counts only if the contacts that slide do go on sliding along it: those that
     would slip back stick, which makes another tangent with another lowest direction, and so on until they agree.
     """
-    if not negative_modes(system, trial):
+    if not spectrum.negative_modes:
         return None
+    system, trial = spectrum.system, spectrum.trial
     sliding = np.flatnonzero(np.abs(trial.sense) == SLIDING)
     slides = trial.sense[sliding]
     with suppress(Clustered):
-        lowest = unstable_direction(system, trial)
         for side in (1.0, -1.0):
-            direction, here = side * lowest, trial
+            direction, here = side * spectrum.direction, trial
             for _ in range(OPTIONS.rounds):
                 what = next_changes(system, here, direction, here.sense, 0.0, 0.0).what[sliding]
                 now = here.sense[sliding]
@@ -120,10 +163,10 @@ def divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
                 sense = here.sense.copy()
                 sense[sliding] = after
                 here = system.trial(trial.configuration, trial.configuration.q, fixed=sense)
-                if not negative_modes(system, here):
+                turned = Spectrum(system, here)
+                if not turned.negative_modes:
                     break
-                turned = unstable_direction(system, here)
-                direction = turned if float(turned @ direction) >= 0.0 else -turned
+                direction = turned.direction if float(turned.direction @ direction) >= 0.0 else -turned.direction
             else:
                 return direction
     return None
@@ -163,27 +206,3 @@ def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArra
     k = system.problem.stiffness
     matrix.data[system.pattern.diagonal] += np.where(idle, k, np.maximum(OPTIONS.neutral, OPTIONS.rounding * k / mass))
     return matrix, scale
-
-
-def _lowest(system: StaticSystem, matrix: sp.csc_array) -> tuple[float, FloatArray]:
-    """The lowest real eigenvalue of a matrix if it is negative, else one near zero; and its vector (dof,).
-
-    Raises
-    ------
-    Clustered
-        If none is found.
-    """
-    system.forget()
-    symmetric = system.pattern.symmetric_part(matrix)
-    k = system.problem.stiffness
-    for left in OPTIONS.left_of_all:
-        if system.storage.definite_factor(system.pattern.with_shift(symmetric, left * k)) is not None:
-            break
-
-    def inverse(point: float) -> Callable[[FloatArray], FloatArray]:
-        return system.storage.factor(system.pattern.with_shift(matrix, -point)).solve
-
-    found = lowest_real(inverse, system.dof, -left * k)
-    if found is None:
-        raise Clustered
-    return found
