@@ -26,8 +26,10 @@ from .system import Configuration, StaticSystem, Trial
 class IncrementOptions:
     """Numbers that an increment goes by. Forces in mean weights."""
 
-    #: Newton iterations on the true law before limits are held fixed, and in each try after that.
+    #: Newton iterations on the true law before limits are held fixed, and in each try after that: none that succeeded
+    #: took more than 3.
     direct: int = 8
+    finish: int = 4
     #: Rounds of fixed limits, and the round after which the true law is tried again.
     rounds: int = 24
     first_try: int = 2
@@ -42,7 +44,7 @@ class IncrementOptions:
     still: float = 1e-5
     stalled: int = 3
     #: Factorisations after which an increment, or one minimisation, is given up.
-    most: int = 60
+    most: int = 40
 
 
 OPTIONS = IncrementOptions()
@@ -68,13 +70,13 @@ def solve_increment(
     ``guess`` (dof,) is a prediction of the displacements.
     """
 
-    def on_true_law(q: FloatArray) -> Trial | None:
-        trial, report = newton(system, known, external, q, maximum_iterations=OPTIONS.direct)
+    def on_true_law(q: FloatArray, most: int) -> Trial | None:
+        trial, report = newton(system, known, external, q, maximum_iterations=most)
         work.factorisations += report.iterations
         work.increments += report.converged
         return trial if report.converged else None
 
-    found = on_true_law(guess)
+    found = on_true_law(guess, OPTIONS.direct)
     if found is not None or not system.problem.rotations:
         return found
     limits = system.limits(system.trial(known, known.q))
@@ -92,7 +94,7 @@ def solve_increment(
         change = float(np.abs(limits - before).max(initial=0.0))
         if done >= OPTIONS.settled_by and change > OPTIONS.slow:
             return None
-        if done > OPTIONS.first_try and (found := on_true_law(q)) is not None:
+        if done > OPTIONS.first_try and (found := on_true_law(q, OPTIONS.finish)) is not None:
             return found
     return None
 
