@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene, shaken
 
-from granular_response.solvers.equilibrium import EquilibriumError, certify, finish
+from granular_response.solvers.equilibrium import EquilibriumError, certify, external_force, finish
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state
+from granular_response.solvers.system import StaticSystem
+from granular_response.state import SLIDING
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +40,20 @@ def test_finish_far_from_rest_is_an_error():
     problem = Problem.from_scene(scene())
     with pytest.raises(EquilibriumError, match="relax it further first"):
         finish(problem, shaken(problem, size=0.2))
+
+
+def test_a_disk_of_which_all_contacts_slide_turns_by_no_more_than_a_contact_would_allow(settled):
+    problem, rest = settled
+    system = StaticSystem(problem, rest)
+    known, disk = system.start(rest), int(np.argmax(rest.position[:, 1]))
+    touches = ((system.first == disk) | (system.second == disk)) & (rest.pairs.overlap > 0.0)
+    turned = known.q.copy()
+    turned[2 * problem.n + disk] += 2.0 * problem.pair_law.friction / problem.pair_law.tangential_stiffness
+    trial = system.trial(known, turned)
+    assert (np.abs(trial.sense[: len(touches)][touches]) == SLIDING).all()
+    left = trial.contact_force + external_force(problem, 0.0)
+    step = system.step(trial, left)
+    assert 0.0 < np.abs(step[2 * problem.n + disk]) < 10.0 * np.abs(left).max() / problem.stiffness
 
 
 def test_certificate_measures_what_it_says(settled):

@@ -63,6 +63,19 @@ def test_zero_pivot_falls_back_to_row_exchanges():
     assert x == pytest.approx(np.linalg.solve(dense, right), rel=1e-9)
 
 
+def test_a_soft_unknown_asks_for_no_row_exchanges():
+    """What nothing holds but a tiny stiffness moves far, and the residual is as large as rounding makes it."""
+    dense = banded(30, 3, 1)
+    dense[20], dense[:, 20] = 0.0, 0.0
+    dense[20, 20], dense[19, 20] = 1e-12, 1.0
+    matrix = stored(dense, 3)
+    factor = Band(matrix.indptr, matrix.indices).factor(matrix)
+    right = np.ones(30)
+    x = factor.solve(right)
+    assert np.abs(x).max() > 1e11 and factor._exchanged is None
+    assert x == pytest.approx(np.linalg.solve(dense, right), rel=1e-9)
+
+
 def test_zero_pivot_of_a_symmetric_matrix_does_not_pass_for_positive():
     dense = banded(30, 3, 1, symmetric=True)
     dense[0, 0] = 0.0

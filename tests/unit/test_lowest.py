@@ -84,3 +84,17 @@ def test_none_is_found_where_points_run_out(monkeypatch):
     assert lowest_of(matrix)[0] is not None
     monkeypatch.setattr(lowest, "OPTIONS", replace(lowest.OPTIONS, points=2))
     assert lowest_of(matrix)[0] is None
+
+
+def test_a_negative_eigenvalue_is_followed_to_a_matrix_nearby_and_no_farther_than_zero():
+    matrix = with_eigenvalues((complex(-7.0), *SPREAD), 0)
+    (value, vector), *_ = lowest_of(matrix)
+
+    def inverse(changed):
+        return lambda point: lambda right: np.linalg.solve(changed - point * np.eye(len(matrix)), right)
+
+    nearby = matrix + 1e-3 * np.random.default_rng(1).normal(size=matrix.shape)
+    found, direction = lowest.followed(inverse(nearby), (value, vector))
+    assert found == pytest.approx(np.linalg.eigvals(nearby).real.min(), rel=1e-9)
+    assert nearby @ direction == pytest.approx(found * direction, abs=1e-6)
+    assert lowest.followed(inverse(matrix + 8.0 * np.eye(len(matrix))), (value, vector)) is None

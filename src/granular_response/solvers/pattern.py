@@ -70,6 +70,10 @@ class Pattern:
         """The matrix with the entries ``data`` (e,)."""
         return sp.csc_array((data, self.indices, self.indptr), shape=(self.size, self.size))
 
+    def without_effect(self, matrix: sp.csc_array) -> np.ndarray:
+        """(n d,) unknowns that change no force, such as the angle of a disk of which all contacts slide."""
+        return np.add.reduceat(np.abs(matrix.data), self.indptr[:-1]) == 0.0
+
     def transposed(self, matrix: sp.csc_array) -> sp.csc_array:
         """K^T of a tangent."""
         return self.matrix(matrix.data[self.storage.across(matrix)])

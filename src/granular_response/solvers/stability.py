@@ -197,7 +197,7 @@ def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArra
     indefinite whatever the rest is.
     """
     matrix = system.tangent(trial)
-    idle = np.add.reduceat(np.abs(matrix.data), matrix.indptr[:-1]) == 0.0
+    idle = system.pattern.without_effect(matrix)
     matrix.data[idle[matrix.indices]] = 0.0
     mass = system.interleave(1.0 / system.problem.inverse_mass)
     scale = 1.0 / np.sqrt(mass)

@@ -75,11 +75,14 @@ class StaticSystem(Equations):
     def step(self, trial: Trial, force: FloatArray, shift: float = 0.0) -> FloatArray:
         """(dof,) displacements that take ``force`` up, by the tangent with ``shift`` on its diagonal.
 
-        In a large packing by iteration, with a rough factorisation that may be brought up to date for what has changed
-        since. RuntimeError where the tangent is exactly singular.
+        A disk of which all contacts slide turns as if one of them stuck: nothing else would end its turn, which can
+        turn their slip round. In a large packing by iteration, with a rough factorisation that may be brought up to
+        date for what has changed since. RuntimeError where the tangent is exactly singular.
         """
         right = self.interleave(force)
-        matrix = self._regularised(trial, shift)
+        matrix = self.tangent(trial, shift)
+        held = np.where(self.pattern.without_effect(matrix), 1.0, OPTIONS.regularisation)
+        matrix.data[self.pattern.diagonal] += held * self.problem.stiffness
         self._kept = None
         found = self._steps.solve(matrix, right, OPTIONS.left_over, shift)
         if found is None:
