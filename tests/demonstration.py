@@ -105,7 +105,7 @@ class Cohesive(NamedTuple):
         return self.normal_stiffness
 
     def softened(self, part):
-        return self._replace(normal_stiffness=part**2 * self.normal_stiffness)
+        return self._replace(normal_stiffness=part**2 * self.normal_stiffness, strength=part * self.strength)
 
     def without_friction(self):
         return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)

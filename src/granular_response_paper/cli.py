@@ -138,7 +138,8 @@ def groups(root: Annotated[Path, typer.Option(help="Folder with figures/ and ben
 
     runs = {run["group"]: run for run in read_json(root / "benchmarks" / "pipeline.json")["runs"]}
     for name in NAMES:
-        captions = read_json(root / "figures" / name / "captions.json")
+        file = root / "figures" / name / "captions.json"
+        captions = read_json(file) if file.exists() else {}  # a new group is not drawn yet
         numbers = sorted({one["figure"] for one in captions.values() if one.get("figure")})
         shown = f"Fig. {', '.join(map(str, numbers))}" if numbers else "beyond the paper"
         seconds = sum(runs[name][f"{part}_seconds"] for part in ("simulate", "draw")) if name in runs else None

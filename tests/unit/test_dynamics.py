@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from small_scenes import at_rest, free_disks, scene
 
+from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop, relax
 from granular_response.solvers.problem import Problem
-
-INTEGRATORS = ["beeman", "verlet", "leapfrog", "gear"]
 
 
 def falling(integrator="beeman", *, steps=3000, **changes) -> Dynamics:

@@ -49,7 +49,7 @@ def test_a_scene_can_name_every_law():
     for name in NAMES:
         problem = Problem.from_scene(Scene().updated({"contact.law": name}))
         assert type(problem.pair_law) is type(problem.wall_law) is law_class(name)
-    with pytest.raises(SceneError, match=r"contact\.law = .*must be linear or hertz or cohesive"):
+    with pytest.raises(SceneError, match=f"contact.law = .*must be {' or '.join(KNOWN_LAWS)}"):
         Scene().updated({"contact.law": "hertzian"})
 
 
@@ -187,3 +187,11 @@ def test_a_law_that_lacks_something_is_refused(arguments, said):
     with pytest.raises(gr.GranularError, match=said):
         gr.register_law(*arguments)
     assert "mine" not in KNOWN_LAWS
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_softened_law_feels_a_part_of_the_force_at_a_part_of_the_overlap(name):
+    one, part, overlap = law(name), 0.5, 1e-3
+    shape = shape_of(one)
+    softened = asked(one.softened(part), overlap, shape)[0]
+    assert softened == pytest.approx(part * asked(one, part * overlap, shape)[0], rel=1e-12)

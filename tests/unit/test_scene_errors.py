@@ -2,6 +2,7 @@
 
 import pytest
 
+from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Contact, Load, Scene, SceneError, SlabPacking
 
 CONTACT_KEYS = (
@@ -124,7 +125,7 @@ MALFORMED = {
         "protocol.method = 'stages': is gone, must be path, which follows disordered packings too"
     ),
     "protocol: {integrator: verlett}": (
-        "protocol.integrator = 'verlett': must be beeman or verlet or leapfrog or gear, did you mean verlet?"
+        f"protocol.integrator = 'verlett': must be {' or '.join(INTEGRATORS)}, did you mean verlet?"
     ),
     "protocol: {time_step: 0}": "protocol.time_step = 0: must be a number greater than 0, or auto",
     "protocol: {static_finish: no}": "protocol.static_finish = 'no': must be true or false",

@@ -5,6 +5,7 @@ import contextlib
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Scene, SceneError
 
 MANY = settings(suppress_health_check=[HealthCheck.too_slow])
@@ -75,7 +76,7 @@ scenes = options(
     preparation=options(gravity=st.sampled_from(["at-once", "slow", "frictionless"]), ramp_time=numbers(open_low=True)),
     protocol=options(
         method=st.sampled_from(["auto", "dynamics", "path", "minimise"]),
-        integrator=st.sampled_from(["beeman", "verlet", "leapfrog", "gear"]),
+        integrator=st.sampled_from([*INTEGRATORS]),
         time_step=st.just("auto") | numbers(open_low=True),
         ramp_time=numbers(),
         stop_kinetic_energy=numbers(open_low=True),

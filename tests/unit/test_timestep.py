@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene
 
+from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Scene
 from granular_response.scene.protocol import PAPERS_TIME_STEP
 from granular_response.solvers.dynamics import Dynamics, DynamicsError
@@ -76,7 +77,7 @@ def twisted(integrator: str, part: float) -> float:
     return dynamics.kinetic_energy() / before
 
 
-@pytest.mark.parametrize("integrator", ["beeman", "verlet", "leapfrog", "gear"])
+@pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_the_limit_of_a_tangential_spring_is_the_kernels_own(integrator):
     """Rolling translates and turns the disk: (1 + 2) k_T over the mass is the rate of that one motion."""
     assert twisted(integrator, 0.97) < 1e-3

@@ -7,6 +7,7 @@ import pytest
 import reduced
 from places import ROOT
 
+from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.settle import NotSettled
 from granular_response_paper.groups.stability import draw as figures
@@ -18,7 +19,6 @@ from granular_response_paper.trials.time_steps import SETTLES, tried
 
 PARAMETERS = simulation.parameters("stability", ROOT / "params.yaml")[0]
 SEED = PARAMETERS["seed"]
-INTEGRATORS = ["beeman", "verlet", "leapfrog", "gear"]
 SMALL = {"packing": {"kind": "slab", "layers": 4, "disks_per_row": 7}, "loads": []}
 
 # Time steps

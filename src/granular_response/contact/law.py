@@ -67,7 +67,8 @@ class Law(Protocol):
     def softened(self, part: float) -> Self:
         """The law with which a packing of ``part`` of the height sinks by the same lengths under its own weight.
 
-        For the start of large packings alone: ``part**2`` times the constant for linear springs.
+        For the start of large packings alone: the force at an overlap is ``part`` times that of this law at ``part`` of
+        the overlap, so ``part**2`` times the constant for linear springs.
         """
         ...
 

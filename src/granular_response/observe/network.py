@@ -158,7 +158,7 @@ def mirror_disks(position: FloatArray, axis: float, tolerance: float = 0.1) -> N
     if distance[worst] > tolerance:
         raise ValueError(
             f"position: disk {worst} has no mirror image within {tolerance} (nearest at {distance[worst]:.3g}); "
-            f"the packing is not symmetric about x = {axis}"
+            f"the packing, taken without its periodic sides, is not symmetric about x = {axis}"
         )
     if not np.array_equal(index[index], np.arange(index.size)):
         raise ValueError(f"position: two disks share a mirror image about x = {axis}; tolerance {tolerance} too large")

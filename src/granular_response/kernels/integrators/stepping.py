@@ -1,8 +1,8 @@
 """The loop over time steps that all integrators share, and what a step does to an oscillator.
 
 The scheme of an integrator is a named tuple with two methods on scalars or lanes. ``predict(x, v, a, b, c, dt)`` gives
-``(x, v, a, b, seen)``: displacement, velocity and memory half-way through a step, and the velocity that the forces
-see. ``correct(x, v, a, b, c, a_new, dt)`` gives ``(x, v, a, b, c)`` at the end from the accelerations there.
+``(x, v, a, b, seen)``: the displacement at which forces are evaluated, velocity and memory there, and the velocity that
+the forces see. ``correct(x, v, a, b, c, a_new, dt)`` gives ``(x, v, a, b, c)`` at the end from the accelerations there.
 ``a`` is the acceleration at the present time, ``b`` and ``c`` are memory of its own: it has ``rows`` rows with ``a``.
 ``order`` is the global order of its positions on a smooth problem once its memory is right (Gear's start without
 higher derivatives costs it two orders). ``begin(history)`` fills (rows, dof) memory from its row 0.
