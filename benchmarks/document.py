@@ -35,7 +35,7 @@ TEXTS = {
         "Accuracy of the path",
         "Against increments with the return map that end at each event of the path, and every 0.001 mg, or 1/250 of "
         "the load if that is longer (1/1000 for the nine points with friction 0.2 and 1). Error: largest difference of "
-        "a force of the floor or a wall, per load. Last two columns: error of equal increments, which pass over events.",
+        "a force of the floor or a wall, per load.",
     ),
     "convergence": (
         "Convergence of dynamics to the path",
@@ -178,8 +178,7 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
     if benchmark == "exactness":
         columns = {
             "kind": "packings", "equilibria": "equilibria lost", "scenes": "scenes", "events": "events",
-            "exact": "error at most 1e-8", "error": "largest error", "plain": "equal increments",
-            "plain_twice": "twice as long",
+            "exact": "error at most 1e-8", "error": "largest error",
         }  # fmt: skip
         done = {kind: len(pick(metrics["runs"], kind=kind)) for kind in metrics["planned"]}
         words = ", ".join(f"{done[kind]} of {planned} {kind}" for kind, planned in metrics["planned"].items())
