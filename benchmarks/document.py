@@ -140,20 +140,14 @@ def by_size(metrics: Metrics) -> dict[str, Any]:
     return table(list(rows.values()), columns, skipped("Microseconds per step (times ours)", metrics))
 
 
-def to_a_response(metrics: Metrics) -> dict[str, Any]:
-    """One row for each code, for each scene the time to the error that the README compares at."""
-    columns = {"code": "code"}
-    rows: dict[str, dict[str, Any]] = {}
-    for run in metrics["reached"]:
-        scene, (error, _) = run["scene"], COMPARED[run["scene"]]
-        columns[scene] = f"{scene}, to {error} [s]"
-        rows.setdefault(run["code"], {"code": run["code"]})[scene] = run[error]
-    words = skipped("Least processor time to an error", metrics)
+def left_out(metrics: Metrics) -> str:
+    """What could not be run, or was not."""
+    said = f" Skipped: {'; '.join(metrics['skipped'])}." if metrics["skipped"] else ""
     if metrics.get("not_run"):
         theirs = sum("steps" in row for row in metrics["runs"])
         count = f"{len(metrics['not_run'])} of {theirs + len(metrics['not_run'])}"
-        words = f"{words.removesuffix(':')}; {count} runs were not made (`responses.json` names them):"
-    return table(list(rows.values()), columns, words)
+        said += f" {count} runs were not made (`responses.json` names them)."
+    return said
 
 
 def factorisations(metrics: Metrics, key: str, title: str) -> dict[str, Any]:
@@ -186,8 +180,6 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
         return [table(metrics["groups"], columns, f"Measured: {words}.")]
     if benchmark == "arena":
         return [by_size(metrics)]
-    if benchmark == "responses":
-        return [to_a_response(metrics)]
     if benchmark == "linear":
         return [factorisations(metrics, "factor_milliseconds", "Numeric factorisation, ms")]
     if benchmark == "depth":
@@ -215,7 +207,7 @@ def groups(metrics: Metrics) -> str:
 
 
 #: What a section says after its text.
-ADDED = {"shares": shares, "pipeline": groups}
+ADDED = {"responses": left_out, "shares": shares, "pipeline": groups}
 
 
 def out_of_reach(runs: list[dict[str, Any]], scene: str, comparison: dict[str, Any]) -> float | None:
