@@ -22,9 +22,6 @@ from granular_response.store import atomic, generated
 
 HERE = Path(__file__).resolve().parent
 
-#: Unknowns of a matrix from which on it is a row of a table.
-MANY = 5_000
-
 TEXTS = {
     "precision": (
         "Run time against error",
@@ -71,8 +68,7 @@ TEXTS = {
     ),
     "linear": (
         "Factorisations of the tangent stiffness",
-        "With friction LU; without, symmetric and positive for LAPACK, fronts and PARDISO. SuperLU's time includes its "
-        "ordering.",
+        "Numeric, by band and fronts, beside LAPACK, SuperLU and PARDISO (`linear.json`).",
     ),
     "skipping": (
         "Cost of work that is skipped",
@@ -129,15 +125,10 @@ def table(rows: list[dict[str, Any]], columns: dict[str, str], title: str = "") 
     return {"title": title, "columns": list(columns.values()), "rows": cells}
 
 
-def by_size(metrics: Metrics) -> dict[str, Any]:
-    """One row for each code, one column for each number of disks."""
-    columns = {"code": "code", "version": "version"}
-    rows: dict[tuple[str, str], dict[str, Any]] = {}
-    for run in metrics["runs"]:
-        columns.setdefault(str(run["disks"]), f"{run['disks']:,} disks")
-        one = rows.setdefault((run["code"], run["version"]), dict(run))
-        one[str(run["disks"])] = f"{cell(run['processor_microseconds'])} ({run['times_ours']:.3g})"
-    return table(list(rows.values()), columns, skipped("Microseconds per step (times ours)", metrics))
+def versions(metrics: Metrics) -> str:
+    """Of the other codes."""
+    names = {f"{family(run['code'])} {run['version']}": None for run in metrics["runs"] if run["code"] != OURS}
+    return (f" Versions: {', '.join(names)}." if names else "") + left_out(metrics)
 
 
 def left_out(metrics: Metrics) -> str:
@@ -148,23 +139,6 @@ def left_out(metrics: Metrics) -> str:
         count = f"{len(metrics['not_run'])} of {theirs + len(metrics['not_run'])}"
         said += f" {count} runs were not made (`responses.json` names them)."
     return said
-
-
-def factorisations(metrics: Metrics, key: str, title: str) -> dict[str, Any]:
-    """One row for each matrix, one column for each method."""
-    columns = {"friction": "friction", "unknowns": "unknowns"}
-    rows: dict[int, dict[str, Any]] = {}
-    for run in metrics["runs"]:
-        if run["unknowns"] < MANY:
-            continue
-        columns.setdefault(run["method"], run["method"])
-        rows.setdefault(run["unknowns"], dict(run))[run["method"]] = run[key]
-    return table(list(rows.values()), columns, skipped(title, metrics))
-
-
-def skipped(title: str, metrics: Metrics) -> str:
-    """The title with what was not there to be measured."""
-    return title + (f" (skipped: {'; '.join(metrics['skipped'])})" if metrics["skipped"] else "") + ":"
 
 
 def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
@@ -178,10 +152,6 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
         words = ", ".join(f"{done[kind]} of {planned} {kind}" for kind, planned in metrics["planned"].items())
         words += "; times beside other computations" if metrics["busy"] else ""
         return [table(metrics["groups"], columns, f"Measured: {words}.")]
-    if benchmark == "arena":
-        return [by_size(metrics)]
-    if benchmark == "linear":
-        return [factorisations(metrics, "factor_milliseconds", "Numeric factorisation, ms")]
     if benchmark == "depth":
         columns = {
             "layers": "layers", "from_force": "from force [mg]", "to_force": "to force [mg]",
@@ -207,7 +177,7 @@ def groups(metrics: Metrics) -> str:
 
 
 #: What a section says after its text.
-ADDED = {"responses": left_out, "shares": shares, "pipeline": groups}
+ADDED = {"arena": versions, "responses": left_out, "shares": shares, "pipeline": groups}
 
 
 def out_of_reach(runs: list[dict[str, Any]], scene: str, comparison: dict[str, Any]) -> float | None:
