@@ -14,7 +14,7 @@ from typing import Any
 
 import pictures
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from pictures import Metrics, name, pick
+from pictures import Metrics, pick
 from timing import write
 
 from granular_response.plot import style
