@@ -14,7 +14,7 @@ from typing import Any
 
 import pictures
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from pictures import Metrics, name, pick
+from pictures import Metrics, pick
 from timing import write
 
 from granular_response.plot import style
@@ -22,22 +22,17 @@ from granular_response.store import atomic, generated
 
 HERE = Path(__file__).resolve().parent
 
-#: Unknowns of a matrix from which on it is a row of a table.
-MANY = 5_000
-
 TEXTS = {
     "precision": (
         "Run time against error",
         "Error: largest difference of the normalized floor response from the quasi-static limit. Times include the "
-        "fall under gravity. Open symbols: without the static finish. With friction LAMMPS is also compared with "
-        "its own limit.",
+        "fall under gravity.",
     ),
     "exactness": (
         "Accuracy of the path",
-        "Against increments with the return map that end where the path has an event, and every 0.001 mg, or 1/250 of "
+        "Against increments with the return map that end at each event of the path, and every 0.001 mg, or 1/250 of "
         "the load if that is longer (1/1000 for the nine points with friction 0.2 and 1). Error: largest difference of "
-        "a force of the floor or a wall, per load. Equal increments, which pass over changes, have an error of their "
-        "own that depends on where they end: last two columns.",
+        "a force of the floor or a wall, per load.",
     ),
     "convergence": (
         "Convergence of dynamics to the path",
@@ -58,24 +53,22 @@ TEXTS = {
     ),
     "responses": (
         "Comparison with other codes: a response",
-        "Scenes and errors of run time against error. The other codes ramp the load between two equilibria.",
+        "Scenes and errors as above. The other codes ramp the load between two equilibria.",
     ),
     "bounces": (
         "Single collisions with a frictional wall",
-        "Friction 0.5. A disk that slides throughout has a closed form (dotted), from which `fix wall/gran "
-        "hooke/history` of LAMMPS of 2025 deviates "
-        "([lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007)). With the paper's dashpots YADE lets no "
-        "contact pull, and YADE and LIGGGHTS keep less energy of a grazing disk.",
+        "Friction 0.5. From the closed form of a disk that slides throughout (dotted) `fix wall/gran hooke/history` of "
+        "LAMMPS of 2025 deviates ([lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007)). With the paper's "
+        "dashpots YADE lets no contact pull, and YADE and LIGGGHTS keep less energy of a grazing disk.",
     ),
     "limits": (
         "Roofline",
         "The goals compare kernels of a step of 908 disks with a loop of independent operations of the same mix, "
-        "and factorisations with LAPACK's matrix product.",
+        "and factorisations with LAPACK's matrix product (`limits.json`).",
     ),
     "linear": (
         "Factorisations of the tangent stiffness",
-        "With friction LU; without, symmetric and positive for LAPACK, fronts and PARDISO. SuperLU's time has its "
-        "ordering.",
+        "Numeric, by band and fronts, beside LAPACK, SuperLU and PARDISO (`linear.json`).",
     ),
     "skipping": (
         "Cost of work that is skipped",
@@ -83,7 +76,7 @@ TEXTS = {
     ),
     "scale": (
         "Large systems",
-        "`granular-response run` from a scene file to the stored result, on two threads. Slabs are four times as "
+        "`granular-response run` from scene file to stored result, on two threads. Slabs are four times as "
         "wide as deep, and stiffness grows with their size.",
     ),
     "depth": (
@@ -92,15 +85,15 @@ TEXTS = {
     ),
     "shares": (
         "Profile",
-        "Largest shares of the time on one thread; the first four cases are slabs of 908 disks.",
+        "On one thread (`shares.json`).",
     ),
     "startup": (
         "Start-up",
-        "Whole processes, with cached kernels.",
+        "Whole processes, with and without cached kernels (`startup.json`).",
     ),
     "pipeline": (
         "The pipeline",
-        "Every group from nothing, with compiled kernels, one after another on all cores.",
+        "Every group from nothing, with compiled kernels, on all cores.",
     ),
 }
 
@@ -132,51 +125,20 @@ def table(rows: list[dict[str, Any]], columns: dict[str, str], title: str = "") 
     return {"title": title, "columns": list(columns.values()), "rows": cells}
 
 
-def by_size(metrics: Metrics) -> dict[str, Any]:
-    """One row for each code, one column for each number of disks, and the memory at the largest."""
-    columns = {"code": "code", "version": "version"}
-    rows: dict[tuple[str, str], dict[str, Any]] = {}
-    for run in metrics["runs"]:
-        columns.setdefault(str(run["disks"]), f"{run['disks']:,} disks")
-        one = rows.setdefault((run["code"], run["version"]), dict(run))
-        one[str(run["disks"])] = f"{cell(run['processor_microseconds'])} ({run['times_ours']:.3g})"
-        one["peak_mebibytes"] = run["peak_mebibytes"]
-    columns["peak_mebibytes"] = "memory, most disks [MiB]"
-    return table(list(rows.values()), columns, skipped("Microseconds per step (times ours)", metrics))
+def versions(metrics: Metrics) -> str:
+    """Of the other codes."""
+    names = {f"{family(run['code'])} {run['version']}": None for run in metrics["runs"] if run["code"] != OURS}
+    return (f" Versions: {', '.join(names)}." if names else "") + left_out(metrics)
 
 
-def to_a_response(metrics: Metrics) -> dict[str, Any]:
-    """One row for each code, for each scene the time to the error that the README compares at, and the least error."""
-    columns = {"code": "code"}
-    rows: dict[str, dict[str, Any]] = {}
-    for run in metrics["reached"]:
-        scene, (error, _) = run["scene"], COMPARED[run["scene"]]
-        columns |= {scene: f"{scene}, to {error} [s]", f"{scene}_least": "least error"}
-        row = rows.setdefault(run["code"], {"code": run["code"]})
-        row |= {scene: run[error], f"{scene}_least": run["least_error"]}
-    words = skipped("Least processor time to an error", metrics)
+def left_out(metrics: Metrics) -> str:
+    """What could not be run, or was not."""
+    said = f" Skipped: {'; '.join(metrics['skipped'])}." if metrics["skipped"] else ""
     if metrics.get("not_run"):
         theirs = sum("steps" in row for row in metrics["runs"])
         count = f"{len(metrics['not_run'])} of {theirs + len(metrics['not_run'])}"
-        words = f"{words.removesuffix(':')}; {count} runs were not made (`responses.json` names them):"
-    return table(list(rows.values()), columns, words)
-
-
-def factorisations(metrics: Metrics, key: str, title: str) -> dict[str, Any]:
-    """One row for each matrix, one column for each method."""
-    columns = {"friction": "friction", "unknowns": "unknowns"}
-    rows: dict[int, dict[str, Any]] = {}
-    for run in metrics["runs"]:
-        if run["unknowns"] < MANY:
-            continue
-        columns.setdefault(run["method"], run["method"])
-        rows.setdefault(run["unknowns"], dict(run))[run["method"]] = run[key]
-    return table(list(rows.values()), columns, skipped(title, metrics))
-
-
-def skipped(title: str, metrics: Metrics) -> str:
-    """The title with what was not there to be measured."""
-    return title + (f" (skipped: {'; '.join(metrics['skipped'])})" if metrics["skipped"] else "") + ":"
+        said += f" {count} runs were not made (`responses.json` names them)."
+    return said
 
 
 def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
@@ -184,41 +146,27 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
     if benchmark == "exactness":
         columns = {
             "kind": "packings", "equilibria": "equilibria lost", "scenes": "scenes", "events": "events",
-            "exact": "error at most 1e-8", "error": "largest error", "plain": "equal increments",
-            "plain_twice": "twice as long",
+            "exact": "error at most 1e-8", "error": "largest error",
         }  # fmt: skip
         done = {kind: len(pick(metrics["runs"], kind=kind)) for kind in metrics["planned"]}
         words = ", ".join(f"{done[kind]} of {planned} {kind}" for kind, planned in metrics["planned"].items())
         words += "; times beside other computations" if metrics["busy"] else ""
         return [table(metrics["groups"], columns, f"Measured: {words}.")]
-    if benchmark == "trajectory":
-        orders: dict[str, dict[str, Any]] = {}
-        for row in metrics["orders"]:
-            one = orders.setdefault(row["integrator"], {"integrator": name(row["integrator"])})
-            one[row["problem"]] = row["measured_order"]
-        columns = {"integrator": "integrator", "swing": "smooth motion", "fall": "fall of a slab"}
-        return [table(list(orders.values()), columns)]
-    if benchmark == "arena":
-        return [by_size(metrics)]
-    if benchmark == "responses":
-        return [to_a_response(metrics)]
-    if benchmark == "linear":
-        return [factorisations(metrics, "factor_milliseconds", "Numeric factorisation, ms")]
-    if benchmark == "shares":
-        columns = {
-            "what": "case", "seconds": "time [s]", "factorisations": "linear algebra",
-            "forces and tangents": "contacts", "dynamics": "dynamics",
-        }  # fmt: skip
-        return [table(metrics["runs"], columns)]
     if benchmark == "depth":
         columns = {
             "layers": "layers", "from_force": "from force [mg]", "to_force": "to force [mg]",
             "exponent_of_depth": "exponent of depth in force", "exponent_of_width": "of width",
         }  # fmt: skip
         return [table(metrics["growth"], columns)]
-    if benchmark == "startup":
-        return [table(metrics["runs"][:4], {"what": "process", "seconds": "time [s]"})]
     return []
+
+
+def shares(metrics: Metrics) -> str:
+    """What takes most of the time of a path, and of a fall."""
+    paths = [row["factorisations"] for row in metrics["runs"] if row["what"].startswith("path")]
+    falls = [row["dynamics"] for row in metrics["runs"] if row["what"].startswith("fall")]
+    said = f" Linear algebra takes {min(paths):.0%} to {max(paths):.0%} of the time of a path" if paths else ""
+    return (f"{said}, dynamics {max(falls):.0%} of that of a fall." if said and falls else "").replace("%", " %")
 
 
 def groups(metrics: Metrics) -> str:
@@ -226,6 +174,10 @@ def groups(metrics: Metrics) -> str:
     return "".join(
         f" The paper's groups: {row['simulate_seconds'] + row['draw_seconds']:.0f} s." for row in metrics["totals"]
     )
+
+
+#: What a section says after its text.
+ADDED = {"arena": versions, "responses": left_out, "shares": shares, "pipeline": groups}
 
 
 def out_of_reach(runs: list[dict[str, Any]], scene: str, comparison: dict[str, Any]) -> float | None:
@@ -335,7 +287,7 @@ def part(benchmark: str, metrics: Metrics) -> dict[str, Any]:
     title, words = TEXTS[benchmark]
     return {
         "title": title,
-        "text": words + (groups(metrics) if benchmark == "pipeline" else ""),
+        "text": words + ADDED.get(benchmark, lambda _: "")(metrics),
         "measured_on": measured_on(metrics),
         "picture": benchmark if benchmark in pictures.DRAWN else None,
         "tables": tables(benchmark, metrics),
