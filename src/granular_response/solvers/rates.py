@@ -52,7 +52,8 @@ class Changes:
 
     def first(self) -> tuple[int, float]:
         """The contact that changes first and after which growth of the load factor; infinity where none does."""
-        return events.first_change(self.left, self.rate)
+        contact, length = events.first_change(self.left, self.rate)
+        return int(contact), float(length)
 
     def due(self, force: float) -> np.ndarray:
         """Contacts that are within a ``force`` of their change."""
