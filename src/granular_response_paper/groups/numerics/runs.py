@@ -59,8 +59,10 @@ def stopped(scene: Scene, stop_energies: Sequence[float]) -> list[Errors]:
     found = []
     for energy in stop_energies:
         forces = floor(energy, static_finish=False)
-        largest = [np.abs(one - of).max() / np.abs(of).max() for one, of in zip(forces, true, strict=True)]
-        found.append(Errors(*largest, abs(forces[2].sum() - true[2].sum()) / np.abs(true[2].sum())))
+        rest, loaded, response = (
+            np.abs(one - of).max() / np.abs(of).max() for one, of in zip(forces, true, strict=True)
+        )
+        found.append(Errors(rest, loaded, response, abs(forces[2].sum() - true[2].sum()) / np.abs(true[2].sum())))
     return found
 
 
@@ -87,8 +89,10 @@ def restart(scene: Scene, force: float, steps: int, read_every: int) -> Readings
     """A statically finished frictionless state under ``force``, put back into the dynamics from rest."""
     path = LoadPath.of(scene)
     state = path.at(force) if force else path.rest
-    still = {"velocity": np.zeros_like(state.velocity), "angular_velocity": np.zeros_like(state.angular_velocity)}
-    return go_on(path.problem, replace(state, **still), force, steps, read_every)
+    still = replace(
+        state, velocity=np.zeros_like(state.velocity), angular_velocity=np.zeros_like(state.angular_velocity)
+    )
+    return go_on(path.problem, still, force, steps, read_every)
 
 
 def swing(scene: Scene, steps: int, read_every: int) -> Readings:
