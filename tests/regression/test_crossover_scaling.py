@@ -8,7 +8,7 @@ import reduced
 
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
-from granular_response_paper.groups.crossover_scaling import simulate
+from granular_response_paper.groups.crossover_scaling import series as study
 from granular_response_paper.groups.crossover_scaling.claims import CLAIMS
 from granular_response_paper.groups.crossover_scaling.parameters import Parameters
 from granular_response_paper.groups.frictionless_crossover import simulate as frictionless
@@ -96,7 +96,7 @@ def test_between_walls_two_peaks_come_where_the_older_study_finds_them(datasets,
 def test_powers_and_their_intervals_are_those_of_every_corner():
     at, middle = np.array([2.0, 4.0, 7.0, 9.0]), np.array([3.0, 13.0, 40.0, 70.0])
     low, high = 0.97 * middle, 1.03 * middle
-    law = simulate.Power(at, low, high)
+    law = study.Power(at, low, high)
 
     def corners(points, what):
         ends = [list(pair) for pair in zip(low[points], high[points], strict=True)]
@@ -113,16 +113,16 @@ def test_powers_and_their_intervals_are_those_of_every_corner():
     far = law.at_size(1000.0, 1.0)
     assert far[1] == pytest.approx(low[-1] * 1000.0 / 9.0)  # far below the fits
     assert far[2] == law.at_size(1000.0)[2]
-    assert np.isnan(simulate.Power(at[:1], low[:1], high[:1]).exponent()).all()
-    unseen = simulate.Power(at, low, np.array([*high[:3], np.nan]))
-    assert unseen.exponent() == pytest.approx(simulate.Power(at[:3], low[:3], high[:3]).exponent())
+    assert np.isnan(study.Power(at[:1], low[:1], high[:1]).exponent()).all()
+    unseen = study.Power(at, low, np.array([*high[:3], np.nan]))
+    assert unseen.exponent() == pytest.approx(study.Power(at[:3], low[:3], high[:3]).exponent())
 
 
 def test_powers_of_the_continuum_are_known_where_there_is_one_scale(parameters):
     series = {one.name: one for one in parameters.series}
-    known = {name: simulate.continuum(one) for name, one in series.items() if one.varied == "layers"}
+    known = {name: study.continuum(one) for name, one in series.items() if one.varied == "layers"}
     assert known == {"constant confinement": 1.0, "walls": 1.0, "friction": 2.0}
-    assert simulate.continuum(series["friction"].model_copy(update={"confined": "constant"})) is None
+    assert study.continuum(series["friction"].model_copy(update={"confined": "constant"})) is None
 
 
 def test_the_document_gets_a_line_for_each_series_of_layers(datasets):

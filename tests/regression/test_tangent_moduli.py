@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response.solvers.system import StaticSystem
 from granular_response.theory.lattice import Springs, moduli
 from granular_response.theory.slab import response_of_layers
 from granular_response_paper.groups.tangent_moduli import simulate
-from granular_response_paper.groups.tangent_moduli.simulate import Solid, fitted, triangles
+from granular_response_paper.groups.tangent_moduli.solid import Solid, fitted, triangles
 from granular_response_paper.parameters import UNIT_LOAD
 from granular_response_paper.slab_response import LoadPath, Measures
 
@@ -18,19 +17,14 @@ def loaded(friction: float, force: float) -> tuple[LoadPath, Solid, np.ndarray]:
     scene: Scene = UNIT_LOAD.updated({"packing.layers": 11, "packing.disks_per_row": 41, "contact.friction": friction})
     path = LoadPath.of(scene)
     state = path.at(force)
-    system = StaticSystem(path.problem, state)
-    solid = Solid.of(system, state, triangles(path.problem.packing.position))
+    solid = Solid(path.problem, state, triangles(path.problem.packing.position))
     load = path.problem.load_vector()
-    return path, solid, solid.floor_forces(system.answers(solid.trial)(load))
+    return path, solid, solid.floor_forces(solid.system.answers(solid.trial)(load))
 
 
 def measured(path: LoadPath, solid: Solid, width: float) -> np.ndarray:
     family = simulate.loads(path.problem, path.known[max(path.known)], (8, 4))["body"]
-    answer = solid.system.answers(solid.trial)
-    fields = [np.stack(one, axis=-1) for one in zip(*(solid.fields(answer(load)) for load in family), strict=True)]
-    strain, stress = (
-        (solid.averages(width) @ one.reshape(len(solid.area), -1)).reshape(one.shape) for one in fields[:2]
-    )
+    strain, stress, _ = solid.averaged(solid.fields(map(solid.system.answers(solid.trial), family)), width)
     return fitted(strain, stress)[0]
 
 

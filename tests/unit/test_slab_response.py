@@ -9,7 +9,7 @@ from small_scenes import scene
 from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response.state import Event as PathEvent
 from granular_response_paper import slab_response
-from granular_response_paper.groups.symmetry_breaking import simulate as symmetry_breaking
+from granular_response_paper.groups.symmetry_breaking import copies
 from granular_response_paper.records import table
 from granular_response_paper.slab_response import (
     EXACT,
@@ -243,11 +243,11 @@ def test_pictures_keep_what_they_need(path):
 
 def test_copies_of_a_packing_are_the_same_packing():
     packing = scene(4, 7).packing.build()
-    image = symmetry_breaking.mirrored(packing)
+    image = copies.mirrored(packing)
     np.testing.assert_array_equal(np.sort(image.position, axis=0), np.sort(packing.position, axis=0))
     np.testing.assert_array_equal(image.position[0], packing.position[6])
 
-    mixed = symmetry_breaking.shuffled(packing, 3)
+    mixed = copies.shuffled(packing, 3)
     order = np.lexsort(packing.position.T)
     np.testing.assert_array_equal(mixed.position[np.lexsort(mixed.position.T)], packing.position[order])
     assert not np.array_equal(mixed.position, packing.position)
@@ -255,6 +255,6 @@ def test_copies_of_a_packing_are_the_same_packing():
 
     shift = np.zeros((packing.n, 2))
     shift[0] = [1e-3, 2e-3]
-    moved = symmetry_breaking.displaced(packing, shift, mirror_image=True)
+    moved = copies.displaced(packing, shift, mirror_image=True)
     np.testing.assert_allclose(moved.position[6] - packing.position[6], [-1e-3, 2e-3], atol=1e-15)
     np.testing.assert_array_equal(moved.position[:6], packing.position[:6])

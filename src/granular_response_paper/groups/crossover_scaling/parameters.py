@@ -16,6 +16,10 @@ from granular_response_paper.parameters import SIZE, UNIT_LOAD, Growing, Surveye
 
 #: Rest without friction is found by statics at every size, and is the same preparation for all.
 _SLAB = UNIT_LOAD.updated({"preparation.gravity": "frictionless", "contact.stiffness_ratio": 0.8})
+_DECIDED = (
+    "packing.sides", "packing.lattice_constant", "packing.polydispersity", "contact.friction",
+    "contact.normal_stiffness", "wall.normal_stiffness", "loads",
+)  # fmt: skip
 
 #: What may differ along a series.
 VARIED = ("layers", "disks_per_layer", "stiffness_per_layer", "confinement")
@@ -95,20 +99,9 @@ def _different_names(series: tuple[Series, ...]) -> tuple[Series, ...]:
 class Parameters(SurveyedGroup):
     """Section ``crossover_scaling``."""
 
-    scene: Annotated[
-        Scene,
-        over(
-            _SLAB,
-            *SIZE,
-            "packing.sides",
-            "packing.lattice_constant",
-            "packing.polydispersity",
-            "contact.friction",
-            "contact.normal_stiffness",
-            "wall.normal_stiffness",
-            "loads",
-        ),
-    ] = Field(_SLAB, description="Base scene; walls are twice as stiff as the disks.")
+    scene: Annotated[Scene, over(_SLAB, *SIZE, *_DECIDED)] = Field(
+        _SLAB, description="Base scene; walls are twice as stiff as the disks."
+    )
     series: Annotated[tuple[Series, ...], AfterValidator(some), AfterValidator(_different_names)] = Field(
         description="Slabs that are compared."
     )

@@ -9,7 +9,6 @@ force; its ramp time is not told.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -17,16 +16,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from granular_response.observe import events
+from granular_response.observe.events import bisect_event
 from granular_response.scene import Scene
-from granular_response.solvers.problem import Problem
 from granular_response.state import State
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.friction_linear_range.parameters import Parameters
 from granular_response_paper.records import axes, table, variables
-from granular_response_paper.slab_response import LoadPath, Measures
 from granular_response_paper.tasks import computed
 
 FRICTION, APPLIED = "coefficient of friction between disks", f"applied force {WEIGHTS}"
@@ -41,7 +38,8 @@ class PathResult:
     events: list[slab.Event]
     lost: list[slab.Lost]
     method: str
-    states: list[State]  #: at rest, and at ``forces``, or these are not kept
+    rest: State
+    picture: xr.Dataset | None  #: of the states at rest and at ``forces``, where these are kept
 
 
 def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = None, keep: bool = False) -> PathResult:
@@ -50,36 +48,36 @@ def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = No
     ``asymmetry`` is that from which symmetry is lost; without it no events are looked for. All of them are located, and
     states kept, where ``keep`` asks for it.
     """
-    path = LoadPath.of(scene)
-    states, measures = path.through(forces), Measures(path)
+    path = slab.LoadPath.of(scene)
+    states, measures = path.through(forces), slab.Measures(path)
     asked = slab.happenings(measures, states[0], asymmetry) if asymmetry else {}
-    if not keep:
-        asked = {name: what for name, what in asked.items() if name in ("first_opening", "linear_range")}
+    asked = {name: what for name, what in asked.items() if keep or name in ("first_opening", "linear_range")}
     return PathResult(
         forces,
         slab.measured(measures, states),
         slab.locate(path, forces, asked),
         [slab.Lost.of(measures.friction, event) for event in slab.lost(states)],
         path.method,
-        [path.rest, *states] if keep else [path.rest],
+        path.rest,
+        slab.states_picture([path.rest, *states], path.problem) if keep else None,
     )
 
 
 def shake(scene: Scene, rest: State, force: float) -> tuple[State, xr.Dataset]:
     """One force applied to the packing at rest by dynamics."""
-    path = LoadPath.of(scene, rest)
+    path = slab.LoadPath.of(scene, rest)
     state = path.at(force)
-    return state, slab.measured(Measures(path), [state])
+    return state, slab.measured(slab.Measures(path), [state])
 
 
 def narrow(scene: Scene, force: float, low: float, high: float, tolerance: float) -> tuple[float, float]:
     """The coefficient of friction, above ``low`` and not above ``high``, from which there is one peak."""
 
     def single_peaked(friction: float) -> bool:
-        path = LoadPath.of(scene.updated({"contact.friction": friction}))
-        return not Measures(path).double_peaked(path.at(force))
+        path = slab.LoadPath.of(scene.updated({"contact.friction": friction}))
+        return not slab.Measures(path).double_peaked(path.at(force))
 
-    found = events.bisect_event(single_peaked, low, high, tolerance, at_low=False, at_high=True)
+    found = bisect_event(single_peaked, low, high, tolerance, at_low=False, at_high=True)
     return found.low, found.high
 
 
@@ -89,35 +87,35 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """
     base, axis, given = parameters.base, parameters.friction_axis, parameters.dynamics
     paths = computed(_paths(parameters), "load paths")
-
+    main = {mu: paths[mu] for mu in parameters.frictions}
     axis_frictions = sorted(axis.frictions)
     on_axis = [paths[mu].measured.isel(state=[paths[mu].forces.index(axis.force)]) for mu in axis_frictions]
     one_peak = [not measured["double_peaked"][0] for measured in on_axis]
     low, high = slab.first_change(axis_frictions, one_peak)
-    further: dict[float | str, Callable[[], Any]] = {}
+    protocol = {"method": "dynamics", "ramp_time": given.ramp_time, "time_step": given.time_step}
+    shaken = base.updated({"contact.friction": given.friction, "protocol": protocol})
+    tasks: dict[Any, partial[Any]]
+    tasks = {force: partial(shake, shaken, main[given.friction].rest, force) for force in sorted(given.forces)}
     if np.isfinite(high) and not one_peak[0]:
-        further["crossover"] = partial(narrow, base, axis.force, low, high, axis.tolerance)
-    ramp = {f"protocol.{name}": getattr(given, name) for name in ("ramp_time", "time_step")}
-    shaken = base.updated({"contact.friction": given.friction, "protocol.method": "dynamics", **ramp})
-    for force in sorted(given.forces):
-        further[force] = partial(shake, shaken, paths[given.friction].states[0], force)
-    done = computed(further, "large forces")
+        tasks["crossover"] = partial(narrow, base, axis.force, low, high, axis.tolerance)
+    done = computed(tasks, "large forces")
     low, high = done.pop("crossover", (low, high))
 
-    main = {mu: paths[mu] for mu in parameters.frictions}
     text = f"along the axis of friction at force {axis.force:g}, the floor response no longer has two peaks"
     found = [event for result in main.values() for event in result.events]
     found.append(slab.Event("friction_crossover", float("nan"), low, high, text))
+    forces = sorted({force for one in main.values() for force in one.forces})
+    parts = [((k, np.searchsorted(forces, one.forces)), one.measured) for k, one in enumerate(main.values())]
+    response = slab.measured_dataset(("friction", "force"), parts, (len(main), len(forces)))
+    response.attrs["method"] = ", ".join(f"friction {mu:g}: {one.method}" for mu, one in main.items())
     datasets = {
-        "response": _response_dataset(main),
+        "response": response.assign_coords(axes(friction=(main, FRICTION), force=(forces, APPLIED))),
         "friction_axis": slab.measured_along("friction", on_axis)
         .assign_coords(axes(friction=(axis_frictions, FRICTION)))
         .assign(force=variable((), axis.force, APPLIED)),
         "lost": table([one for result in main.values() for one in result.lost], "lost", kind=slab.Lost),
     }
-    for mu, result in main.items():
-        if result.states[1:]:
-            datasets[f"states_mu_{mu:g}"] = _picture(base, result.states)
+    datasets |= {f"states_mu_{mu:g}": one.picture for mu, one in main.items() if one.picture is not None}
     if done:
         states, measured = zip(*done.values(), strict=True)
         large = slab.measured_along("force", measured).assign_coords(axes(force=(done, APPLIED)))
@@ -128,7 +126,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
                 time_step=("", given.time_step, "time step in sqrt(radius/g)"),
             )
         )
-        datasets["large_force_states"] = _picture(base, [paths[given.friction].states[0], *states])
+        rest = main[given.friction].rest
+        datasets["large_force_states"] = slab.states_picture([rest, *states], slab.LoadPath.of(shaken, rest).problem)
         ends = slab.first_change(large["force"].values, large["asymmetry"].values > parameters.asymmetry)
         text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {parameters.asymmetry:g}"
         found.append(slab.Event("loss_of_symmetry", given.friction, *ends, text))
@@ -138,32 +137,13 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
 def _paths(parameters: Parameters) -> dict[float, partial[PathResult]]:
     """By friction: through all forces, and through that of the axis of friction alone for those of the axis alone."""
-    axis = parameters.friction_axis
+    base, axis, tasks = parameters.base, parameters.friction_axis, {}
     further = {extra.friction: extra.forces for extra in parameters.extra_forces}
     largest = {end.friction: end.force for end in parameters.ends}
-    scenes = {
-        mu: parameters.base.updated({"contact.friction": mu})
-        for mu in dict.fromkeys([*parameters.frictions, *sorted(axis.frictions)])
-    }
-    paths = {mu: partial(follow, scene, (axis.force,)) for mu, scene in scenes.items()}
     for mu in parameters.frictions:
-        forces = {axis.force, *parameters.forces, *further.get(mu, ())}
-        reached = tuple(sorted(force for force in forces if force <= largest.get(mu, np.inf)))
-        paths[mu] = partial(follow, scenes[mu], reached, parameters.asymmetry, mu in parameters.states_of)
-    return paths
-
-
-def _response_dataset(results: dict[float, PathResult]) -> xr.Dataset:
-    """Friction by force; nan where a friction has no state at a force."""
-    forces = sorted({force for result in results.values() for force in result.forces})
-    parts = [
-        ((row, [forces.index(force) for force in result.forces]), result.measured)
-        for row, result in enumerate(results.values())
-    ]
-    dataset = slab.measured_dataset(("friction", "force"), parts, (len(results), len(forces)))
-    dataset.attrs["method"] = ", ".join(f"friction {mu:g}: {result.method}" for mu, result in results.items())
-    return dataset.assign_coords(axes(friction=(results, FRICTION), force=(forces, APPLIED)))
-
-
-def _picture(scene: Scene, states: Sequence[State]) -> xr.Dataset:
-    return slab.states_picture(states, Problem.from_scene(scene).with_loads(states[0].position))
+        forces = sorted({axis.force, *parameters.forces, *further.get(mu, ())})
+        reached = tuple(force for force in forces if force <= largest.get(mu, np.inf))
+        path = partial(follow, base.updated({"contact.friction": mu}), reached)
+        tasks[mu] = partial(path, parameters.asymmetry, mu in parameters.states_of)
+    alone = [mu for mu in sorted(axis.frictions) if mu not in tasks]
+    return tasks | {mu: partial(follow, base.updated({"contact.friction": mu}), (axis.force,)) for mu in alone}

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio
 from granular_response.scene.errors import Problem
+from granular_response.state import FloatArray
 from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Counts, SurveyedGroup, growing, over, some
 
 #: Least number of realizations that are drawn from for an interval.
@@ -88,6 +90,11 @@ class Parameters(SurveyedGroup):
     @property
     def surveyed(self) -> bool:
         return any(case.surveyed for case in self.cases)
+
+    @property
+    def grid(self) -> FloatArray:
+        """Distances from the axis, in depths."""
+        return np.arange(round(self.reach / self.spacing) + 1, dtype=float) * self.spacing
 
     @model_validator(mode="after")
     def _check(self) -> Parameters:

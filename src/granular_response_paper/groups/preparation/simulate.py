@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -19,16 +20,14 @@ import xarray as xr
 from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.scene.lattice import TOUCHING_LARGEST
-from granular_response.solvers.dynamics import Dynamics, Stop
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.settle import PROTOCOL, settle
-from granular_response.solvers.timestep import resolve_time_step
-from granular_response.state import FloatArray, State
+from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.preparation.parameters import Parameters, Part
+from granular_response_paper.groups.preparation.parameters import Parameters
+from granular_response_paper.groups.preparation.taps import tapped
 from granular_response_paper.parameters import material
 from granular_response_paper.records import axes, column, record, table
 from granular_response_paper.tasks import computed
@@ -44,12 +43,6 @@ class Prepared:
     damping_ratio: float = column("damping over critical damping")
     friction: float = column("coefficient of friction between disks")
     wall_friction: float = column("coefficient of friction of walls")
-
-    @classmethod
-    def of(cls, way: str, scene: Scene) -> Prepared:
-        preparation, contact = scene.preparation, scene.contact
-        given = preparation.gravity, preparation.ramp_time, contact.damping_ratio, contact.friction
-        return cls(way, *given, scene.wall.friction)
 
 
 #: Counted in a slab at rest, for each of ``slab.MARGINS``.
@@ -93,40 +86,13 @@ class Outcome:
     mobilized: Mobilized
 
 
-def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration: float) -> State:
-    """The equilibrium after a number of taps, each of which begins when the slab is at rest again.
-
-    In the frame of the box, which moves as :class:`~.parameters.Taps` says, gravity goes from 1 to 1 + ``amplitude``,
-    to 1 - ``amplitude`` and back to 1. ``duration`` of it all in sqrt(R/g), rounded to four times whole steps.
-
-    Raises
-    ------
-    NotSettled, DynamicsError
-        As of ``solvers.settle.settle``.
-    """
-    protocol = problem.scene.protocol
-    stop = Stop(problem.plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
-    most, least = 1.0 + amplitude, 1.0 - amplitude
-    for _ in range(taps):
-        dynamics = Dynamics(problem, rest, protocol.integrator, resolve_time_step(problem))
-        steps = round(0.25 * duration / dynamics.time_step)
-        quarter = steps * dynamics.time_step
-        dynamics.set_ramps(gravity=(1.0, most, quarter))
-        dynamics.advance(steps)
-        dynamics.set_ramps(gravity=(most, least, 2.0 * quarter))
-        dynamics.advance(2 * steps)
-        rest = settle(problem, dynamics.state(), PROTOCOL, stop, what="taps", gravity=(least, 1.0, quarter))
-    return rest
-
-
 def compute(
     way: str, scene: Scene, taps: tuple[int, float, float], forces: tuple[float, ...], asymmetry: float
 ) -> Outcome:
     """A slab settled as its ``scene`` says, tapped (number, amplitude, duration) and loaded by each of the forces."""
     problem = Problem.from_scene(scene)
     path = slab.LoadPath.of(scene, tapped(problem, rest_state(problem), *taps))
-    states = path.through(forces)
-    measures = slab.Measures(path)
+    states, measures = path.through(forces), slab.Measures(path)
     pairs = path.rest.pairs
     level = pairs.touching & (network.lattice_direction(path.rest) == network.HORIZONTAL) & measures.near
     level_force = float(pairs.normal_force[level].mean()) if level.any() else 0.0
@@ -137,41 +103,29 @@ def compute(
         high["crossover"] = np.nan
     part, against = rest.rest_mobilised / rest.contacts, np.array([high[name] for name in AGAINST])
     mobilized = Mobilized(packing["polydispersity"], packing["realization"], *taps, part, against)
-    return Outcome(Prepared.of(way, scene), rest, slab.measured(measures, states), events, mobilized)
+    gravity, contact = scene.preparation, scene.contact
+    given = gravity.gravity, gravity.ramp_time, contact.damping_ratio, contact.friction, scene.wall.friction
+    return Outcome(Prepared(way, *given), rest, slab.measured(measures, states), events, mobilized)
 
 
-#: Of a slab, in the order in which they are stored: polydispersity, friction of its walls and disks, way and part by
-#: their numbers, realization, and the number, amplitude and duration of taps.
-Place = tuple[float, float, float, int, int, int, tuple[int, float, float]]
-
-
-def tasks(parameters: Parameters) -> dict[Place, partial[Outcome]]:
-    """A task for each part, way and realization, and for the taps of each."""
-    return {
-        (part.polydispersity, scene.wall.friction, scene.contact.friction, k, p, realization, taps): partial(
-            compute, way.name, scene, taps, forces, parameters.asymmetry
-        )
-        for p, part in enumerate(parameters.parts)
-        for forces in [tuple(force for force in parameters.forces if force <= part.to)]
-        for k, way in enumerate(parameters.ways)
-        if not part.ways or way.name in part.ways
-        for realization in range(part.realizations)
-        for scene in [_scene(parameters.base, part, realization).updated(way.changes)]
-        for taps in part.tapped
-    }
-
-
-def _scene(base: Scene, part: Part, realization: int) -> Scene:
-    walls = part.friction if part.walls == "rough" else 0.0
-    scene = base.updated(material(part.polydispersity, realization, part.friction, walls))
-    return scene.updated({"packing.lattice_constant": TOUCHING_LARGEST}) if part.polydispersity else scene
+def tasks(parameters: Parameters) -> dict[tuple[Any, ...], partial[Outcome]]:
+    """A task for each part, way and realization, and for the taps of each, by what sorts them as they are stored."""
+    found = {}
+    for p, part in enumerate(parameters.parts):
+        forces = tuple(force for force in parameters.forces if force <= part.to)
+        ways = [(k, way) for k, way in enumerate(parameters.ways) if not part.ways or way.name in part.ways]
+        walls = part.friction if part.walls == "rough" else 0.0
+        lattice = {"packing.lattice_constant": TOUCHING_LARGEST} if part.polydispersity else {}
+        for (k, way), realization, taps in product(ways, range(part.realizations), part.tapped):
+            given = material(part.polydispersity, realization, part.friction, walls)
+            scene = parameters.base.updated(given | lattice | way.changes)
+            place = part.polydispersity, walls, part.friction, k, p, realization, taps
+            found[place] = partial(compute, way.name, scene, taps, forces, parameters.asymmetry)
+    return found
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``response`` (case, force), nan above the last force of a case, ``events``, and ``mobilized``.
-
-    The last one has the disordered and the tapped slabs too.
-    """
+    """Datasets ``response`` (case, force), nan above the last force, ``events``, and, of all slabs, ``mobilized``."""
     asked, forces = tasks(parameters), parameters.forces
     # the longest ramps of gravity take longest
     found = computed(asked, "prepared slabs", work=lambda place: asked[place].args[1].preparation.ramp_time)

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, get_args
+from typing import get_args
 
 import numpy as np
 import xarray as xr
@@ -28,7 +28,6 @@ from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.theory import half_plane, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Springs
-from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
@@ -60,20 +59,16 @@ RATIO = "tangential stiffness over normal stiffness"
 
 def measure(base: Scene, ratio: float, force: float) -> tuple[xr.Dataset, str]:
     """The measured response of a packing at one stiffness ratio, and the method that found it."""
-    changes: dict[str, Any] = {"contact.stiffness_ratio": ratio}
-    if ratio == 0.0:
-        changes["protocol.method"] = "auto"
-    path = slab.LoadPath.of(base.updated(changes))
-    state = path.at(force)
-    return slab.measured(slab.Measures(path), [state]), path.method
+    scene = base.updated({"contact.stiffness_ratio": ratio})
+    path = slab.LoadPath.of(scene if ratio else scene.updated({"protocol.method": "auto"}))
+    return slab.measured(slab.Measures(path), [path.at(force)]), path.method
 
 
 def narrow(name: str, base: Scene, force: float, low: float, high: float, tolerance: float) -> tuple[float, float]:
     """Bisect an event of ``EVENTS`` between two ratios; every evaluation settles and loads a packing."""
     _, happened = EVENTS[name]
-    found = bisect_event(
-        lambda ratio: happened(measure(base, ratio, force)[0]), low, high, tolerance, at_low=False, at_high=True
-    )
+    at = partial(measure, base, force=force)
+    found = bisect_event(lambda ratio: happened(at(ratio)[0]), low, high, tolerance, at_low=False, at_high=True)
     return found.low, found.high
 
 
@@ -118,13 +113,13 @@ class Elastic:
 
 
 def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float) -> xr.Dataset:
-    """Response of elastic bodies with the moduli of the spring model without horizontal springs (Sec. V.C).
+    """Elastic bodies with the moduli of the spring model without horizontal springs (Sec. V.C); claims K2 and K3.
 
-    ``profile`` (rotations, body, stiffness_ratio, floor_disk) is what each floor disk at ``x`` gets of a unit
-    force: the pressure on the diameter below it, of the half plane at the depth of the floor or of a slab of
-    ``layers`` disk layers between smooth walls ``width`` apart. It is nan at a ratio of zero, where the lattice
-    resists some strain not at all. ``root`` and ``moduli_error`` are claims K2 and K3.
+    What a floor disk at ``x`` gets of a unit force is the pressure on the diameter below it, of the half plane at the
+    depth of the floor or of a slab of ``layers`` disk layers between smooth walls ``width`` apart. It is nan at a
+    ratio of zero, where the lattice resists some strain not at all.
     """
+    node, weight = np.polynomial.legendre.leggauss(8)
     found, error = {}, {}
     for (r, k), (rotations, ratio) in places(ROTATIONS, ratios):
         if ratio == 0.0:
@@ -134,7 +129,11 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
         exact = moduli.matrix()
         error[r, k] = np.abs(lattice.measured_moduli(springs, rotations) - exact).max() / exact.max()
         for b, body in enumerate(BODIES):
-            profile = _profile(moduli, body, x, layers, width)
+            if body == "half plane":
+                profile = half_plane.pressure(x[:, None] + node, np.sqrt(3.0) * layers, moduli) @ weight
+            else:
+                floor: Floor = "smooth" if body == "smooth floor" else "rough"
+                profile = response_of_layers(x, layers=layers, moduli=moduli, floor=floor, width=width)
             found[r, b, k] = Elastic(profile, central_dip(x, profile))
     roots = [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS]
     off = "largest difference of the moduli of a strained periodic lattice from eqs. (7)-(10), per largest"
@@ -149,11 +148,3 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
         rotations=("rotations", ROTATIONS, "whether the disks turn"),
     )
     return table(found, "rotations", "body", "stiffness_ratio").assign(further).assign_coords(coordinates)
-
-
-def _profile(moduli: Moduli, body: Body, x: FloatArray, layers: int, width: float) -> FloatArray:
-    if body == "half plane":
-        node, weight = np.polynomial.legendre.leggauss(8)
-        return half_plane.pressure(x[:, None] + node, np.sqrt(3.0) * layers, moduli) @ weight
-    floor: Floor = "smooth" if body == "smooth floor" else "rough"
-    return response_of_layers(x, layers=layers, moduli=moduli, floor=floor, width=width)

@@ -1,0 +1,30 @@
+"""Taps of a slab at rest: the box moves as :class:`~.parameters.Taps` says."""
+
+from __future__ import annotations
+
+from granular_response.solvers.dynamics import Dynamics, Stop
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.settle import PROTOCOL, settle
+from granular_response.solvers.timestep import resolve_time_step
+from granular_response.state import State
+
+
+def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration: float) -> State:
+    """The equilibrium after a number of taps, each of which begins when the slab is at rest again.
+
+    In the frame of the box gravity goes from 1 to 1 + ``amplitude``, to 1 - ``amplitude`` and back to 1, in a
+    ``duration`` in sqrt(R/g) that is rounded to four times whole steps. Raises what ``solvers.settle.settle`` raises.
+    """
+    protocol = problem.scene.protocol
+    stop = Stop(problem.plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
+    most, least = 1.0 + amplitude, 1.0 - amplitude
+    for _ in range(taps):
+        dynamics = Dynamics(problem, rest, protocol.integrator, resolve_time_step(problem))
+        steps = round(0.25 * duration / dynamics.time_step)
+        quarter = steps * dynamics.time_step
+        dynamics.set_ramps(gravity=(1.0, most, quarter))
+        dynamics.advance(steps)
+        dynamics.set_ramps(gravity=(most, least, 2.0 * quarter))
+        dynamics.advance(2 * steps)
+        rest = settle(problem, dynamics.state(), PROTOCOL, stop, what="taps", gravity=(least, 1.0, quarter))
+    return rest
