@@ -10,6 +10,7 @@ from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.hysteresis import simulate
 from granular_response_paper.groups.hysteresis.claims import CLAIMS
+from granular_response_paper.groups.hysteresis.loops import keep_books
 from granular_response_paper.groups.hysteresis.parameters import Parameters
 from granular_response_paper.report import beyond
 
@@ -48,7 +49,7 @@ def test_books_close_better_with_smaller_increments():
     def left_over(count):
         ways = np.linspace(0.0, 4.0, count + 1)
         states = [rest, *loaded_states(problem, rest, [*ways[1:], *ways[-2::-1]])[1]]
-        books = simulate.keep_books(problem, states)
+        books = keep_books(problem, states)
         return abs(books.work - books.stored - books.slid) / books.slid
 
     coarse, fine = left_over(6), left_over(48)
@@ -61,7 +62,7 @@ def test_sliding_stops_where_friction_is_high():
     scene = scene.updated({"contact.friction": 100.0})
     problem, rest = at_rest(scene)
     states = [rest, *loaded_states(problem, rest, [0.05, 0.1, 0.05, 0.0])[1]]
-    books = simulate.keep_books(problem, states)
+    books = keep_books(problem, states)
     assert books.slid == pytest.approx(0.0, abs=1e-12) and abs(books.work) < 1e-12
 
 

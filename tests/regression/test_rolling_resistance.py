@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response_paper.groups.rolling_resistance import simulate
+from granular_response_paper.groups.rolling_resistance.balance import balance
+from granular_response_paper.groups.rolling_resistance.couples import decay
 
 
 def test_rolling_resistance_lowers_the_friction_that_holds_a_pile(datasets):
@@ -23,7 +24,7 @@ def test_balance_of_two_layers_in_closed_form():
     outer two bear nothing, so each middle one turns against the floor alone, F = T, which must hold it back:
     N cos 60 - T sin 60 <= F, so T / N >= cos 60 / (1 + sin 60) = tan 15.
     """
-    steps = [simulate.balance(2, 0.0, 1.0, tolerance).balance for tolerance in (0.1, 0.001)]
+    steps = [balance(2, 0.0, 1.0, tolerance).balance for tolerance in (0.1, 0.001)]
     assert steps[0] <= steps[1] == pytest.approx(2.0 - np.sqrt(3.0), abs=0.001)
 
 
@@ -63,6 +64,6 @@ def test_couples_between_rows_in_closed_form(datasets):
 def test_exponential_couples_give_the_length_of_their_solid():
     scene = Scene().updated({"contact.stiffness_ratio": 0.5, "contact.rolling_stiffness_ratio": 12.0})
     depth = np.arange(1.0, 20.0)
-    solid, *_ = simulate.decay(scene, depth, np.zeros(19))
-    _, left, length = simulate.decay(scene, depth, solid)
+    solid, *_ = decay(scene, depth, np.zeros(19))
+    _, left, length = decay(scene, depth, solid)
     assert left < 1e-12 and length == pytest.approx(0.5 * np.sqrt(12.0 / 1.5), rel=1e-6)

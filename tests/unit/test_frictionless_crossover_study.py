@@ -9,7 +9,7 @@ from granular_response.scene import Packing
 from granular_response.solvers.problem import Problem
 from granular_response_paper.groups.frictionless_crossover import simulate as study
 from granular_response_paper.groups.frictionless_crossover.draw import nearest
-from granular_response_paper.groups.frictionless_crossover.simulate import Slab
+from granular_response_paper.groups.frictionless_crossover.slab import Slab, new_neighbours, rest_asymmetry, settle
 
 PARAMETERS = {
     "method": "auto",
@@ -53,7 +53,7 @@ def test_asymmetry_is_the_lean_alone() -> None:
 
     def asymmetry(shift) -> float:
         moved = packing.position + np.stack([shift, 0.1 * away], axis=1)
-        return study.rest_asymmetry(packing.position, replace(state, position=moved), packing.width)
+        return rest_asymmetry(packing.position, replace(state, position=moved), packing.width)
 
     assert asymmetry(0.01 * away) == pytest.approx(0.0, abs=1e-15)
     assert asymmetry(0.01 * away + 0.03) == pytest.approx(0.03)
@@ -66,7 +66,7 @@ def test_new_neighbours_are_touching_pairs_that_were_apart() -> None:
     pushed = packing.position.copy()
     pushed[:, 0] *= 0.999
     state = problem.relisted(replace(problem.bare_state(), position=pushed))
-    assert study.new_neighbours(packing.position, state) == 0
+    assert new_neighbours(packing.position, state) == 0
     # the first disk of the bottom row goes on top of the third
     pushed[0] = pushed[2] + (0.0, 1.9)
     moved = problem.relisted(replace(problem.bare_state(), position=pushed))
@@ -74,19 +74,19 @@ def test_new_neighbours_are_touching_pairs_that_were_apart() -> None:
     others = np.where(moved.pairs.first == 0, moved.pairs.second, moved.pairs.first)[touching]
     apart = np.linalg.norm(packing.position[others] - packing.position[0], axis=1) > 3.0
     assert apart.any()
-    assert study.new_neighbours(packing.position, moved) == int(apart.sum())
+    assert new_neighbours(packing.position, moved) == int(apart.sum())
 
 
 def test_soft_disks_are_settled_by_dynamics() -> None:
     """Where the lattice does not hold, the rest state comes from the fall; elsewhere from the minimum."""
     soft, stiff = Slab(8, 24, 20.0), Slab(8, 24, 3000.0)
     packing = Problem.from_scene(soft.scene(BASE)).packing
-    fallen, held = study.settle(soft.scene(BASE)), study.settle(stiff.scene(BASE))
+    fallen, held = settle(soft.scene(BASE)), settle(stiff.scene(BASE))
     assert fallen.certificate.stable
     assert fallen.certificate.force_residual < 1e-9
-    assert study.new_neighbours(packing.position, fallen) > 0
+    assert new_neighbours(packing.position, fallen) > 0
     assert held.reached.method == "minimise"
-    assert study.new_neighbours(packing.position, held) == 0
+    assert new_neighbours(packing.position, held) == 0
 
 
 def test_a_wide_slab_leans_to_one_side() -> None:
@@ -95,9 +95,9 @@ def test_a_wide_slab_leans_to_one_side() -> None:
     lean = {}
     for slab in (wide, narrow):
         packing = Problem.from_scene(slab.scene(BASE)).packing
-        rest = study.settle(slab.scene(BASE))
+        rest = settle(slab.scene(BASE))
         assert rest.certificate.stable
-        lean[slab] = study.rest_asymmetry(packing.position, rest, packing.width)
+        lean[slab] = rest_asymmetry(packing.position, rest, packing.width)
     assert lean[narrow] < 1e-10
     assert 1e-3 < lean[wide] < 1e-2
 

@@ -86,7 +86,7 @@ def test_undamped_energy_stays_and_friction_only_takes_it(integrator):
 
     def change(friction: float, part: float, system: str = "slab") -> np.ndarray:
         scene = base.updated({"contact.friction": friction})
-        return stability.drift(scene, system, integrator, part, 5.0, kick, SEED).energy_change
+        return closed_forms.drift(scene, system, integrator, part, 5.0, kick, SEED).energy_change
 
     for system in ("slab", "bouncing disk"):
         coarse, fine = (np.abs(change(0.0, p, system)).max() for p in (2.0 * part, 0.5 * part))

@@ -48,6 +48,8 @@ GROUPS = ("peak_width", "moduli", "crossover_scaling", "hysteresis")
 LIBRARY = ("contact", "kernels", "linalg", "machine", "observe", "scene", "solvers", "state")
 MECHANICS = (*LIBRARY, f"{PACKAGE}/slab_response.py")
 SOURCES = (*MECHANICS, f"{PACKAGE}/ensembles")
+#: Modules beside ``simulate.py`` in which groups measure packings.
+BESIDE = (f"{PACKAGE}/groups/hysteresis/loops.py",)
 
 #: What is kept of the responses and of the packings.
 RESPONSES = ("force", "x", "floor_response", "outcome", "message", "lost", "by_motion")
@@ -139,7 +141,7 @@ def tasks_of(group: str, parameters: Any) -> dict[Any, partial[Any]]:
 
 def sources_of(group: str) -> tuple[str, ...]:
     """The sources that an outcome of a group's task depends on."""
-    return (*MECHANICS, "theory", f"{PACKAGE}/groups/{group}/simulate.py")
+    return (*MECHANICS, "theory", f"{PACKAGE}/groups/{group}/simulate.py", *BESIDE)
 
 
 def run(block: Block, folder: Path, *, workers: int | None = None, progress: Progress | None = None) -> Path:

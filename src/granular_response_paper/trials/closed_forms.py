@@ -13,7 +13,10 @@ from granular_response.kernels.statics import elastic_energies
 from granular_response.scene import Packing, Scene
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.problem import Problem
+from granular_response.solvers.timestep import stability_limit
 from granular_response.state import FloatArray, State
+from granular_response_paper.records import column, record
+from granular_response_paper.trials import time_steps
 
 #: Distance of the side walls from what happens.
 FAR = 500.0
@@ -113,3 +116,59 @@ def energy_change(
         times.append(dynamics.time)
         energy.append(mechanical_energy(dynamics))
     return np.array(times), np.array(energy) - energy[0]
+
+
+@record
+class Drifted:
+    time: FloatArray = column("time in sqrt(radius/g)", "reading")
+    energy_change: FloatArray = column(
+        "change of the total energy of an undamped system, per energy that it moves with", "reading"
+    )
+
+
+def drift(scene: Scene, system: str, integrator: str, part: float, time: float, kick: float, seed: int) -> Drifted:
+    """An undamped system in motion: a disk that bounces on the floor, or a slab at rest that is kicked.
+
+    The kick is strong enough for contacts to open and slide. Springs are ahead of positions by half a time step, so
+    in a feeble motion about large forces the total energy cannot be read off.
+    """
+    undamped = scene.updated({"contact.damping_ratio": 0.0, "wall.damping_ratio": 0.0})
+    if system == "bouncing disk":
+        problem, state = free_disks(undamped, np.array([(0.0, 1.5)]), np.zeros((1, 2)), np.zeros(1))
+        energy = 0.5
+    else:
+        problem, state, _ = time_steps.prepared(Problem.from_scene(undamped))
+        state = time_steps.kick(problem, state, seed, kick)
+        energy = kinetic_energy(state, problem)
+    step = part * stability_limit(problem, "verlet")
+    times, change = energy_change(problem, state, integrator, step, time)
+    return Drifted(times, change / energy)
+
+
+@record
+class Collided:
+    energy_ratio: FloatArray = column("kinetic energy after a collision over that before", "angle", "spin")
+
+
+def collide(scene: Scene, angles: tuple[float, ...], spins: tuple[float, ...], step: float, body: str) -> Collided:
+    """Collisions with the floor or a disk at all angles and spins under one contact law."""
+    pair = body == "disk"
+    ratios = [[collision(scene, angle, spin, step, pair=pair) for spin in spins] for angle in angles]
+    return Collided(np.array(ratios))
+
+
+@record
+class Rolled:
+    time: FloatArray = column("time in sqrt(radius/g)", "reading")
+    velocity: FloatArray = column("velocity of the disk, x", "reading")
+    rim_speed: FloatArray = column("rim speed, positive for rolling along x", "reading")
+    exact_velocity: FloatArray = column("velocity in closed form", "reading")
+    exact_rim_speed: FloatArray = column("rim speed in closed form", "reading")
+
+
+def roll(friction: float, speed: float, spin: float, step: float) -> Rolled:
+    """A disk thrown along the floor, until it has rolled for a while."""
+    scene = Scene().updated({"wall.friction": friction, "loads": []})
+    time = 1.5 * abs(speed + spin) / (3.0 * friction)
+    times, velocity, rim_speed = sliding_to_rolling(scene, speed, spin, step, time)
+    return Rolled(times, velocity, rim_speed, *rolling_speed(times, friction, speed, spin))

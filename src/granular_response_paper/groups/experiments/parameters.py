@@ -10,6 +10,7 @@ from pydantic import AfterValidator, Field, model_validator
 from granular_response.scene import Load, PouredPacking, Scene, SlabPacking
 from granular_response.scene.base import Count, Description, Index, Positive
 from granular_response.scene.errors import Problem
+from granular_response.state import FloatArray
 from granular_response_paper.parameters import UNIT_LOAD, SceneGroup, over, some
 
 Packing = Annotated[SlabPacking | PouredPacking, Field(discriminator="kind")]
@@ -55,6 +56,11 @@ class Parameters(SceneGroup):
         if self.pictures and max(self.pictures) >= len(self.cases):
             raise Problem(f"must be below {len(self.cases)}", key=("pictures",), value=list(self.pictures))
         return self
+
+    @property
+    def x(self) -> FloatArray:
+        """Places of profiles from the load, half a radius apart."""
+        return np.arange(-self.reach, self.reach + 0.5, 0.5)
 
     def scene_of(self, case: Case, realization: int) -> Scene:
         """One realization, with a load of one disk weight."""

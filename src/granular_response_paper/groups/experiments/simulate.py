@@ -15,29 +15,26 @@ import numpy as np
 import xarray as xr
 
 from granular_response.observe.difference import wall_force_difference
-from granular_response.observe.stress import ContactForces, line_forces, line_stress, load_forces
+from granular_response.observe.stress import line_forces, line_stress, load_forces
 from granular_response.observe.widths import FITS, lengths, powers
-from granular_response.scene import Scene
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR, FloatArray
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import RADII
 from granular_response_paper.datasets import labelled, pictured
 from granular_response_paper.groups.experiments import LATTICE
-from granular_response_paper.groups.experiments.parameters import Parameters
-from granular_response_paper.records import axes, column, labels, record, table, variables
+from granular_response_paper.groups.experiments.parameters import Case, Parameters
+from granular_response_paper.records import axes, column, labels, record, table
 from granular_response_paper.slab_response import LoadPath
 from granular_response_paper.survey.crossover import CONFIDENCE, folded, weights
 from granular_response_paper.tasks import computed
 
-#: Distance of points of profiles (radii); distance from the load per depth, of profiles that are put on each other.
-SPACING, SCALED = 0.5, np.linspace(0.0, 1.5, 31)
+#: Distance from the load per depth, of profiles that are put on each other.
+SCALED = np.linspace(0.0, 1.5, 31)
 #: Directions below the horizontal, from the side that an oblique force points to, in degrees.
 ANGLES = np.arange(20.0, 161.0)
 #: Downwards, and half-way between that and the lattice.
 VERTICAL, BETWEEN = 90.0, 75.0
-ESTIMATE = ("mean", "low", "high")
-WIDTHS = ("half_maximum", "half_force")
 
 
 @record
@@ -47,8 +44,7 @@ class Outcome:
     moved: float = column(f"how far the load moves its disk {RADII}")
     height: float = column(f"height of the loaded disk {RADII}")
     imbalance: float = column("largest difference of the force across a line and the load, per load")
-    force: FloatArray  #: (depth, x) magnitude of forces per length and load; nan below the floor
-    stress: FloatArray  #: (depth, x) vertical stress per load
+    profiles: FloatArray  #: (2, depth, x) magnitude of forces per length and vertical stress, per load; nan below floor
 
 
 @record
@@ -70,29 +66,22 @@ class Statistics:
     offset: FloatArray = column(f"the straight line at depth 0 {RADII}", "definition", "estimate")
 
 
-def measure(scene: Scene, force: float, depths: int, x: FloatArray, width: float) -> Outcome:
-    """``scene`` has one load, of unit force; raises what the solvers raise."""
-    path = LoadPath.of(scene)
-    disk, start = int(path.problem.load_disk[0]), path.rest
-    rest, loaded = common_candidates([start, path.at(force)], path.problem.packing.radius)
-    (middle, top), added = loaded.position[disk], load_forces(rest, loaded)
+def measure(asked: Parameters, case: Case, realization: int) -> Outcome:
+    """One packing; raises what the solvers raise."""
+    path, force = LoadPath.of(asked.scene_of(case, realization)), case.force
+    disk = int(path.problem.load_disk[0])
+    rest, loaded = common_candidates([path.rest, path.at(force)], path.problem.packing.radius)
+    start, (middle, top), added = rest.position[disk], loaded.position[disk], load_forces(rest, loaded)
     upright = np.linalg.norm(added.force, axis=1) * np.sign(added.branch[:, 1])
     sizes = replace(added, force=np.stack([np.zeros_like(upright), upright], axis=1))
-    heights = [top - depth for depth in range(1, depths + 1) if depth < top]
-    found = np.full((2, depths, len(x)), np.nan)
-    for k, height in enumerate(heights):
-        found[:, k] = [line_stress(one, height, middle + x, width) / force for one in (sizes, added)]
-    sides, vertical = loaded.walls.second != FLOOR, wall_force_difference(rest, loaded)[:, 1]
-    load = -force * scene.loads[0].force[1]
-    lacks = [_lack(added, height, load, vertical[sides], loaded.position[loaded.walls.first[sides], 1])
-             for height in heights]  # fmt: skip
-    moved = float(np.linalg.norm(loaded.position[disk] - start.position[disk]))
-    return Outcome(moved, float(start.position[disk, 1]), max(lacks, default=0.0), *found)
-
-
-def _lack(added: ContactForces, height: float, load: float, vertical: FloatArray, z: FloatArray) -> float:
-    """What forces across a line and those of side walls above it, ``vertical`` at ``z``, lack of the load, per load."""
-    return float(abs(line_forces(added, height)[1].sum() + vertical[z > height].sum() - load) / load)
+    at_side, z = loaded.walls.second != FLOOR, loaded.position[loaded.walls.first, 1]
+    at_wall, load = wall_force_difference(rest, loaded)[:, 1], -force * path.scene.loads[0].force[1]
+    found, lack = np.full((2, asked.depths, len(asked.x)), np.nan), 0.0
+    for k, height in enumerate(top - depth for depth in range(1, asked.depths + 1) if depth < top):
+        found[:, k] = [line_stress(one, height, middle + asked.x, asked.width) / force for one in (sizes, added)]
+        borne = line_forces(added, height)[1].sum() + at_wall[at_side & (z > height)].sum()
+        lack = max(lack, float(abs(borne - load) / load))
+    return Outcome(float(np.linalg.norm(loaded.position[disk] - start)), float(start[1]), lack, found)
 
 
 def statistics(asked: Parameters, x: FloatArray, height: float, force: FloatArray, stress: FloatArray) -> dict:
@@ -105,19 +94,17 @@ def statistics(asked: Parameters, x: FloatArray, height: float, force: FloatArra
     of_ring = [np.interp(d * cotangent, x, force[int(d) - 1], 0.0, 0.0) * d / sine**2 for d in ring]
     direction = np.mean(of_ring, axis=0) if len(ring) else np.full(len(ANGLES), np.nan)
     both = dict(zip(ANGLES, 0.5 * (direction + direction[::-1]), strict=True))
-    sideways = np.array([angle for angle in ANGLES if 40.0 <= angle <= 80.0])
+    sideways = ANGLES[(ANGLES >= 40.0) & (ANGLES <= 80.0)]
     half, side = folded(stress), x[len(x) // 2 :]
-    pairs = zip(depth[used], half[used], strict=True)
-    scaled = np.mean([d * np.interp(d * SCALED, side, row) for d, row in pairs] or [SCALED * np.nan], axis=0)
+    scaled = np.mean([d * np.interp(d * SCALED, side, half[int(d) - 1]) for d in depth[used]] or [SCALED * np.nan], 0)
     length = lengths(side, half)[:, :2].T
     fit = np.polyfit(depth[used], length[:, used].T, 1) if used.sum() > 1 else np.full((2, 2), np.nan)
     return {
         "force": force, "stress": stress, "scaled": scaled, "direction": direction,
-        "strongest": ANGLES[np.argmax(direction)],
-        "chain": sideways[np.argmax([both[angle] for angle in sideways])],
+        "strongest": ANGLES[np.argmax(direction)], "chain": max(sideways, key=both.__getitem__),
         "contrast": both[LATTICE] / both[BETWEEN], "vertical": both[VERTICAL] / both[BETWEEN],
-        "dip": 1.0 - scaled[0] / scaled.max(),
-        "length": length, "power": powers(depth[used], length[:, used]), "slope": fit[0], "offset": fit[1],
+        "dip": 1.0 - scaled[0] / scaled.max(), "slope": fit[0], "offset": fit[1],
+        "length": length, "power": powers(depth[used], length[:, used]),
     }  # fmt: skip
 
 
@@ -125,40 +112,32 @@ def mean_of(asked: Parameters, x: FloatArray, outcomes: list[Outcome]) -> Statis
     """Of the packings that hold the force; nan with fewer than three."""
     held = [one for one in outcomes if one.moved <= asked.largest_move]
     if len(held) < 3:
-        missing = np.full((asked.depths, len(x)), np.nan)
-        value = statistics(asked, x, 0.0, missing, missing)
-        return Statistics(**{name: np.full((*np.shape(one), len(ESTIMATE)), np.nan) for name, one in value.items()})
-    profiles = [np.stack([getattr(one, name) for one in held]) for name in ("force", "stress")]
-    height = float(np.mean([one.height for one in held]))
-    value = statistics(asked, x, height, *(one.mean(axis=0) for one in profiles))
+        value = statistics(asked, x, 0.0, *np.full((2, asked.depths, len(x)), np.nan))
+        return Statistics(**{name: np.full((*np.shape(one), 3), np.nan) for name, one in value.items()})
+    profiles, height = np.stack([one.profiles for one in held]), float(np.mean([one.height for one in held]))
+    value = statistics(asked, x, height, *profiles.mean(axis=0))
     parts = weights(len(held), asked.draws, asked.seed) / len(held)
-    means = [np.einsum("wr,rdx->wdx", parts, one) for one in profiles]
-    drawn = [statistics(asked, x, height, *one) for one in zip(*means, strict=True)]
+    drawn = [statistics(asked, x, height, *one) for one in np.einsum("wr,rkdx->wkdx", parts, profiles)]
     ends = {name: np.quantile([draw[name] for draw in drawn], CONFIDENCE, axis=0) for name in value}
     return Statistics(**{name: np.stack([one, *ends[name]], axis=-1) for name, one in value.items()})
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``packings``, ``means``, and ``picture_K`` of each case that has one."""
-    asked, cases = parameters, parameters.cases
-    x = np.arange(-asked.reach, asked.reach + SPACING, SPACING)
-    tasks = {
-        (c, r): partial(measure, asked.scene_of(case, r), case.force, asked.depths, x, asked.width)
-        for c, case in enumerate(cases)
-        for r in range(case.realizations)
-    }
+    asked, x, cases = parameters, parameters.x, parameters.cases
+    tasks = {(c, r): partial(measure, asked, case, r) for c, case in enumerate(cases) for r in range(case.realizations)}
     found = computed(tasks, "packings")
     each = [[found[c, r] for r in range(case.realizations)] for c, case in enumerate(cases)]
     means = computed({(c,): partial(mean_of, asked, x, one) for c, one in enumerate(each)}, "means")
-    coordinates = labels("case", cases, packing="packing", realizations="number of packings") | variables(
-        force_applied=("case", [case.force for case in cases], "applied force, in mean weights"),
-        angle_applied=("case", [case.angle for case in cases], "of it below the horizontal, degrees"),
-    )
+    given = labels("case", cases, force="applied force, in mean weights", angle="of it below the horizontal, degrees")
+    coordinates = labels("case", cases, packing="packing", realizations="number of packings")
+    coordinates |= {f"{name}_applied": values for name, values in given.items()}
     points = axes(
         depth=(np.arange(1.0, asked.depths + 1.0), f"depth below the loaded disk {RADII}"),
         x=(x, f"position from the loaded disk {RADII}"), angle=(ANGLES, "angle below the horizontal, in degrees"),
-        t=(SCALED, "distance from the load per depth"), definition=(WIDTHS, "definition of the width"),
-        fit=(FITS, "fitted depths"), estimate=(ESTIMATE, "mean, and 95 % of its bootstrap draws"),
+        t=(SCALED, "distance from the load per depth"),
+        definition=(("half_maximum", "half_force"), "definition of the width"),
+        fit=(FITS, "fitted depths"), estimate=(("mean", "low", "high"), "mean, and 95 % of its bootstrap draws"),
     )  # fmt: skip
     used = {"largest_move": asked.largest_move, "fitted": list(asked.fitted), "width": asked.width}
     datasets = {

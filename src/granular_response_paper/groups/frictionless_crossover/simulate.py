@@ -21,18 +21,11 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from granular_response.observe import network
-from granular_response.scene import Scene
-from granular_response.solvers.equilibrium import Rearranged
-from granular_response.solvers.problem import Problem
-from granular_response.state import FloatArray, State
-from granular_response.store.result import common_candidates
-from granular_response.store.variables import RADII, WEIGHTS, variable
-from granular_response.sweeps.rest import rest_state
-from granular_response_paper import slab_response
+from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.groups.frictionless_crossover.parameters import Parameters
-from granular_response_paper.records import axes, column, record, stacked, table, variables
-from granular_response_paper.slab_response import TWO_PEAKS, Event, Happening, LoadPath, Measures
+from granular_response_paper.groups.frictionless_crossover.slab import EVENTS, Outcome, Slab, solve
+from granular_response_paper.records import axes, stacked, table, variables
+from granular_response_paper.slab_response import events_dataset
 from granular_response_paper.tasks import computed
 
 #: What is not kept of the measurements: it is about friction.
@@ -44,111 +37,13 @@ DIPS = (0.0, 0.005, 0.01, 0.02)
 #: What is kept of the open region at close forces.
 REGION = ("teardrop_depth", "teardrop_width", "reaches_floor", "layers", "normal_stiffness")
 
-EVENTS = {
-    "first_opening": "a contact within five lattice constants of the loaded disk is open that touches at rest",
-    "crossover": TWO_PEAKS,
-    "teardrop_reaches_floor": "the connected region of opened contacts below the load includes the lowest row",
-}
-
-
-@record
-class Slab:
-    """An ordered frictionless slab under a force on the middle disk of its top row."""
-
-    layers: int = column("number of rows of the slab")
-    disks_per_row: int = column("disks in the bottom row")
-    normal_stiffness: float = column("normal stiffness of contacts of disks in mean weights per mean radius")
-
-    def scene(self, base: Scene) -> Scene:
-        """``base`` with this slab."""
-        return base.updated(
-            {
-                "packing": {"layers": self.layers, "disks_per_row": self.disks_per_row},
-                "contact.normal_stiffness": self.normal_stiffness,
-            }
-        )
-
-
-@record
-class Outcome:
-    """What a task leaves behind."""
-
-    rest_asymmetry: float = column(
-        f"largest horizontal distance of a disk at rest from its place in a symmetric state {RADII}"
-    )
-    new_neighbours: int = column("pairs touching at rest that are no lattice neighbours")
-    forces: tuple[float, ...]
-    measured: xr.Dataset
-    events: list[Event]  #: of EVENTS, then the crossover by each dip of the task
-    pictures: dict[str, xr.Dataset]  #: ``rest`` and ``states`` at the forces, if they are kept
-
-
-def solve(
-    scene: Scene, forces: tuple[float, ...], tolerance: float, dips: Sequence[float], keep_states: bool
-) -> Outcome:
-    """Settle a slab, load it step by step, measure it and locate its events.
-
-    ``tolerance`` is the width of the brackets of events, per force at which they happen; ``dips`` are those of which
-    the crossover is looked for.
-    """
-    path = LoadPath.of(scene, settle(scene))
-    states, rest, packing = path.through(forces), path.rest, path.problem.packing
-    measures = Measures(path)
-    happened = (
-        lambda state: measures.region(state).count > 0,
-        measures.double_peaked,
-        lambda state: measures.region(state).reaches_floor,
-    )
-    asked = {name: Happening(has, text) for has, (name, text) in zip(happened, EVENTS.items(), strict=True)}
-
-    def exceeds(dip: float) -> Happening:
-        return Happening(lambda state: measures.dip(state) > dip, "a dip at x = 0")
-
-    asked |= {f"dip {dip:g}": exceeds(dip) for dip in dips}
-    return Outcome(
-        rest_asymmetry(packing.position, rest, packing.width),
-        new_neighbours(packing.position, rest),
-        forces,
-        slab_response.measured(measures, states),
-        slab_response.locate(path, forces, asked, tolerance),
-        pictures(path, states, measures) if keep_states else {},
-    )
-
-
-def settle(scene: Scene) -> State:
-    """The rest state: by dynamics, as the paper has it, where the lattice does not hold."""
-    try:
-        return rest_state(Problem.from_scene(scene))
-    except Rearranged:
-        return rest_state(Problem.from_scene(scene.updated({"protocol.method": "dynamics"})))
-
-
-def rest_asymmetry(position: FloatArray, rest: State, width: float) -> float:
-    """Largest horizontal distance of a disk from where the rest state is symmetric, in radii.
-
-    The symmetric part of the displacements from the undeformed ``position`` (n, 2) is their mean with their mirror
-    image in ``x = width / 2``.
-    """
-    mirror = network.mirror_disks(position, 0.5 * width)
-    shift = rest.position[:, 0] - position[:, 0]
-    return float(0.5 * np.abs(shift + shift[mirror]).max())
-
-
-def new_neighbours(position: FloatArray, rest: State) -> int:
-    """Touching pairs that are no neighbours on the lattice (``position``): none unless it has yielded."""
-    i, j = rest.pairs.first[rest.pairs.touching], rest.pairs.second[rest.pairs.touching]
-    distance = np.linalg.norm(position[i] - position[j], axis=1)
-    return int(np.count_nonzero(distance > 1.5 * distance.min())) if distance.size else 0
-
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``response``, ``rest``, ``states``, ``events``, ``sizes``, ``regions``, ``widths`` and ``stiffness``."""
     asked = studies(parameters)
-
-    def work(slab: Slab) -> tuple[float, ...]:  # the longest first
-        return slab.layers * slab.disks_per_row, -slab.normal_stiffness
-
-    outcomes = computed(tasks(parameters), "slabs", work=work)
+    outcomes = computed(
+        tasks(parameters), "slabs", work=lambda one: (one.layers * one.disks_per_row, -one.normal_stiffness)
+    )
     (main,), forces = asked["response"]
     first = outcomes[main]
     response = along("slab", outcomes, [main], forces).isel(slab=0).rename(floor_place="floor_disk")
@@ -157,8 +52,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
             {name: first.measured[name].variable for name in ("floor_disk", "interior")}
         ),
         "rest": first.pictures["rest"],
-        "states": first.pictures["states"].isel(force=np.searchsorted(first.forces, forces)),
-        "events": slab_response.events_dataset(first.events[: len(EVENTS)]),
+        "states": first.pictures["states"].sel(force=list(forces)),
+        "events": events_dataset(first.events[: len(EVENTS)]),
         "sizes": along("slab", outcomes, *asked["sizes"]),
         "regions": along("slab", outcomes, *asked["regions"])[list(REGION)],
         "widths": along("slab", outcomes, *asked["widths"]),
@@ -204,28 +99,6 @@ def tasks(parameters: Parameters) -> dict[Slab, partial[Outcome]]:
     }
 
 
-def pictures(path: LoadPath, states: Sequence[State], measures: Measures) -> dict[str, xr.Dataset]:
-    """``rest``, and ``states`` along ``force`` with the region of opened contacts in each."""
-    rest, *loaded = common_candidates([path.rest, *states], path.problem.packing.radius)
-    regions = np.stack([measures.region(state).contacts for state in states])
-    count, horizontal = regions.sum(axis=1), network.lattice_direction(rest) == network.HORIZONTAL
-    along = slab_response.states_picture(loaded, path.problem, "force").assign(
-        variables(
-            teardrop=(
-                "force contact",
-                regions.astype(np.int8),
-                "1 for contacts of the connected region of opened contacts below the load",
-            ),
-            teardrop_horizontal=(
-                "force",
-                np.where(count > 0, (regions & horizontal).sum(axis=1) / np.maximum(count, 1), np.nan),
-                "fraction of the region's contacts that are horizontal at rest; nan without a region",
-            ),
-        )
-    )
-    return {"rest": slab_response.states_picture([rest], path.problem), "states": along}
-
-
 def stiffnesses(
     outcomes: Mapping[Slab, Outcome], slabs: Sequence[Slab], forces: Sequence[float], compared: tuple[float, ...]
 ) -> xr.Dataset:
@@ -233,7 +106,7 @@ def stiffnesses(
     data = along("normal_stiffness", outcomes, slabs, forces)
     soft, stiff = (data["response_at_centre"].sel(normal_stiffness=k).values for k in compared)
     text = "relative change of the response at x = 0 from the second to the first of compared_stiffness"
-    crossovers = [_brackets(outcomes[slab].events[len(EVENTS) :]) for slab in slabs]
+    crossovers = [outcomes[slab].brackets[len(EVENTS) :] for slab in slabs]
     between = f"forces {WEIGHTS} between which the dip at x = 0 comes to exceed this one; nan if not up to the first"
     return data.assign(
         variables(
@@ -254,18 +127,16 @@ def along(
     left to right, and are nan beyond the last disk of a slab.
     """
     each = [outcomes[slab] for slab in slabs]
-    measured = [one.measured.isel(state=np.searchsorted(one.forces, forces)) for one in each]
+    measured = [one.measured.sel(force=list(forces)) for one in each]
 
     def of(name: str, *dims: str) -> xr.Variable:
         values = stacked({(k,): one[name].values for k, one in enumerate(measured)})
-        return variable((dimension, *dims), values, measured[0][name].attrs["long_name"])
+        return variable((dimension, *dims[: values.ndim - 1]), values, measured[0][name].attrs["long_name"])
 
-    places = {"floor_response": ("floor_place",)}
-    data = {name: of(name, "force", *places.get(name, ())) for name in map(str, measured[0]) if name not in LEFT_OUT}
-    brackets = np.array([_brackets(one.events[: len(EVENTS)]) for one in each])
+    data = {name: of(name, "force", "floor_place") for name in map(str, measured[0]) if name not in LEFT_OUT}
     for k, (name, text) in enumerate(EVENTS.items()):
         between = f"forces {WEIGHTS} between which: {text}; nan if not up to the first"
-        data[f"{name}_bracket"] = variable((dimension, "bracket"), brackets[:, k], between)
+        data[f"{name}_bracket"] = variable((dimension, "bracket"), [one.brackets[k] for one in each], between)
     return xr.Dataset(data).assign_coords(
         {
             **table(slabs, dimension).variables,
@@ -275,7 +146,3 @@ def along(
             **axes(bracket=(["low", "high"], "ends of a bracket")),
         }
     )
-
-
-def _brackets(events: Sequence[Event]) -> list[tuple[float, float]]:
-    return [(one.low, one.high) for one in events]

@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import astuple
 from functools import partial
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -50,9 +49,6 @@ NARROW = 6
 
 #: What slabs are made of: moduli as disks follow the strain, and the isotropic solid nearest to the last ones.
 SOLIDS = (*FOLLOWING, "isotropic")
-
-#: Polynomials in 1 / layers of :func:`at_infinity`.
-ESTIMATES = ("line", "parabola")
 
 #: How many times the largest size a power is believed at most.
 FARTHEST = 100.0
@@ -149,15 +145,13 @@ def on_floor(problem: Problem, rest: State) -> tuple[NDArray[np.intp], FloatArra
 def responses(problem: Problem, rest: State, height: float, widths: FloatArray) -> FloatArray:
     """(load, width, place) smoothed floor responses to small forces on the disks of the top row, times height."""
     disks, found = on_floor(problem, rest)
-    row, period = problem.packing.row, problem.packing.width
-    result = []
+    row, period, result = problem.packing.row, problem.packing.width, []
     for disk in np.flatnonzero((row == row.max()) & (rest.contact_count() >= 2)):
         x = rest.position[disks, 0] - rest.position[disk, 0]
         x -= period * np.round(x / period)
-        around = np.concatenate([x - period, x, x + period])
-        each = [smoothed_response(PLACES * height, around, np.tile(found[:, disk], 3), width) for width in widths]
-        result.append(np.stack(each) * height)
-    return np.stack(result)
+        around, forces = np.concatenate([x - period, x, x + period]), np.tile(found[:, disk], 3)
+        result.append([smoothed_response(PLACES * height, around, forces, width) * height for width in widths])
+    return np.array(result)
 
 
 def prediction(moduli: FloatArray, height: float, period: float, floor: Floor, widths: FloatArray) -> FloatArray:
@@ -169,8 +163,7 @@ def prediction(moduli: FloatArray, height: float, period: float, floor: Floor, w
         slab = Slab(height, Moduli(*moduli), floor, period)
     except ValueError:
         return np.full((len(widths), len(PLACES)), np.nan)
-    x = PLACES * height
-    x = x - period * np.round(x / period)
+    x = PLACES * height - period * np.round(PLACES * height / period)
     # the Gaussian of a smoothed response has a standard deviation of w / sqrt(2)
     return np.stack([-height * slab.stress(x, 0.0, 1.0, width / np.sqrt(2.0))[1] for width in widths])
 
@@ -218,8 +211,7 @@ def at_infinity(layers: FloatArray, values: FloatArray) -> FloatArray:
     """
     order = np.argsort(-layers)
     inverse, values = 1.0 / layers[order], values[order]
-    fits = [np.polyfit(inverse[:k], values[:k], k - 1)[-1] if len(order) >= k else np.nan for k in (2, 3)]
-    return np.array(fits)
+    return np.array([np.polyfit(inverse[:k], values[:k], k - 1)[-1] if len(order) >= k else np.nan for k in (2, 3)])
 
 
 def needed(layers: FloatArray, difference: FloatArray, tolerances: FloatArray, draws: int, seed: int) -> FloatArray:
@@ -287,13 +279,11 @@ def _packings(parameters: Parameters) -> xr.Dataset:
         at: needed(layers[at[0]], differences[at], tolerances, parameters.draws, parameters.seed)
         for at in np.ndindex(differences.shape[:3])
     }
-    matrices, alone = found["stiffness"].values, found["springs_alone"].values
-    prestress = symmetric(matrices[..., -1, :, :] - alone)
-    mirrored, added, below = (
-        "moduli over k_N, what a solid that mirrors itself has of them",
-        "what the forces that contacts bear at rest add to the moduli over k_N, rotations free",
-        "number of rows from which on the difference is below the tolerance, by a power of it",
-    )
+    matrices = found["stiffness"].values
+    prestress = symmetric(matrices[..., -1, :, :] - found["springs_alone"].values)
+    mirrored = "moduli over k_N, what a solid that mirrors itself has of them"
+    added = "what the forces that contacts bear at rest add to the moduli over k_N, rotations free"
+    below = "number of rows from which on the difference is below the tolerance, by a power of it"
     derived = variables(
         layers=("case size", layers, "number of rows"),
         surveyed=("case size", surveyed, "realizations that are the survey's"),
@@ -326,24 +316,19 @@ def _lattices(parameters: Parameters) -> xr.Dataset:
         springs = {"contact.friction": group.friction, "contact.stiffness_ratio": ratio, "wall.friction": 0.0}
         return _slab(p, layers, row, spacing, springs)
 
-    tasks: dict[tuple[Any, ...], partial[FloatArray]] = {
-        ("moduli", *place): partial(lattice_moduli, scene(spacing, group.layers, NARROW, ratio), p.margin)
-        for place, (spacing, ratio) in places((group.closed, group.open), group.stiffness_ratios)
+    strains = {
+        at: partial(lattice_moduli, scene(spacing, group.layers, NARROW, ratio), p.margin)
+        for at, (spacing, ratio) in places((group.closed, group.open), group.stiffness_ratios)
     }
-    tasks |= {
-        ("bends", *place): partial(middle_curvature, scene(group.open, layers, p.disks_per_layer * layers, ratio))
-        for place, (layers, ratio) in places(group.responding, group.responding_ratios)
+    loads = {
+        at: partial(middle_curvature, scene(group.open, layers, p.disks_per_layer * layers, ratio))
+        for at, (layers, ratio) in places(group.responding, group.responding_ratios)
     }
-    answers = computed(tasks, "lattices")
-    own, bends = (
-        stacked({(k, r): one for (of, k, r), one in answers.items() if of == what}) for what in ("moduli", "bends")
-    )
-    expected = stacked(
-        {
-            place: astuple(lattice.moduli(Springs(closed, 1.0, closed * ratio, ratio), rotations))
-            for place, (closed, ratio, rotations) in places((1.0, 0.0), ratios, ROTATIONS)
-        }
-    )
+    own, bends = stacked(computed(strains, "strained lattices")), stacked(computed(loads, "loaded lattices"))
+    expected = {
+        place: astuple(lattice.moduli(Springs(closed, 1.0, closed * ratio, ratio), rotations))
+        for place, (closed, ratio, rotations) in places((1.0, 0.0), ratios, ROTATIONS)
+    }
 
     def turn(body: Body, rotations: Rotations) -> float:
         solids = [Moduli(*m) for m in own[1, :, FOLLOWING.index(rotations)]]
@@ -360,7 +345,11 @@ def _lattices(parameters: Parameters) -> xr.Dataset:
     return xr.Dataset(
         variables(
             moduli=("contacts stiffness_ratio following modulus", own, "moduli over k_N, as measured"),
-            closed_form=("contacts stiffness_ratio rotations modulus", expected, "moduli over k_N, eqs. (7)-(10)"),
+            closed_form=(
+                "contacts stiffness_ratio rotations modulus",
+                stacked(expected),
+                "moduli over k_N, eqs. (7)-(10)",
+            ),
             turn=("body rotations", turns, "k_T / k_N at which two peaks end, by measured moduli"),
             turn_closed_form=("body rotations", theory, "the same by the closed form"),
             middle=("size responding_ratio", bends, bend),
@@ -376,6 +365,6 @@ def _lattices(parameters: Parameters) -> xr.Dataset:
             rotations=(ROTATIONS, "rotations of the disks"),
             modulus=("abcd", "modulus of eq. (6)"),
             body=(BODIES, "elastic body"),
-            estimate=(ESTIMATES, "polynomial in 1 / layers"),
+            estimate=(("line", "parabola"), "polynomial in 1 / layers"),
         ),
     )

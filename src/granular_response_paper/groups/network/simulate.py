@@ -1,6 +1,5 @@
 """Statistics of contact networks against friction and disorder, at rest and under a load.
 
-Distribution of normal forces, mobilization of friction, fabric, and coordination number against the isostatic value.
 Forces grow with depth, so each is taken relative to the mean of its band of heights; they, and the fabric, are those of
 contacts away from walls, floor and surface.
 
@@ -11,8 +10,7 @@ forces follow from balance alone where their number is that of the equations,
     N_c = 2 N without friction (z = 4),    2 N_c - N_m = 3 N with friction (z = 3 for N_m = 0),
 
 with N disks, N_c contacts and N_m fully mobilized ones, whose tangential force is known (Shundyak, van Hecke and van
-Saarloos, Phys. Rev. E 75, 010301, 2007). The hyperstaticity is what the left side exceeds the right one by, per
-equation.
+Saarloos, Phys. Rev. E 75, 010301, 2007). The hyperstaticity is the excess of the left side, per equation.
 """
 
 from __future__ import annotations
@@ -22,12 +20,10 @@ from functools import partial
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.errors import SolveError
 from granular_response.observe import network
 from granular_response.scene import Scene
-from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles.realizations import ensemble_scene
@@ -40,7 +36,6 @@ from granular_response_paper.tasks import computed
 FORCES, MOBILIZATION, ANGLES = np.linspace(0.0, 6.0, 25), np.linspace(0.0, 1.0, 21), 36
 #: Distance of what is counted from the floor and the highest disk (radii).
 VERTICAL_MARGIN = 4.0
-STATES = ("rest", "loaded")
 
 
 @record
@@ -64,46 +59,41 @@ class Statistics:
     )
 
 
-def measure(problem: Problem, state: State, load: float, band: float, margin: float) -> Statistics:
+def measure(path: LoadPath, state: State, load: float, asked: Parameters) -> Statistics:
     """Statistics of a state under the vertical ``load`` (mean disk weights)."""
-    friction, pairs, walls = problem.scene.contact.friction, state.pairs, state.walls
-    height, top = network.contact_centre(state)[:, 1], state.position[:, 1].max()
-    width = problem.packing.width
+    friction, pairs, walls, width = path.scene.contact.friction, state.pairs, state.walls, path.problem.packing.width
+    height, highest = network.contact_centre(state)[:, 1], state.position[:, 1].max() - VERTICAL_MARGIN
     inside = network.interior_contacts(state, width, wall_margin(width)) & pairs.touching
-    inside &= (height > VERTICAL_MARGIN) & (height < top - VERTICAL_MARGIN)
-    forces = relative(pairs.normal_force[inside], height[inside], band)
+    inside &= (height > VERTICAL_MARGIN) & (height < highest)
+    forces = relative(pairs.normal_force[inside], height[inside], asked.band)
     excess = forces[forces > 1.0] - 1.0
-    mobilization = np.full(len(MOBILIZATION) - 1, np.nan)
-    if friction:
-        limits = friction * pairs.normal_force[inside]
-        parts = np.abs(pairs.tangential_force[inside]) / np.maximum(limits, np.finfo(float).tiny)
-        mobilization = density(np.minimum(parts, 1.0), MOBILIZATION)
+    limits = np.maximum(friction * pairs.normal_force[inside], np.finfo(float).tiny)
+    mobilization = density(np.minimum(np.abs(pairs.tangential_force[inside]) / limits, 1.0), MOBILIZATION)
     loose = network.rattlers(state)
     live = pairs.touching & ~loose[pairs.first] & ~loose[pairs.second]
     live_walls = walls.touching & ~loose[walls.first]
-    contacts = np.count_nonzero(live) + np.count_nonzero(live_walls)
-    limited = np.count_nonzero(pairs.near_limit(friction, margin) & live)
-    limited += np.count_nonzero(walls.near_limit(problem.scene.wall.friction, margin) & live_walls)
-    bearing = np.count_nonzero(~loose)
+    contacts, bearing = np.count_nonzero(live) + np.count_nonzero(live_walls), np.count_nonzero(~loose)
+    limited = np.count_nonzero(pairs.near_limit(friction, asked.margin) & live)
+    limited += np.count_nonzero(walls.near_limit(path.scene.wall.friction, asked.margin) & live_walls)
     components, equations = (2 * contacts - limited, 3 * bearing) if friction else (contacts, 2 * bearing)
     return Statistics(
         force_density=density(forces, FORCES),
         force_mean=float(forces.mean()),
         tail_excess=float(excess.mean()),
         tail_variation=float(excess.std() / excess.mean()),
-        mobilization_density=mobilization,
+        mobilization_density=mobilization if friction else np.full_like(mobilization, np.nan),
         angle_density=network.contact_angle_histogram(state, ANGLES, inside)[1],
         coordination_number=2.0 * contacts / bearing,
         rattlers=float(loose.mean()),
         mobilized=limited / contacts,
         hyperstaticity=(components - equations) / equations,
-        cut_imbalance=cut_imbalance(problem, state, load),
+        cut_imbalance=cut_imbalance(path, state, load),
     )
 
 
 def relative(force: FloatArray, height: FloatArray, band: float) -> FloatArray:
     """(m,) forces over the mean of their band of heights, bands of equal height from the lowest contact on."""
-    number: NDArray[np.int64] = np.floor((height - height.min()) / band).astype(np.int64)
+    number = np.floor((height - height.min()) / band).astype(np.int64)
     return force / (np.bincount(number, force) / np.maximum(np.bincount(number), 1))[number]
 
 
@@ -112,63 +102,49 @@ def density(values: FloatArray, edges: FloatArray) -> FloatArray:
     return np.histogram(values, edges)[0] / (len(values) * np.diff(edges))
 
 
-def cut_imbalance(problem: Problem, state: State, load: float) -> float:
+def cut_imbalance(path: LoadPath, state: State, load: float) -> float:
     """Largest difference, over cuts between the disks, of the force through a cut and what rests on it, relative.
 
     A cut separates the disks whose centres are above it. On them act contacts with disks below, floor and walls.
     """
-    z, weight = state.position[:, 1], problem.packing.radius**2
+    z, pairs, upward, at_wall = state.position[:, 1], state.pairs, state.pair_force()[:, 1], state.wall_force()[:, 1]
+    weight, worst = path.problem.packing.radius**2, 0.0
     weight = weight / weight.mean()
-    loaded = int(problem.load_disk[0])
-    upward, at_wall = state.pair_force()[:, 1], state.wall_force()[:, 1]
-    worst = 0.0
     for height in np.linspace(0.0, z.max(), 20, endpoint=False):
         above = z > height
-        first, second = above[state.pairs.first], above[state.pairs.second]
+        first, second = above[pairs.first], above[pairs.second]
         borne = upward[first & ~second].sum() - upward[~first & second].sum() + at_wall[above[state.walls.first]].sum()
-        resting = weight[above].sum() + load * above[loaded]
+        resting = weight[above].sum() + load * above[path.problem.load_disk[0]]
         worst = max(worst, abs(borne - resting) / resting)
     return float(worst)
 
 
-def compute(scene: Scene, force: float, band: float, margin: float, collapse_depth: float) -> list[Statistics]:
-    """One packing at rest and, if it bears it, under ``force``; ``scene`` has one load, of unit force."""
+def compute(scene: Scene, asked: Parameters) -> list[Statistics]:
+    """One packing at rest and, if it bears it, under the force; ``scene`` has one load, of unit force."""
     path = LoadPath.of(scene)
-    disk = int(path.problem.load_disk[0])
-    path.lowest = float(path.rest.position[disk, 1]) - collapse_depth
+    disk = path.problem.load_disk[0]
+    path.lowest = float(path.rest.position[disk, 1]) - asked.collapse_depth
     states = [(path.rest, 0.0)]
     with contextlib.suppress(SolveError):
-        state = path.at(force)
-        if state.position[disk, 1] >= path.lowest:
-            states.append((state, force))
-    return [measure(path.problem, state, load, band, margin) for state, load in states]
+        states.append((path.at(asked.force), asked.force))
+    return [measure(path, state, load, asked) for state, load in states if state.position[disk, 1] >= path.lowest]
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Dataset ``statistics``."""
-    asked = parameters
-    tasks = {
-        (*place, r): partial(
-            compute, ensemble_scene(asked, case, r), asked.force, asked.band, asked.margin, asked.collapse_depth
-        )
-        for place, case in asked.cases.items()
-        for r in range(case.realizations)
-    }
-    outcomes = computed(tasks, "packings")
-    found = {(*place, s): one for place, states in outcomes.items() for s, one in enumerate(states)}
+    cases, numbers = parameters.cases, range(parameters.realizations)
+    scenes = {(*at, r): ensemble_scene(parameters, case, r) for at, case in cases.items() for r in numbers}
+    tasks = {at: partial(compute, scene, parameters) for at, scene in scenes.items()}
+    found = {(*at, s): one for at, states in computed(tasks, "packings").items() for s, one in enumerate(states)}
+    force, mobilization = (0.5 * (edges[1:] + edges[:-1]) for edges in (FORCES, MOBILIZATION))
     data = table(found, "polydispersity", "friction", "realization", "state").assign_coords(
         axes(
-            polydispersity=(asked.polydispersities, "delta: spread of the radii"),
-            friction=(asked.frictions, "coefficient of friction, floor and walls included"),
-            state=(STATES, "without load, and with it"),
-            force=(0.5 * (FORCES[1:] + FORCES[:-1]), "normal force over its local mean, middle of the bin"),
-            mobilization=(
-                0.5 * (MOBILIZATION[1:] + MOBILIZATION[:-1]),
-                "tangential force per limit, middle of the bin",
-            ),
+            polydispersity=(parameters.polydispersities, "delta: spread of the radii"),
+            friction=(parameters.frictions, "coefficient of friction, floor and walls included"),
+            state=(("rest", "loaded"), "without load, and with it"),
+            force=(force, "normal force over its local mean, middle of the bin"),
+            mobilization=(mobilization, "tangential force per limit, middle of the bin"),
             angle=(np.pi / ANGLES * np.arange(ANGLES), "angle of a contact with the horizontal, in radians"),
         )
     )
-    return labelled(
-        {"statistics": data.assign_attrs(load=asked.force, band=asked.band)}, next(iter(tasks.values())).args[0]
-    )
+    return labelled({"statistics": data.assign_attrs(load=parameters.force, band=parameters.band)}, scenes[0, 0, 0])

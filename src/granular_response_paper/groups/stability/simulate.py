@@ -10,20 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 from itertools import chain
-from typing import Any, get_args
+from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from granular_response.scene import Scene
-from granular_response.scene.protocol import Integrator
-from granular_response.solvers.problem import Problem
-from granular_response.solvers.timestep import stability_limit
-from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.stability import parameters as given
-from granular_response_paper.records import axes, column, record, table, table_along, variables
+from granular_response_paper.records import axes, places, table, table_along, variables
 from granular_response_paper.tasks import computed
 from granular_response_paper.trials import closed_forms, random_scenes, time_steps
 from granular_response_paper.trials.rounding import Disturbed, disturb
@@ -79,45 +74,12 @@ def _time_steps(asked: given.TimeSteps, seed: int) -> Study:
             scene = asked.scene.updated({**changes, "protocol.time_step": "auto"})  # safe to come to rest with
             tasks[name, k] = partial(time_steps.tried, scene, asked.integrators, asked.ratios, asked.steps, seed)
 
-    def datasets(found: dict[Any, list[time_steps.Steps]]) -> dict[str, xr.Dataset]:
-        made = {}
-        for name, values in asked.axes.items():
-            several = {(i, k): one for k in range(len(values)) for i, one in enumerate(found[name, k])}
-            made[f"time_step_{name}"] = table_along(
-                several,
-                integrator=(asked.integrators, "integrator"),
-                **{name: (values, AXES[name][1])},
-                ratio=(asked.ratios, "time step over the predicted limit"),
-            )
-        return made
+    def along(name: given.Axis, found: dict[Any, list[time_steps.Steps]]) -> xr.Dataset:
+        axis, ratio = (asked.axes[name], AXES[name][1]), (asked.ratios, "time step over the predicted limit")
+        several = {(i, k): one for k in range(len(axis[0])) for i, one in enumerate(found[name, k])}
+        return table_along(several, integrator=(asked.integrators, "integrator"), **{name: axis}, ratio=ratio)
 
-    return tasks, datasets
-
-
-@record
-class Drifted:
-    time: FloatArray = column("time in sqrt(radius/g)", "reading")
-    energy_change: FloatArray = column(
-        "change of the total energy of an undamped system, per energy that it moves with", "reading"
-    )
-
-
-def drift(scene: Scene, system: str, integrator: str, part: float, time: float, kick: float, seed: int) -> Drifted:
-    """An undamped system in motion: a disk that bounces on the floor, or a slab at rest that is kicked.
-
-    The kick is strong enough for contacts to open and slide. Springs are ahead of positions by half a time step, so
-    in a feeble motion about large forces the total energy cannot be read off.
-    """
-    undamped = scene.updated({"contact.damping_ratio": 0.0, "wall.damping_ratio": 0.0})
-    if system == "bouncing disk":
-        still = np.zeros(1)
-        problem, state = closed_forms.free_disks(undamped, np.array([(0.0, 1.5)]), np.zeros((1, 2)), still)
-    else:
-        problem, state, _ = time_steps.prepared(Problem.from_scene(undamped))
-        state = time_steps.kick(problem, state, seed, kick)
-    step = part * stability_limit(problem, "verlet")
-    times, change = closed_forms.energy_change(problem, state, integrator, step, time)
-    return Drifted(times, change / (0.5 if system == "bouncing disk" else closed_forms.kinetic_energy(state, problem)))
+    return tasks, lambda found: {f"time_step_{name}": along(name, found) for name in asked.axes}
 
 
 def _drift(asked: given.Drift, seed: int) -> Study:
@@ -127,33 +89,19 @@ def _drift(asked: given.Drift, seed: int) -> Study:
         "slab with friction": (asked.friction, asked.friction_time),
     }
     tasks = {}
-    for s, (system, (mu, time)) in enumerate(systems.items()):
+    for place, ((system, (mu, time)), name) in places(list(systems.items()), asked.integrators):
         scene = asked.scene.updated({"contact.friction": mu})
-        for i, name in enumerate(asked.integrators):
-            tasks[s, i] = partial(drift, scene, system, name, asked.part_of_limit, time, asked.kick, seed)
+        tasks[place] = partial(closed_forms.drift, scene, system, name, asked.part_of_limit, time, asked.kick, seed)
     along = {"system": (systems, "what moves"), "integrator": (asked.integrators, "integrator")}
     return tasks, lambda found: {"drift": table_along(found, **along)}
 
 
-@record
-class Collided:
-    energy_ratio: FloatArray = column("kinetic energy after a collision over that before", "angle", "spin")
-
-
-def collide(scene: Scene, angles: tuple[float, ...], spins: tuple[float, ...], step: float, body: str) -> Collided:
-    """Collisions at all angles and spins under one contact law."""
-    pair = body == "disk"
-    ratios = [[closed_forms.collision(scene, angle, spin, step, pair=pair) for spin in spins] for angle in angles]
-    return Collided(np.array(ratios))
-
-
 def _collisions(asked: given.Collisions) -> Study:
     tasks = {}
-    for b, k, d, f in np.ndindex(len(BODIES), len(LAWS), len(asked.damping_ratios), len(asked.frictions)):
-        mu, ratio = asked.frictions[f], asked.damping_ratios[d]
+    for place, (body, law, ratio, mu) in places(BODIES, LAWS, asked.damping_ratios, asked.frictions):
         changes = {"contact.friction": mu, "wall.friction": mu, "contact.damping_ratio": ratio}
-        scene = Scene().updated({**changes, "protocol.friction_law": LAWS[k], "loads": []})
-        tasks[b, k, d, f] = partial(collide, scene, asked.angles, asked.spins, asked.time_step, BODIES[b])
+        scene = Scene().updated({**changes, "protocol.friction_law": law, "loads": []})
+        tasks[place] = partial(closed_forms.collide, scene, asked.angles, asked.spins, asked.time_step, body)
     along = {
         "body": (BODIES, "what the disk hits"),
         "friction_law": (LAWS, "protocol.friction_law"),
@@ -165,25 +113,11 @@ def _collisions(asked: given.Collisions) -> Study:
     return tasks, lambda found: {"collisions": table_along(found, **along)}
 
 
-@record
-class Rolled:
-    time: FloatArray = column("time in sqrt(radius/g)", "reading")
-    velocity: FloatArray = column("velocity of the disk, x", "reading")
-    rim_speed: FloatArray = column("rim speed, positive for rolling along x", "reading")
-    exact_velocity: FloatArray = column("velocity in closed form", "reading")
-    exact_rim_speed: FloatArray = column("rim speed in closed form", "reading")
-
-
-def roll(friction: float, speed: float, spin: float, step: float) -> Rolled:
-    """A disk thrown along the floor, until it has rolled for a while."""
-    scene = Scene().updated({"wall.friction": friction, "loads": []})
-    time = 1.5 * abs(speed + spin) / (3.0 * friction)
-    times, velocity, rim_speed = closed_forms.sliding_to_rolling(scene, speed, spin, step, time)
-    return Rolled(times, velocity, rim_speed, *closed_forms.rolling_speed(times, friction, speed, spin))
-
-
 def _rolling(asked: given.Rolling) -> Study:
-    tasks = {(k,): partial(roll, asked.friction, *start, asked.time_step) for k, start in enumerate(asked.starts)}
+    tasks = {
+        (k,): partial(closed_forms.roll, asked.friction, *start, asked.time_step)
+        for k, start in enumerate(asked.starts)
+    }
     friction = variable((), asked.friction, "coefficient of friction of the floor")
     speed, spin = zip(*asked.starts, strict=True)
     starts = variables(
@@ -197,39 +131,15 @@ def _rounding(asked: given.Rounding, seed: int) -> Study:
     tasks = {(k,): partial(disturb, scene, asked.displacement, seeds) for k, scene in enumerate(asked.scenes)}
     size = variable((), asked.displacement, "largest displacement of the rest state, in mean radii")
 
-    def datasets(found: dict[Any, list[Disturbed]]) -> dict[str, xr.Dataset]:
+    def dataset(found: dict[Any, list[Disturbed]]) -> xr.Dataset:
         each = {(*case, k): one for case, several in found.items() for k, one in enumerate(several)}
-        dataset = table(each, "case", "kick").assign_coords(axes(case=(asked.cases, "packing and load")))
-        return {"rounding": dataset.assign(displacement=size)}
+        cases = axes(case=(asked.cases, "packing and load"))
+        return table(each, "case", "kick").assign_coords(cases).assign(displacement=size)
 
-    return tasks, datasets
+    return tasks, lambda found: {"rounding": dataset(found)}
 
 
 def _random_scenes(asked: given.RandomScenes, seed: int) -> Study:
-    tasks = {
-        (begin,): partial(_random_chunk, asked.maximum_steps, seed, begin, min(begin + asked.chunk, asked.number))
-        for begin in range(0, asked.number, asked.chunk)
-    }
-    return tasks, lambda found: {"random_scenes": _random_scenes_dataset([*chain(*found.values())])}
-
-
-def _random_chunk(steps: int, seed: int, begin: int, end: int) -> list[random_scenes.Trial]:
-    return [random_scenes.run(steps, seed, index) for index in range(begin, end)]
-
-
-def _random_scenes_dataset(trials: list[random_scenes.Trial]) -> xr.Dataset:
-    dataset = table(trials, "scene")
-    words: dict[str, tuple[tuple[str, ...], str]] = {
-        "outcome": (random_scenes.OUTCOMES, "what became of the scene"),
-        "kind": (("slab", "pile", "file"), "packing"),
-        "method": (random_scenes.METHODS, "method asked for"),
-        "integrator": (get_args(Integrator), "integrator"),
-    }
-    for name, (values, text) in words.items():
-        codes = np.array([values.index(getattr(t, name)) for t in trials], np.int8)
-        legend = ", ".join(f"{code} {value}" for code, value in enumerate(values))
-        dataset[name] = variable("scene", codes, f"{text}: {legend}")
-    # what a wrong result was, for whoever has to look at it
-    wrong = [f"{k}: {t.message}" for k, t in enumerate(trials) if t.outcome == "wrong"]
-    dataset.attrs["wrong"] = "; ".join(wrong)
-    return dataset
+    numbers, starts = range(asked.number), range(0, asked.number, asked.chunk)
+    tasks = {k: partial(random_scenes.several, asked.maximum_steps, seed, numbers[k : k + asked.chunk]) for k in starts}
+    return tasks, lambda found: {"random_scenes": random_scenes.dataset([*chain(*found.values())])}
