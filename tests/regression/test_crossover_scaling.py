@@ -8,9 +8,9 @@ import reduced
 
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
-from granular_response_paper.groups.crossover_scaling import series as study
 from granular_response_paper.groups.crossover_scaling.claims import CLAIMS
 from granular_response_paper.groups.crossover_scaling.parameters import Parameters
+from granular_response_paper.groups.crossover_scaling.simulate import series as study
 from granular_response_paper.groups.frictionless_crossover import simulate as frictionless
 from granular_response_paper.report import beyond
 

@@ -10,8 +10,8 @@ from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.hysteresis import simulate
 from granular_response_paper.groups.hysteresis.claims import CLAIMS
-from granular_response_paper.groups.hysteresis.loops import keep_books
 from granular_response_paper.groups.hysteresis.parameters import Parameters
+from granular_response_paper.groups.hysteresis.simulate.loops import keep_books
 from granular_response_paper.report import beyond
 
 PARAMETERS = reduced.parameters("hysteresis")

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response_paper.groups.rolling_resistance.balance import balance
-from granular_response_paper.groups.rolling_resistance.couples import decay
+from granular_response_paper.groups.rolling_resistance.simulate.balance import balance
+from granular_response_paper.groups.rolling_resistance.simulate.couples import decay
 
 
 def test_rolling_resistance_lowers_the_friction_that_holds_a_pile(datasets):

@@ -7,7 +7,7 @@ from granular_response.scene import Scene
 from granular_response.theory.lattice import Springs, moduli
 from granular_response.theory.slab import response_of_layers
 from granular_response_paper.groups.tangent_moduli import simulate
-from granular_response_paper.groups.tangent_moduli.solid import Solid, fitted, triangles
+from granular_response_paper.groups.tangent_moduli.simulate.solid import Solid, fitted, triangles
 from granular_response_paper.parameters import UNIT_LOAD
 from granular_response_paper.slab_response import LoadPath, Measures
 

@@ -9,7 +9,12 @@ from granular_response.scene import Packing
 from granular_response.solvers.problem import Problem
 from granular_response_paper.groups.frictionless_crossover import simulate as study
 from granular_response_paper.groups.frictionless_crossover.draw import nearest
-from granular_response_paper.groups.frictionless_crossover.slab import Slab, new_neighbours, rest_asymmetry, settle
+from granular_response_paper.groups.frictionless_crossover.simulate.slab import (
+    Slab,
+    new_neighbours,
+    rest_asymmetry,
+    settle,
+)
 
 PARAMETERS = {
     "method": "auto",

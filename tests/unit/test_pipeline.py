@@ -275,10 +275,11 @@ def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
     (yaml_block,) = re.findall(r"```yaml\n(.*?)```", section, re.S)
     folder = tmp_path / "groups" / "example"
     folder.mkdir(parents=True)
+    (folder / "simulate").mkdir()
     for file, block in re.findall(r"`(\w+\.py)`(?:(?!```).)*?```python\n(.*?)```", section, re.S):
-        (folder / file).write_text(block)
+        (folder / file.replace("__init__", "simulate/__init__")).write_text(block)
     (folder / "__init__.py").touch()
-    assert {path.name for path in folder.iterdir()} >= {"parameters.py", "simulate.py", "draw.py"}
+    assert {path.name for path in folder.iterdir()} >= {"parameters.py", "simulate", "draw.py"}
     (tmp_path / "params.yaml").write_text("common: {method: auto}\n" + yaml_block)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(groups, "__path__", [*groups.__path__, str(tmp_path / "groups")])

@@ -9,7 +9,7 @@ from small_scenes import scene
 from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response.state import Event as PathEvent
 from granular_response_paper import slab_response
-from granular_response_paper.groups.symmetry_breaking import copies
+from granular_response_paper.groups.symmetry_breaking.simulate import copies
 from granular_response_paper.records import table
 from granular_response_paper.slab_response import (
     EXACT,

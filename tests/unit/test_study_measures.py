@@ -12,7 +12,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.theory.lattice import poisson_ratio
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab
-from granular_response_paper.groups.friction_fields.stress import axis_measures, harmonic_lattice
+from granular_response_paper.groups.friction_fields.simulate.stress import axis_measures, harmonic_lattice
 from granular_response_paper.groups.pile_dip.simulate import mirrored
 from granular_response_paper.groups.stiffness_ratio_crossover.simulate import elastic_bodies
 from granular_response_paper.groups.torque.simulate import ring_ratio

@@ -93,7 +93,8 @@ def _entry(root: Path, path: str) -> Entry:
     dimensions = {name: {str(d): size for d, size in one.sizes.items()} for name, one in datasets.items()}
     about = "Ensembles of slabs"
     if stem in NAMES:
-        source = resources.files(f"granular_response_paper.groups.{stem}").joinpath("simulate.py").read_text("utf-8")
+        study = resources.files(f"granular_response_paper.groups.{stem}") / "simulate" / "__init__.py"
+        source = study.read_text("utf-8")
         about = (ast.get_docstring(ast.parse(source)) or stem).split("\n\n")[0].replace("\n", " ")
     elif "ensembles" in datasets:
         cases = datasets["ensembles"]

@@ -2,7 +2,7 @@
 
 An ensemble is a block of the survey's own parameter file. Packings of a group are those that the pipeline has no time
 for, higher ones and more realizations: the group says which in its section of ``params.yaml``, and ``packings`` and
-``task`` of its ``simulate.py`` make them as those of the pipeline.
+``task`` of its ``simulate`` make them as those of the pipeline.
 
 Every finished task is kept, under a name made from the sources that its outcome depends on and from the task itself.
 So a run that was stopped goes on where it was, a block with more realizations computes the new ones alone, and a change
@@ -48,8 +48,6 @@ GROUPS = ("peak_width", "moduli", "crossover_scaling", "hysteresis")
 LIBRARY = ("contact", "kernels", "linalg", "machine", "observe", "scene", "solvers", "state")
 MECHANICS = (*LIBRARY, f"{PACKAGE}/slab_response.py")
 SOURCES = (*MECHANICS, f"{PACKAGE}/ensembles")
-#: Modules beside ``simulate.py`` in which groups measure packings.
-BESIDE = (f"{PACKAGE}/groups/hysteresis/loops.py",)
 
 #: What is kept of the responses and of the packings.
 RESPONSES = ("force", "x", "floor_response", "outcome", "message", "lost", "by_motion")
@@ -141,7 +139,7 @@ def tasks_of(group: str, parameters: Any) -> dict[Any, partial[Any]]:
 
 def sources_of(group: str) -> tuple[str, ...]:
     """The sources that an outcome of a group's task depends on."""
-    return (*MECHANICS, "theory", f"{PACKAGE}/groups/{group}/simulate.py", *BESIDE)
+    return (*MECHANICS, "theory", f"{PACKAGE}/groups/{group}/simulate")
 
 
 def run(block: Block, folder: Path, *, workers: int | None = None, progress: Progress | None = None) -> Path:

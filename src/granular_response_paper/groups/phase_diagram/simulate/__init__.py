@@ -25,7 +25,7 @@ from granular_response_paper.survey import crossover
 from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import LEVELS, Crossing, Ensemble, Singles, folded
 
-from .parameters import Parameters
+from ..parameters import Parameters
 from .starts import CASE, dips_of_few, side_by_side, starts
 
 APPLIED = f"applied force {WEIGHTS}"

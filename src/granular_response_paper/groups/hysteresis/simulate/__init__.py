@@ -25,8 +25,8 @@ from granular_response.state import FloatArray
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.hysteresis.loops import EVENTS, Packing, Shown, Turn
 from granular_response_paper.groups.hysteresis.parameters import Parameters
+from granular_response_paper.groups.hysteresis.simulate.loops import EVENTS, Packing, Shown, Turn
 from granular_response_paper.records import axes, column, columns, labels, parts, record, stacked, table
 from granular_response_paper.survey.packings import measured
 

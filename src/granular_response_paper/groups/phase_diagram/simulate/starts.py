@@ -13,7 +13,7 @@ from granular_response_paper.ensembles.averages import at_rest
 from granular_response_paper.records import column, record, stacked, table, variables
 from granular_response_paper.survey.crossover import CONFIDENCE, LEVELS, Ensemble, shapes_of_samples, weights
 
-from .parameters import Parameters
+from ..parameters import Parameters
 
 #: Coordinates of a case.
 CASE = ("polydispersity", "friction", "wall_friction", "lattice_constant", "realizations")

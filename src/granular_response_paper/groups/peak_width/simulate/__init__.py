@@ -34,7 +34,7 @@ from granular_response_paper.slab_response import LoadPath
 from granular_response_paper.survey.crossover import CONFIDENCE, folded
 from granular_response_paper.survey.packings import measured
 
-from .parameters import Parameters
+from ..parameters import Parameters
 from .widths import Outcome, floors, inside
 
 #: Height of the line that stands for the floor (radii): below all centres, above what the floor contacts rest on.

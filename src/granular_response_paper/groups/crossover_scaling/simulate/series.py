@@ -16,7 +16,7 @@ from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.records import axes, column, labels, record, table
 
-from .parameters import Parameters, Series, varied
+from ..parameters import Parameters, Series, varied
 
 #: Layers of the paper's slab, to which a confinement in proportion to the weight refers.
 PAPERS_LAYERS = 15

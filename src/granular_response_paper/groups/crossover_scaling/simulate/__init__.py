@@ -32,7 +32,7 @@ from granular_response_paper.records import axes, column, columns, record, table
 from granular_response_paper.slab_response import Happening, LoadPath, Measures, Scalars, by_motion
 from granular_response_paper.survey.packings import measured
 
-from .parameters import Parameters
+from ..parameters import Parameters
 from .series import Slab, packings, power_table, slabs
 
 #: Force over the confinement, from which the answers of contacts to small forces are taken.

@@ -23,9 +23,9 @@ from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.rolling_resistance.balance import balance
-from granular_response_paper.groups.rolling_resistance.couples import respond
 from granular_response_paper.groups.rolling_resistance.parameters import Parameters
+from granular_response_paper.groups.rolling_resistance.simulate.balance import balance
+from granular_response_paper.groups.rolling_resistance.simulate.couples import respond
 from granular_response_paper.records import axes, column, parts, places, record, table, table_along
 from granular_response_paper.tasks import computed
 

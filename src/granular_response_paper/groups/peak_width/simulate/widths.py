@@ -20,7 +20,7 @@ from granular_response.theory.slab import Slab
 from granular_response_paper.records import column, record, table
 from granular_response_paper.survey.crossover import CONFIDENCE, weights
 
-from .parameters import Case, Parameters
+from ..parameters import Case, Parameters
 
 SURVEYED = "1 where the packings are those of the survey"
 

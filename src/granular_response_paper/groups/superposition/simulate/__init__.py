@@ -20,8 +20,8 @@ import xarray as xr
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.rest import rest_of
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.superposition.loads import PARTS, load_pair, load_single
 from granular_response_paper.groups.superposition.parameters import Parameters
+from granular_response_paper.groups.superposition.simulate.loads import PARTS, load_pair, load_single
 from granular_response_paper.records import axes, places, table, variables
 from granular_response_paper.tasks import computed
 

@@ -27,7 +27,7 @@ from granular_response_paper.records import axes, column, labels, parts, places,
 from granular_response_paper.slab_response import LoadPath, Measures, two_peaks
 from granular_response_paper.tasks import computed
 
-from .parameters import Parameters
+from ..parameters import Parameters
 from .solid import Solid, fitted, triangles
 
 LOADS = ("body", "surface")

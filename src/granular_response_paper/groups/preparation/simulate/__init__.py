@@ -27,7 +27,7 @@ from granular_response.sweeps.rest import rest_state
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.preparation.parameters import Parameters
-from granular_response_paper.groups.preparation.taps import tapped
+from granular_response_paper.groups.preparation.simulate.taps import tapped
 from granular_response_paper.parameters import material
 from granular_response_paper.records import axes, column, record, table
 from granular_response_paper.tasks import computed

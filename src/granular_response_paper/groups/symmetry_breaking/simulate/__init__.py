@@ -30,8 +30,8 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.tasks import computed
 
+from ..parameters import Parameters, Protocol
 from .copies import compared, copied, copies, random_shift
-from .parameters import Parameters, Protocol
 
 #: When a displaced equilibrium counts as settled. Growth from a small displacement shows long before so many steps.
 HELD_STOP = Stop(kinetic_energy=1e-15, rule="envelope", maximum_steps=200_000)

@@ -24,7 +24,7 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.records import table_along
 from granular_response_paper.tasks import computed
 
-from .parameters import Parameters
+from ..parameters import Parameters
 from .runs import Readings, Response, bottom, damp, disordered, respond, restart, stopped, swing
 
 #: Steps between two readings of the kinetic energy of a restarted state.

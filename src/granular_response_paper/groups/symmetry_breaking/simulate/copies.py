@@ -15,7 +15,7 @@ from granular_response.store.variables import WEIGHTS
 from granular_response_paper import slab_response as slab
 from granular_response_paper.records import variables
 
-from .parameters import Copies
+from ..parameters import Copies
 
 
 def copies(given: Copies, packing: Packing) -> dict[str, Packing]:
