@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from small_scenes import at_rest, free_disks, scene, started
 
+from granular_response.solvers import stability
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.equilibrium import external_force, newton
 from granular_response.solvers.path import follow
@@ -72,6 +73,21 @@ def test_an_upright_column_has_an_unstable_direction_for_each_contact_between_di
     system = StaticSystem(held.with_loads(state.position), state)
     trial, _ = newton(system, system.start(state), external_force(system.problem, 0.0))
     assert Spectrum(system, trial).negative_modes == 0
+
+
+def test_a_negative_eigenvalue_is_followed_where_it_is_still_negative(monkeypatch):
+    system, trial = balanced([(10.0, 1.0), (10.0, 3.0)], None, np.ones(2))
+    value, vector = Spectrum(system, trial).negative
+    followed = Spectrum(system, trial, near=(1.01 * value, vector + 1e-3))
+    assert followed.negative[0] == pytest.approx(value, rel=1e-6) and followed.negative_modes == 1
+    assert np.abs(followed.direction) == pytest.approx(np.abs(Spectrum(system, trial).direction), abs=1e-6)
+    lying, rest = balanced([(10.0, 1.0), (30.0, 1.0)], None, np.ones(2))
+    stable = Spectrum(lying, rest, near=(value, vector))
+    assert stable.negative_modes == 0 and stable.negative is None
+    column = balanced([(10.0, 1.0), (10.0, 3.0), (10.0, 5.0)], None, np.ones(3))
+    monkeypatch.setattr(stability, "lowest_real", lambda *_: None)
+    clustered = Spectrum(*column)
+    assert clustered.negative_modes == 2 and clustered.negative is None and divergence(clustered) is None
 
 
 def sliding(layers, across, force):

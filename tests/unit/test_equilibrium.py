@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene, shaken
 
-from granular_response.solvers.equilibrium import EquilibriumError, certify, external_force, finish
+from granular_response.solvers.equilibrium import EquilibriumError, certify, external_force, finish, newton
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state
 from granular_response.solvers.system import StaticSystem
@@ -54,6 +54,16 @@ def test_a_disk_of_which_all_contacts_slide_turns_by_no_more_than_a_contact_woul
     left = trial.contact_force + external_force(problem, 0.0)
     step = system.step(trial, left)
     assert 0.0 < np.abs(step[2 * problem.n + disk]) < 10.0 * np.abs(left).max() / problem.stiffness
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_a_disk_that_nothing_touches_falls_to_its_support_in_few_steps(friction):
+    """Only angles are held: a disk in the air is not."""
+    problem, state = free_disks([[500.0, 1.02], [510.0, 1.0]], contact__friction=friction, wall__friction=friction)
+    system = StaticSystem(problem, problem.relisted(state))
+    trial, report = newton(system, system.start(state), external_force(problem, 0.0))
+    assert report.converged and report.iterations <= 5
+    assert (trial.configuration.overlap > 0.0).all()
 
 
 def test_certificate_measures_what_it_says(settled):

@@ -60,3 +60,7 @@ def test_moved_beyond_counts_where_a_disk_will_be():
     assert moved_beyond(q, v, 2, 0.49, 0.0)
     assert not moved_beyond(q, v, 2, 0.51, 0.0)
     assert moved_beyond(q, v, 2, 0.51, 0.02)
+
+
+def test_a_scene_may_name_these():
+    assert list(INTEGRATORS) == ["beeman", "verlet", "leapfrog", "gear"]

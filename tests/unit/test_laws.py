@@ -46,6 +46,7 @@ def shape_of(law, first=1.0, second=1.0):
 
 
 def test_a_scene_can_name_every_law():
+    assert list(KNOWN_LAWS) == ["linear", "hertz", "cohesive"]
     for name in NAMES:
         problem = Problem.from_scene(Scene().updated({"contact.law": name}))
         assert type(problem.pair_law) is type(problem.wall_law) is law_class(name)

@@ -76,6 +76,20 @@ def test_a_soft_unknown_asks_for_no_row_exchanges():
     assert x == pytest.approx(np.linalg.solve(dense, right), rel=1e-9)
 
 
+@pytest.mark.parametrize("soft", [False, True])
+@pytest.mark.parametrize("pivot", [1e-2, 1e-5, 1e-8, 1e-11, 1e-14])
+def test_small_pivots_cost_no_accuracy(pivot, soft):
+    """Whether or not another unknown is soft, which a residual of all would not tell apart."""
+    dense = banded(30, 3, 1)
+    dense[0, 0] = pivot
+    if soft:
+        dense[20], dense[:, 20] = 0.0, 0.0
+        dense[20, 20] = 1e-10
+    matrix = stored(dense, 3)
+    x = Band(matrix.indptr, matrix.indices).factor(matrix).solve(np.ones(30))
+    assert x == pytest.approx(np.linalg.solve(dense, np.ones(30)), rel=1e-8)
+
+
 def test_zero_pivot_of_a_symmetric_matrix_does_not_pass_for_positive():
     dense = banded(30, 3, 1, symmetric=True)
     dense[0, 0] = 0.0

@@ -162,7 +162,7 @@ def test_a_packing_is_solved_alike_by_band_and_fronts(monkeypatch):
     right = np.random.default_rng(4).normal(size=known.q.size)
     solutions = []
     for system in (banded, fronts):
-        factor = system.factorise(system.trial(known, q), 1000.0)
+        factor = system.factorise(system.tangent(system.trial(known, q), 1000.0))
         solutions.append(system.deinterleave(factor.solve(system.interleave(right))))
     assert solutions[1] == pytest.approx(solutions[0], rel=1e-9, abs=1e-12)
 

@@ -70,13 +70,14 @@ def lowest_real(
 
 
 def followed(inverse: Callable[[float], Callable[[FloatArray], FloatArray]], near: Eigenpair) -> Eigenpair | None:
-    """The eigenvalue beside one that is ``near``, with its vector (n,), if it is real and negative; else None.
+    """The eigenvalue nearest to one that is ``near``, with its vector (n,), if it is real and negative; else None.
 
-    ``inverse`` as in :func:`lowest_real`; ``near`` may be of another matrix that differs by little.
+    ``inverse`` as in :func:`lowest_real`; ``near`` may be of another matrix.
     """
     beside = near[0] * (1.0 + OPTIONS.beside)
-    value, vector, _ = nearest(inverse(beside), near[1], beside, OPTIONS.vector)
-    return (float(value.real), vector) if value.imag == 0.0 and value.real < 0.0 else None
+    value, vector, residual = nearest(inverse(beside), near[1], beside, OPTIONS.vector)
+    real = value.imag == 0.0 and residual <= OPTIONS.residual
+    return (float(value.real), vector) if real and value.real < 0.0 else None
 
 
 def nearest(

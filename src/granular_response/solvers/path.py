@@ -177,6 +177,7 @@ class _Path:
         self.record: PathRecord = record
         self.progress: Callable[[float], None] | None = progress
         self.asked, self.lowest = together, lowest
+        self.unstable: Eigenpair | None = None  #: the negative eigenvalue that was found last
         self.unit = problem.load_size
         self.weight = external_force(problem, 0.0)
         self.load = external_force(problem, 1.0) - self.weight
@@ -282,13 +283,15 @@ class _Path:
                 length, direction = middle, turned
         return self._by_motion(last, "bifurcation", "unstable", direction)
 
-    def _direction(self, trial: Trial, sense: np.ndarray) -> FloatArray | None:
-        """(dof,) direction in which an equilibrium diverges with signed statuses ``sense``, or None."""
-        return divergence(self._spectrum(trial, sense))
+    def _direction(self, trial: Trial, sense: np.ndarray, near: Eigenpair | None = None) -> FloatArray | None:
+        """(dof,) direction in which an equilibrium diverges with signed statuses ``sense``, or None.
 
-    def _spectrum(self, trial: Trial, sense: np.ndarray, near: Eigenpair | None = None) -> Spectrum:
-        """The spectrum with signed statuses ``sense``."""
-        return Spectrum(self.system, self.system.trial(trial.configuration, trial.configuration.q, fixed=sense), near)
+        ``near`` : a negative eigenvalue of the point before, if it may still be there.
+        """
+        fixed = self.system.trial(trial.configuration, trial.configuration.q, fixed=sense)
+        spectrum = Spectrum(self.system, fixed, near)
+        self.unstable = spectrum.negative
+        return divergence(spectrum)
 
     def _count(self) -> None:
         """Add the factorisations of tangents with kept statuses to what the path has cost."""
@@ -309,7 +312,7 @@ class _Path:
         turned, moved = state.angle - self.start.angle, state.position - self.start.position
         self.origin = np.concatenate([moved.T.ravel(), turned])[: self.system.dof]
         self.suspect = 0  #: negative pivots at the last point
-        self.unstable: Eigenpair | None = None  #: a negative eigenvalue there
+        self.unstable = None
         return Point(state.load_factor, trial, trial.sense, trial.sense)
 
     def _balanced(self, point: Point) -> Point:
@@ -349,9 +352,7 @@ class _Path:
         self.suspect = negative
         # one real eigenvalue is negative, or real ones have passed zero; where contacts slide these may not go along
         if negative % 2 or negative not in (0, before):
-            spectrum = self._spectrum(point.trial, rates.sense, self.unstable if negative == before else None)
-            self.unstable = spectrum.lowest if spectrum.negative_modes else None
-            direction = divergence(spectrum)
+            direction = self._direction(point.trial, rates.sense, self.unstable if negative == before else None)
             if direction is not None:
                 return self._by_motion(point, "bifurcation", "unstable", direction)
         landed = self._landed(point, rates)

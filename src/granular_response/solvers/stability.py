@@ -59,25 +59,35 @@ class Clustered(SolveError, ArithmeticError):
 
 
 class Spectrum:
-    """Lowest eigenvalue of ``M^-1 K`` with the statuses of a trial: looked for when asked for, and once.
+    """Lowest eigenvalue of ``M^-1 K`` with the statuses of a trial, looked for once.
 
-    ``near`` : a negative one, and its vector, of a state just before, which is followed where it can be.
+    ``near`` : a negative one, and its vector, of a state just before. Where it is still negative it stands for the
+    lowest, and for their number.
     """
 
     def __init__(self, system: StaticSystem, trial: Trial, near: Eigenpair | None = None):
         self.system, self.trial = system, trial
         self._matrix, self._scale = _scaled(system, trial)
-        self._known = None if near is None else followed(self._inverse, near)
+        system.forget()
+        self._followed = None if near is None else followed(self._inverse, near)
+
+    @property
+    def negative(self) -> Eigenpair | None:
+        """The lowest real eigenvalue if it is negative, and its vector (dof,), scaled; None where none is found."""
+        with suppress(Clustered):
+            if self.negative_modes and self.lowest[0] < 0.0:
+                return self.lowest
+        return None
 
     @cached_property
     def negative_modes(self) -> int | None:
         """Number of real negative eigenvalues; None where it cannot be determined.
 
-        Where contacts slide it is 1 if there are any. No eigenvalue has a smaller real part than the lowest of the
-        symmetric part (Bendixson): if that is not negative there are none, else they are looked for
+        Where contacts slide, or one was followed, it is 1 if there are any. No eigenvalue has a smaller real part than
+        the lowest of the symmetric part (Bendixson): if that is not negative there are none, else they are looked for
         (:func:`..linalg.lowest.lowest_real`).
         """
-        if self._known is not None:
+        if self._followed is not None:
             return 1
         modes = self.system.storage.negative_eigenvalues(self._symmetric)
         if modes == 0:
@@ -118,14 +128,14 @@ class Spectrum:
         Clustered
             If none is found.
         """
-        if self._known is not None:
-            return self._known
+        if self._followed is not None:
+            return self._followed
+        k, shifted = self.system.problem.stiffness, self.system.pattern.with_shift
         self.system.forget()
         for left in OPTIONS.left_of_all:
-            shifted = self.system.pattern.with_shift(self._symmetric, left * self.system.problem.stiffness)
-            if self.system.storage.definite_factor(shifted) is not None:
+            if self.system.storage.definite_factor(shifted(self._symmetric, left * k)) is not None:
                 break
-        found = lowest_real(self._inverse, self.system.dof, -left * self.system.problem.stiffness)
+        found = lowest_real(self._inverse, self.system.dof, -left * k)
         if found is None:
             raise Clustered
         return found

@@ -51,17 +51,14 @@ class StaticSystem(Equations):
         self.renewals = 0  #: factorisations made by :meth:`renewed_factor`
         self._steps = Sequence(self.storage, same=OPTIONS.same_shift * problem.stiffness)
 
-    def factorise(self, trial: Trial, shift: float = 0.0, matrix: sp.csc_array | None = None) -> Eliminated:
-        """LU of the tangent, a tiny regularisation included; ``matrix`` : that, if it is known."""
-        matrix = self._regularised(trial, shift) if matrix is None else matrix
+    def factorise(self, matrix: sp.csc_array) -> Eliminated:
+        """LU of a tangent, alone in memory."""
         self.forget()
-        factor = self.storage.factor(matrix)
-        self._keep(trial, factor, shift)
-        return factor
+        return self.storage.factor(matrix)
 
-    def _regularised(self, trial: Trial, shift: float = 0.0) -> sp.csc_array:
-        """The tangent with ``shift`` and a tiny regularisation."""
-        return self.tangent(trial, shift + OPTIONS.regularisation * self.problem.stiffness)
+    def _regularised(self, trial: Trial) -> sp.csc_array:
+        """The tangent with a tiny regularisation."""
+        return self.tangent(trial, OPTIONS.regularisation * self.problem.stiffness)
 
     def forget(self) -> None:
         """Let all factorisations go before one is made: two need not be in memory."""
@@ -75,18 +72,21 @@ class StaticSystem(Equations):
     def step(self, trial: Trial, force: FloatArray, shift: float = 0.0) -> FloatArray:
         """(dof,) displacements that take ``force`` up, by the tangent with ``shift`` on its diagonal.
 
-        A disk of which all contacts slide turns as if one of them stuck: nothing else would end its turn, which can
-        turn their slip round. In a large packing by iteration, with a rough factorisation that may be brought up to
-        date for what has changed since. RuntimeError where the tangent is exactly singular.
+        Without a shift a disk of which all contacts slide turns as if one of them stuck: nothing else would end its
+        turn, which can turn their slip round. In a large packing by iteration, with a rough factorisation that may be
+        brought up to date for what has changed since. RuntimeError where the tangent is exactly singular.
         """
         right = self.interleave(force)
         matrix = self.tangent(trial, shift)
-        held = np.where(self.pattern.without_effect(matrix), 1.0, OPTIONS.regularisation)
-        matrix.data[self.pattern.diagonal] += held * self.problem.stiffness
+        held = np.full((self.problem.n, self.problem.freedoms), OPTIONS.regularisation)
+        held[:, 2:][self.pattern.without_effect(matrix).reshape(held.shape)[:, 2:]] = 1.0
+        matrix.data[self.pattern.diagonal] += held.ravel() * self.problem.stiffness
         self._kept = None
         found = self._steps.solve(matrix, right, OPTIONS.left_over, shift)
         if found is None:
-            return self.deinterleave(self.factorise(trial, shift, matrix).solve(right))
+            factor = self.factorise(matrix)
+            self._keep(trial, factor, shift)
+            return self.deinterleave(factor.solve(right))
         if self._steps.factor is not None:
             self._keep(trial, self._steps.factor, shift)
         return self.deinterleave(found)
@@ -122,7 +122,8 @@ class StaticSystem(Equations):
         """The same, made anew."""
         self._updated = None
         self.renewals += 1
-        updated = Updated(self.factorise(self.trial(known, known.q, fixed=sense)), self.dof, OPTIONS.most_changed, 6)
+        matrix = self._regularised(self.trial(known, known.q, fixed=sense))
+        updated = Updated(self.factorise(matrix), self.dof, OPTIONS.most_changed, 6)
         self._updated = updated, sense
         return updated
 

@@ -28,12 +28,11 @@ from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response_paper import slab_response
 from granular_response_paper.datasets import labelled
+from granular_response_paper.groups.crossover_scaling.parameters import Parameters
+from granular_response_paper.groups.crossover_scaling.simulate.series import Slab, packings, power_table, slabs
 from granular_response_paper.records import axes, column, columns, record, table
 from granular_response_paper.slab_response import Happening, LoadPath, Measures, Scalars, by_motion
 from granular_response_paper.survey.packings import measured
-
-from ..parameters import Parameters
-from .series import Slab, packings, power_table, slabs
 
 #: Force over the confinement, from which the answers of contacts to small forces are taken.
 SMALL = 0.1

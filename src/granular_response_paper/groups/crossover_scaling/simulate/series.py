@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from granular_response.scene import Scene
 from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS, variable
+from granular_response_paper.groups.crossover_scaling.parameters import Parameters, Series, varied
 from granular_response_paper.records import axes, column, labels, record, table
-
-from ..parameters import Parameters, Series, varied
 
 #: Layers of the paper's slab, to which a confinement in proportion to the weight refers.
 PAPERS_LAYERS = 15

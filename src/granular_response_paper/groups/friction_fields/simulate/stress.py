@@ -60,7 +60,8 @@ def harmonic_lattice(
     side walls hold the disks nearest to them by springs too. Solved to first order in the displacements.
     """
     pairs = packing.neighbour_pairs()
-    assert pairs is not None, "a packing from a file has no lattice bonds"
+    if pairs is None:
+        raise ValueError("packing: must be a lattice, a packing from a file has no lattice bonds")
     n, position = packing.n, packing.position
     first, second = pairs[:, 0], pairs[:, 1]
     branch = position[first] - position[second]

@@ -21,11 +21,20 @@ from granular_response.scene import Scene
 from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.datasets import labelled
+from granular_response_paper.groups.numerics.parameters import Parameters
+from granular_response_paper.groups.numerics.simulate.runs import (
+    Readings,
+    Response,
+    bottom,
+    damp,
+    disordered,
+    respond,
+    restart,
+    stopped,
+    swing,
+)
 from granular_response_paper.records import table_along
 from granular_response_paper.tasks import computed
-
-from ..parameters import Parameters
-from .runs import Readings, Response, bottom, damp, disordered, respond, restart, stopped, swing
 
 #: Steps between two readings of the kinetic energy of a restarted state.
 READ_EVERY = 100

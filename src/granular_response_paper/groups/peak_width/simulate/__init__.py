@@ -28,14 +28,13 @@ from granular_response.state import FloatArray, State
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.datasets import labelled
+from granular_response_paper.groups.peak_width.parameters import Parameters
+from granular_response_paper.groups.peak_width.simulate.widths import Outcome, floors, inside
 from granular_response_paper.parameters import material
 from granular_response_paper.records import axes, column, columns, labels, record, table
 from granular_response_paper.slab_response import LoadPath
 from granular_response_paper.survey.crossover import CONFIDENCE, folded
 from granular_response_paper.survey.packings import measured
-
-from ..parameters import Parameters
-from .widths import Outcome, floors, inside
 
 #: Height of the line that stands for the floor (radii): below all centres, above what the floor contacts rest on.
 FLOOR_LINE = 1e-6

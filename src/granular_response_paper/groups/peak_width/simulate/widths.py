@@ -17,10 +17,9 @@ from granular_response.store.variables import RADII
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Slab
+from granular_response_paper.groups.peak_width.parameters import Case, Parameters
 from granular_response_paper.records import column, record, table
 from granular_response_paper.survey.crossover import CONFIDENCE, weights
-
-from ..parameters import Case, Parameters
 
 SURVEYED = "1 where the packings are those of the survey"
 

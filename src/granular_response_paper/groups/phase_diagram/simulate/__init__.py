@@ -20,13 +20,12 @@ from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.resources import current
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import COLLAPSED, smoothed
+from granular_response_paper.groups.phase_diagram.parameters import Parameters
+from granular_response_paper.groups.phase_diagram.simulate.starts import CASE, dips_of_few, side_by_side, starts
 from granular_response_paper.records import axes, parts, table, variables
 from granular_response_paper.survey import crossover
 from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import LEVELS, Crossing, Ensemble, Singles, folded
-
-from ..parameters import Parameters
-from .starts import CASE, dips_of_few, side_by_side, starts
 
 APPLIED = f"applied force {WEIGHTS}"
 
@@ -42,7 +41,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """
     asked, widths = parameters, parameters.widths
     x = np.arange(round(asked.reach / asked.spacing) + 1, dtype=float) * asked.spacing
-    source, packings = survey.read(Path(asked.survey), asked.blocks).values()
+    stored = survey.read(Path(asked.survey), asked.blocks)
+    source, packings = stored["ensembles"], stored["packings"]
     places = list(product(range(len(widths)), range(source.sizes["case"])))
     drawn: dict[str, Any] = {"draws": asked.draws, "seed": asked.seed, "tolerance": asked.tolerance}
     crossings, single, few = {}, {}, {}

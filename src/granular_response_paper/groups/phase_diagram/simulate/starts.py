@@ -10,10 +10,9 @@ import xarray as xr
 from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response_paper.ensembles.averages import at_rest
+from granular_response_paper.groups.phase_diagram.parameters import Parameters
 from granular_response_paper.records import column, record, stacked, table, variables
 from granular_response_paper.survey.crossover import CONFIDENCE, LEVELS, Ensemble, shapes_of_samples, weights
-
-from ..parameters import Parameters
 
 #: Coordinates of a case.
 CASE = ("polydispersity", "friction", "wall_friction", "lattice_constant", "realizations")

@@ -27,11 +27,10 @@ from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.sweeps.rest import rest_of
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
+from granular_response_paper.groups.symmetry_breaking.parameters import Parameters, Protocol
+from granular_response_paper.groups.symmetry_breaking.simulate.copies import compared, copied, copies, random_shift
 from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.tasks import computed
-
-from ..parameters import Parameters, Protocol
-from .copies import compared, copied, copies, random_shift
 
 #: When a displaced equilibrium counts as settled. Growth from a small displacement shows long before so many steps.
 HELD_STOP = Stop(kinetic_energy=1e-15, rule="envelope", maximum_steps=200_000)

@@ -13,9 +13,8 @@ from granular_response.scene import Packing, Scene
 from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS
 from granular_response_paper import slab_response as slab
+from granular_response_paper.groups.symmetry_breaking.parameters import Copies
 from granular_response_paper.records import variables
-
-from ..parameters import Copies
 
 
 def copies(given: Copies, packing: Packing) -> dict[str, Packing]:

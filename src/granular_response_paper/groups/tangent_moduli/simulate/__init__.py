@@ -23,12 +23,11 @@ from granular_response.state import SLIDING, FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.theory.moduli import peak_criterion
 from granular_response_paper.datasets import labelled
+from granular_response_paper.groups.tangent_moduli.parameters import Parameters
+from granular_response_paper.groups.tangent_moduli.simulate.solid import Solid, fitted, triangles
 from granular_response_paper.records import axes, column, labels, parts, places, record, table
 from granular_response_paper.slab_response import LoadPath, Measures, two_peaks
 from granular_response_paper.tasks import computed
-
-from ..parameters import Parameters
-from .solid import Solid, fitted, triangles
 
 LOADS = ("body", "surface")
 #: Part of the force by which it grows for the check of K.
