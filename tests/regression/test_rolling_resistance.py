@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response_paper.groups.rolling_resistance.simulate.balance import balance
+from granular_response_paper.groups.rolling_resistance.simulate.balance import balanced
 from granular_response_paper.groups.rolling_resistance.simulate.couples import decay
 
 
@@ -24,7 +24,7 @@ def test_balance_of_two_layers_in_closed_form():
     outer two bear nothing, so each middle one turns against the floor alone, F = T, which must hold it back:
     N cos 60 - T sin 60 <= F, so T / N >= cos 60 / (1 + sin 60) = tan 15.
     """
-    steps = [balance(2, 0.0, 1.0, tolerance).balance for tolerance in (0.1, 0.001)]
+    steps = [balanced(2, 0.0, 1.0, tolerance).balance for tolerance in (0.1, 0.001)]
     assert steps[0] <= steps[1] == pytest.approx(2.0 - np.sqrt(3.0), abs=0.001)
 
 

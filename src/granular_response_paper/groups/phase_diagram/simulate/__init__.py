@@ -21,7 +21,7 @@ from granular_response.sweeps.resources import current
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import COLLAPSED, smoothed
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
-from granular_response_paper.groups.phase_diagram.simulate.starts import CASE, dips_of_few, side_by_side, starts
+from granular_response_paper.groups.phase_diagram.simulate.starts import CASE, dips_of_few, side_by_side, starts_of
 from granular_response_paper.records import axes, parts, table, variables
 from granular_response_paper.survey import crossover
 from granular_response_paper.survey import datasets as survey
@@ -46,7 +46,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     places = list(product(range(len(widths)), range(source.sizes["case"])))
     drawn: dict[str, Any] = {"draws": asked.draws, "seed": asked.seed, "tolerance": asked.tolerance}
     crossings, single, few = {}, {}, {}
-    compared = starts(source, packings, asked)
+    compared = starts_of(source, packings, asked)
     for done, (w, case) in enumerate(places, 1):
         ensemble = read_ensemble(source, case, x, widths[w], asked.least_part)
         symmetric = Ensemble(ensemble.force, folded(ensemble.response), ensemble.least)

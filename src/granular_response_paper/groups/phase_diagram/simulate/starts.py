@@ -34,7 +34,7 @@ class Start:
     missing_horizontal_interval: FloatArray = column(_BOOTSTRAPPED, "level")
 
 
-def starts(source: xr.Dataset, packings: xr.Dataset, asked: Parameters) -> list[Start]:
+def starts_of(source: xr.Dataset, packings: xr.Dataset, asked: Parameters) -> list[Start]:
     """Every start of a polydispersity under the force at which they are compared."""
     found = []
     lattice, constant = packings.isel(case=0, realization=0), packings["lattice_constant"].values

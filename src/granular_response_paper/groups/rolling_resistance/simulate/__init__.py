@@ -24,7 +24,7 @@ from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.rolling_resistance.parameters import Parameters
-from granular_response_paper.groups.rolling_resistance.simulate.balance import balance
+from granular_response_paper.groups.rolling_resistance.simulate.balance import balanced
 from granular_response_paper.groups.rolling_resistance.simulate.couples import respond
 from granular_response_paper.records import axes, column, parts, places, record, table, table_along
 from granular_response_paper.tasks import computed
@@ -98,7 +98,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     p, pile, rolling = parameters, parameters.pile, parameters.rolling_frictions
     tries = {place: partial(threshold, p, *one) for place, one in places(p.layers, rolling, p.ramps)}
     most, within = p.most_friction, 0.25 * p.tolerance
-    balances = {at: partial(balance, size, mu, most, within) for at, (size, mu) in places(p.layers, rolling)}
+    balances = {at: partial(balanced, size, mu, most, within) for at, (size, mu) in places(p.layers, rolling)}
     own, kinds = pile.contact.friction, (None, min(rolling), max(rolling))
     cases = {at: partial(settle, standing(pile, size, own, mu)) for at, (size, mu) in places(p.layers, kinds)}
     slabs = {place: partial(respond, p, *one) for place, one in places(p.slabs, p.slab_rolling_frictions)}

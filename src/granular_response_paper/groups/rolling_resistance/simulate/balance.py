@@ -17,7 +17,7 @@ class Balance:
     balance: float = column("largest coefficient of friction that was seen to let no forces balance")
 
 
-def balance(layers: int, rolling: float, most: float, tolerance: float) -> Balance:
+def balanced(layers: int, rolling: float, most: float, tolerance: float) -> Balance:
     """Friction, up to ``most``, with which no forces balance the weights of the pile of equal disks as it is placed.
 
     Normal forces that press, tangential and rolling ones within their limits, at all neighbours and the floor: a linear

@@ -28,7 +28,7 @@ from granular_response.sweeps.rest import rest_of
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.symmetry_breaking.parameters import Parameters, Protocol
-from granular_response_paper.groups.symmetry_breaking.simulate.copies import compared, copied, copies, random_shift
+from granular_response_paper.groups.symmetry_breaking.simulate.copies import compared, copied, copies_of, random_shift
 from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.tasks import computed
 
@@ -122,7 +122,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     first = protocols[0].scene(base, protocols[0].time_steps[0])
     rest = computed({"rest": partial(rest_of, first)}, "rest state")["rest"]
 
-    packings, force = copies(parameters.copies, first.packing.build()), parameters.copies.force
+    packings, force = copies_of(parameters.copies, first.packing.build()), parameters.copies.force
     # long ones first, so that no core waits for them in the end
     longest = sorted(enumerate(protocols), key=lambda one: -(100.0 + one[1].ramp_time) / min(one[1].time_steps))
     tasks: dict[Any, Callable[[], Any]] = {k: partial(ramps, parameters, rest, protocol) for k, protocol in longest}

@@ -17,7 +17,7 @@ from granular_response_paper.groups.symmetry_breaking.parameters import Copies
 from granular_response_paper.records import variables
 
 
-def copies(given: Copies, packing: Packing) -> dict[str, Packing]:
+def copies_of(given: Copies, packing: Packing) -> dict[str, Packing]:
     """By how they differ from the packing."""
     found = {"as it is": packing, "numbered from right to left": mirrored(packing)}
     found |= {f"numbered at random, seed {seed}": shuffled(packing, seed) for seed in given.seeds}
