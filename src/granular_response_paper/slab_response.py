@@ -220,6 +220,13 @@ class Measures:
         self.near = network.interior_contacts(path.rest, packing.width, packing.width / 3.0)
         self._lattice, self._radius = packing.position, packing.radius
 
+    @property
+    def confinement(self) -> float:
+        """Mean normal force at rest of the horizontal contacts in the central third that touch; 0 where none does."""
+        pairs = self.rest.pairs
+        level = pairs.touching & (network.lattice_direction(self.rest) == network.HORIZONTAL) & self.near
+        return float(pairs.normal_force[level].mean()) if level.any() else 0.0
+
     @cached_property
     def mirror(self) -> NDArray[np.intp]:
         """(n,) mirror images in the middle, on the undeformed lattice; rows between periodic sides have none."""

@@ -26,8 +26,8 @@ from .system import Configuration, StaticSystem, Trial
 class IncrementOptions:
     """Numbers that an increment goes by. Forces in mean weights."""
 
-    #: Newton iterations on the true law before limits are held fixed, and in each try after that: none that succeeded
-    #: took more than 3.
+    #: Newton iterations on the true law before limits are held fixed, where none that succeeded took more than 5, and
+    #: in each try after that, where none took more than 3.
     direct: int = 8
     finish: int = 4
     #: Rounds of fixed limits, and the round after which the true law is tried again.

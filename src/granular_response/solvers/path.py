@@ -250,6 +250,7 @@ class _Path:
             try:
                 point = self._by_motion(point, "bifurcation", "unstable", None)
             except PathError:  # motion hardly leaves it, and finds nothing beside it
+                point = self._at(state)
                 direction = self._direction(point.trial, point.sense)
                 if direction is None:
                     raise

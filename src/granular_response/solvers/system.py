@@ -79,7 +79,8 @@ class StaticSystem(Equations):
         right = self.interleave(force)
         matrix = self.tangent(trial, shift)
         held = np.full((self.problem.n, self.problem.freedoms), OPTIONS.regularisation)
-        held[:, 2:][self.pattern.without_effect(matrix).reshape(held.shape)[:, 2:]] = 1.0
+        if shift == 0.0:
+            held[:, 2:][self.pattern.without_effect(matrix).reshape(held.shape)[:, 2:]] = 1.0
         matrix.data[self.pattern.diagonal] += held.ravel() * self.problem.stiffness
         self._kept = None
         found = self._steps.solve(matrix, right, OPTIONS.left_over, shift)

@@ -56,7 +56,7 @@ def sentence(found: dict[str, Any]) -> str:
         for n, v in named
         if n
     ]
-    text = f"Of {judged} claims of the paper that were measured in its own set-up: {', '.join(parts)}."
+    text = f"Of {judged} claims of the paper that were measured in its own set-up: {', '.join(parts) or 'none'}."
     algebra, missing, beyond = number["derivation"], number["not_measured"], number.get("beyond", 0)
     if algebra:
         text += f" {algebra} more {'are' if algebra != 1 else 'is'} algebra that no simulation can fail."

@@ -22,7 +22,6 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS, variable
@@ -74,9 +73,7 @@ def compute(
     """
     path = LoadPath.of(scene)
     measures, rest = Measures(path), path.rest.pairs
-    level = (network.lattice_direction(path.rest) == network.HORIZONTAL) & measures.near
-    confinement = float(rest.normal_force[level].mean())
-
+    confinement = measures.confinement
     asked = [  # in the order of EVENTS
         slab_response.first_opening(measures),
         Happening(lambda state: measures.dip(state) > visible, EVENTS["crossover"]),

@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.solvers.problem import Problem
@@ -93,10 +92,8 @@ def compute(
     problem = Problem.from_scene(scene)
     path = slab.LoadPath.of(scene, tapped(problem, rest_state(problem), *taps))
     states, measures = path.through(forces), slab.Measures(path)
-    pairs = path.rest.pairs
-    level = pairs.touching & (network.lattice_direction(path.rest) == network.HORIZONTAL) & measures.near
-    level_force = float(pairs.normal_force[level].mean()) if level.any() else 0.0
-    rest = Rest(float(pairs.touching.sum()), level_force, np.array(measures.mobilised(path.rest)))
+    touching = float(path.rest.pairs.touching.sum())
+    rest = Rest(touching, measures.confinement, np.array(measures.mobilised(path.rest)))
     events = slab.locate(path, forces, slab.happenings(measures, states[0], asymmetry))
     packing, high = scene.packing.model_dump(), {event.name: event.high for event in events}
     if packing["polydispersity"]:
