@@ -7,3 +7,7 @@ class GranularError(Exception):
 
 class SolveError(GranularError):
     """No equilibrium was found for a well-formed scene, or none is there."""
+
+
+class EquilibriumError(SolveError, RuntimeError):
+    """No static equilibrium was found near the start."""

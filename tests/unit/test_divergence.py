@@ -12,7 +12,7 @@ from granular_response.solvers.equilibrium import external_force, newton
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state
-from granular_response.solvers.stability import Spectrum, divergence
+from granular_response.solvers.stability import Clustered, Spectrum, divergence, diverging
 from granular_response.solvers.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
@@ -87,7 +87,18 @@ def test_a_negative_eigenvalue_is_followed_where_it_is_still_negative(monkeypatc
     column = balanced([(10.0, 1.0), (10.0, 3.0), (10.0, 5.0)], None, np.ones(3))
     monkeypatch.setattr(stability, "lowest_real", lambda *_: None)
     clustered = Spectrum(*column)
-    assert clustered.negative_modes == 2 and clustered.negative is None and divergence(clustered) is None
+    assert clustered.negative_modes == diverging(clustered) == 2 and clustered.negative is None
+    with pytest.raises(Clustered):
+        divergence(clustered)
+
+
+def test_an_instability_that_is_not_determined_is_not_certified(monkeypatch):
+    """Contacts slide, and no lowest direction is found: neither stable nor unstable."""
+    _, system, trial = sliding(3, 5, 2.0)
+    found = Spectrum(system, trial)
+    monkeypatch.setattr(Spectrum, "negative_modes", 1)
+    monkeypatch.setattr(stability, "lowest_real", lambda *_: None)
+    assert (np.abs(trial.sense) == SLIDING).any() and diverging(found) is None
 
 
 def sliding(layers, across, force):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene, shaken
 
-from granular_response.solvers.equilibrium import EquilibriumError, certify, external_force, finish, newton
+from granular_response.errors import EquilibriumError
+from granular_response.solvers.equilibrium import certify, external_force, finish, newton
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state
 from granular_response.solvers.system import StaticSystem

@@ -102,3 +102,17 @@ def test_one_small_disk_shortens_the_step():
     assert stability_limit(small) < 0.6 * stability_limit(equal)
     slab = Problem.from_scene(scene(packing__polydispersity=0.25))
     assert stability_limit(slab) == stability_limit(Problem.from_scene(scene()))
+
+
+def test_load_factors_count_in_the_largest_force():
+    """With the 3/2 law contacts are as stiff as the largest load makes them."""
+    hertz = {"contact__law": "hertz", "contact__normal_stiffness": 3e4, "contact__friction": 0.0}
+    limits = [
+        stability_limit(
+            Problem.from_scene(
+                scene(3, 5, **hertz, loads=[{"disk": "top-centre", "force": [0.0, -force]}], protocol__load_factors=[factor])
+            )
+        )
+        for force, factor in ((1.0, 1000.0), (1000.0, 1.0), (1.0, 1.0))
+    ]
+    assert limits[0] == limits[1] < limits[2]

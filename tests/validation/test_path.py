@@ -9,6 +9,7 @@ from solved import slab
 
 import granular_response as gr
 from granular_response.observe.floor import floor_force
+from granular_response.solvers import path
 from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.energy import minimise
 from granular_response.solvers.equilibrium import finish
@@ -381,3 +382,63 @@ def test_the_load_never_goes_back():
     (state,) = follow(problem, rest, [0.3], progress=progress)
     assert state.certificate.stable
     assert np.diff(factors).min() > -1e-9
+
+
+def drawn(stiffness, seed):
+    """A small slab with friction under an oblique force, drawn from a ``seed``, at rest."""
+    random = np.random.default_rng(seed)
+    push = np.array([0.6 * random.normal(), -abs(random.normal())])
+    size = {"layers": int(random.integers(2, 5)), "disks_per_row": int(random.integers(4, 6))}
+    friction = {"contact__friction": float(random.choice([0.05, 0.2, 0.6])), "wall__friction": float(random.choice([0.1, 0.5]))}
+    load = {"disk": "top-centre", "force": (push / np.hypot(*push)).tolist()}
+    return at_rest(scene(**size, **friction, contact__normal_stiffness=stiffness, loads=[load]))
+
+
+def test_slip_that_the_rates_of_the_start_do_not_see_turning_is_seen():
+    """Contacts have turned since the tangent was factorised: rates near zero have the other sign."""
+    problem, rest = drawn(3000.0, 0)
+    exact, small = (follow(problem, rest, [8.0, 24.0, 4.0], together=step)[-1] for step in (None, 0.02))
+    assert not any(event.lost for event in exact.reached.events)
+    assert exact.wall_force() == pytest.approx(small.wall_force(), abs=1e-6)
+
+
+def test_a_lost_equilibrium_is_marked_where_its_disk_was():
+    """The loaded disk falls beside its place, by one radius."""
+    soft = {"contact__normal_stiffness": 300.0, "contact__friction": 0.05, "wall__friction": 0.1}
+    load = {"disk": "top-centre", "force": [-0.98, -0.21]}
+    problem, rest = at_rest(scene(2, 5, **soft, loads=[load]))
+    (state,) = follow(problem, rest, [4.0])
+    (jump,) = [event for event in state.reached.events if event.lost]
+    there = np.array([jump.x, jump.z])
+    assert jump.displacement > 0.9
+    assert np.hypot(*(rest.position[jump.first] - there)) < 0.1 < np.hypot(*(state.position[jump.first] - there))
+
+
+def test_an_error_that_is_not_measured_costs_no_result(monkeypatch):
+    """The path in increments of twice the length, which says what is left out, fails."""
+    load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
+    problem, rest = at_rest(scene(3, 5, contact__friction=0.2, loads=load))
+    (whole,) = follow(problem, rest, [3.0], together=0.3)
+    followed, calls = path._Path._followed, []
+
+    def failing(self, *args, **named):
+        calls.append(args)
+        if len(calls) == 2:
+            self.record.events.append(None)
+            raise PathError("no way on")
+        return followed(self, *args, **named)
+
+    monkeypatch.setattr(path._Path, "_followed", failing)
+    record = PathRecord()
+    (found,) = follow(problem, rest, [3.0], together=0.3, record=record)
+    assert np.isfinite(whole.reached.events_error) and found.reached.events_error == np.inf
+    assert np.array_equal(found.position, whole.position) and tuple(record.events) == found.reached.events
+
+
+def test_progress_does_not_go_back():
+    """Also where a path is followed twice, to measure what increments leave out."""
+    load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
+    problem, rest = at_rest(scene(3, 5, contact__friction=0.2, loads=load))
+    reported: list[float] = []
+    follow(problem, rest, [1.0, 3.0], together=0.3, progress=reported.append)
+    assert reported == sorted(set(reported)) and reported[-1] == 3.0

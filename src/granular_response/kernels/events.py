@@ -82,8 +82,11 @@ def fall(c, what, q, v, n, radius, pairs, walls, rolls):
 
 
 @kernel
-def _count(pairs, walls, rolls, status, normal, tip, ties, bearing):
-    """Count what ties each disk, (n,), along normals and where contacts stick, and the contacts that bear something."""
+def _count(pairs, walls, rolls, status, normal, tip, ties, bearing, turning):
+    """Count what ties each disk, (n,), along normals and where contacts stick, the contacts that bear something, and
+
+    those that stick, so that its turn changes a force.
+    """
     m = pairs.first.size
     size = m + walls.disk.size
     for c in range(size):
@@ -94,12 +97,15 @@ def _count(pairs, walls, rolls, status, normal, tip, ties, bearing):
         if rolls is not None and status[size + c] == STICKING:
             tied += 1
         bears = normal[c] > tip
+        sticks = tied > 1
         i = pairs.first[c] if c < m else walls.disk[c - m]
         ties[i] += tied
         bearing[i] += bears
+        turning[i] += sticks
         if c < m:
             ties[pairs.second[c]] += tied
             bearing[pairs.second[c]] += bears
+            turning[pairs.second[c]] += sticks
 
 
 @kernel
@@ -112,13 +118,13 @@ def next_changes(
     ``q``, ``v`` (dof,) : displacements and their rates; ``rolls`` : ``statics.Rolls`` or None; ``status`` (m + w,), or
     twice as many with rolling resistance : negative for contacts that slide under a negative force; ``normal``,
     ``tangential``, ``rolling``, ``overlap`` (m + w,) : forces, the rolling ones None without; ``tip``, ``negligible`` :
-    a force and a rate of a force that are none; ``count`` (2, n) : to count contacts in, from zero, or from more ties
-    than freedoms where a load acts. A rattler that rests on one contact and that no more ties than it has freedoms,
+    a force and a rate of a force that are none; ``count`` (3, n) : to count contacts in, from zero, or from more ties
+    than freedoms where a load acts; in the last row those that stick, along the tangent or the rolling. A rattler that rests on one contact and that no more ties than it has freedoms,
     pushed along by another disk, bears nothing there however it moves: such a contact opens when the other disk
     withdraws, and nothing else happens to it.
     """
     ties, bearing = count[0], count[1]
-    _count(pairs, walls, rolls, status, normal, tip, ties, bearing)
+    _count(pairs, walls, rolls, status, normal, tip, ties, bearing, count[2])
     freedoms = q.size // n
     size = normal.size
     for c in range(size):

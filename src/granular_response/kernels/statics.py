@@ -206,7 +206,7 @@ def _press(c, xi, nx, nz, inverse, form, law, out, tangent):
 def _rub(
     c, xi, nx, nz, inverse, slip, mean, distance, slip_n, form, law, overlap0, spring, limits, fixed, out, tangent
 ):
-    """Closed contact with friction; returns normal and tangential force.
+    """Closed contact with friction; returns normal and tangential force, and by which force a kept status is wrong.
 
     ``slip`` : of the increment; ``mean / distance``, ``slip_n`` : its derivatives along tangent and normal;
     ``spring`` : that before the increment.
@@ -214,7 +214,7 @@ def _rub(
     fn = elastic_force(law, xi, form)
     share = _closed_part(overlap0[c], xi)
     limit = law.friction * fn if limits is None else limits[c]
-    ft, s, sense = _returned(spring + share * slip, limit, law.tangential_stiffness, _item(fixed, c))
+    ft, s, sense, wrong = _returned(spring + share * slip, limit, law.tangential_stiffness, _item(fixed, c))
     out.status[c] = SLIDING if sense != 0.0 else STICKING
     if tangent is not None:
         k = stiffness(law, xi, form)
@@ -228,7 +228,7 @@ def _rub(
     out.normal[c] = fn
     out.tangential[c] = ft
     out.spring[c] = s
-    return fn, ft
+    return fn, ft, wrong
 
 
 @kernel(forceinline=True)
@@ -239,13 +239,25 @@ def _closed_part(before, overlap):
 
 @kernel(forceinline=True)
 def _returned(spring, limit, stiffness, kept):
-    """Force, spring and sense of a contact: by the return map, or of the status ``kept``."""
+    """Force, spring and sense of a contact, and by which force the return map would give another one.
+
+    By the return map, or of the status ``kept``.
+    """
+    force, back, sense = return_map(spring, limit, stiffness)
     if kept is None:
-        return return_map(spring, limit, stiffness)
+        return force, back, sense, 0.0
     if abs(kept) == SLIDING:
         sense = 1.0 if kept > 0 else -1.0
-        return sense * limit, -sense * limit / stiffness, sense
-    return -stiffness * spring, spring, 0.0
+        return sense * limit, -sense * limit / stiffness, sense, abs(sense * limit - force)
+    return -stiffness * spring, spring, 0.0, abs(stiffness * spring + force)
+
+
+@kernel(forceinline=True)
+def _wrongly_open(fixed, c, xi, form, law):
+    """Force by which a contact that is kept open presses, or one that is kept closed pulls."""
+    if fixed is None or xi == 0.0 or (fixed[c] == OPEN) == (xi < 0.0):
+        return 0.0
+    return elastic_force(law, abs(xi), form)
 
 
 @kernel(forceinline=True)
@@ -303,14 +315,16 @@ def contacts(
 
     Returns
     -------
-    Longest part of a spring that a curved way has made.
+    Longest part of a spring that a curved way has made, and the largest force by which contacts with kept statuses
+    differ from those by the return map.
     """
     m = pairs.first.size
-    bend = 0.0
+    bend, worst = 0.0, 0.0
     law = pairs.law
     for c in range(m):
         i, j, ux, uz, dx, dz, d, xi = _pair_at(q, n, pairs, c)
         out.overlap[c] = xi
+        worst = max(worst, _wrongly_open(fixed, c, xi, _item(pair_shape, c), law))
         if _is_open(fixed, c, xi):
             _open(c, pair_spring, out, tangent)
             continue
@@ -336,10 +350,11 @@ def contacts(
             turn = _angle(px * wz - pz * wx, px * dx + pz * dz)
             mean = 0.5 * (before + d)
             roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
-            fn, ft = _rub(
+            fn, ft, wrong = _rub(
                 c, xi, nx, nz, 1.0 / d, mean * turn - roll, mean, d, 0.5 * turn,
                 form, law, overlap0, spring, limits, fixed, out, tangent,
             )  # fmt: skip
+            worst = max(worst, wrong)
             fx = fn * nx - ft * nz
             fz = fn * nz + ft * nx
             force[i] += fx
@@ -353,6 +368,7 @@ def contacts(
         i, nx, nz, xi = _wall_at(q, n, walls, k)
         c = m + k
         out.overlap[c] = xi
+        worst = max(worst, _wrongly_open(fixed, c, xi, _item(wall_shape, k), at_wall))
         if _is_open(fixed, c, xi):
             _open(c, wall_spring, out, tangent)
             continue
@@ -363,14 +379,15 @@ def contacts(
         else:
             slip = (q[n + i] - q0[n + i]) * nx - (q[i] - q0[i]) * nz
             slip -= radius[i] * (q[2 * n + i] - q0[2 * n + i])
-            fn, ft = _rub(
+            fn, ft, wrong = _rub(
                 c, xi, nx, nz, 0.0, slip, 1.0, 1.0, 0.0, form, at_wall, overlap0, wall_spring[c], limits, fixed, out,
                 tangent,
             )  # fmt: skip
+            worst = max(worst, wrong)
             force[2 * n + i] -= radius[i] * ft
         force[i] += fn * nx - ft * nz
         force[n + i] += fn * nz + ft * nx
-    return bend
+    return bend, worst
 
 
 @kernel
@@ -380,9 +397,9 @@ def rolling(q, q0, n, pairs, walls, rolls, known, overlap0, spring0, limits, fix
     ``rolls`` : :class:`Rolls`; ``known`` : the :class:`Response` there; ``spring0`` (m + w,) : as there, along the
     rolling; ``limits``, ``fixed`` : as there, those along the rolling behind; ``out`` : :class:`RollingResponse`,
     filled; ``tangent`` (m + w, 3), if not None : derivative of the couple on the first disk by relative displacement
-    and rotation.
+    and rotation. Returns the largest force by which those with kept statuses differ from those by the return map.
     """
-    size = overlap0.size
+    size, worst = overlap0.size, 0.0
     for c in range(size):
         if known.status[c] == OPEN or rolls.stiffness[c] == 0.0:
             continue
@@ -395,7 +412,8 @@ def rolling(q, q0, n, pairs, walls, rolls, known, overlap0, spring0, limits, fix
         share = _closed_part(overlap0[c], known.overlap[c])
         limit = rolls.friction[c] * known.normal[c] if limits is None else limits[size + c]
         kept = _item(fixed, size + c)
-        found, new, sense = _returned(spring0[c] + share * arm * turned, limit, rolls.stiffness[c], kept)
+        found, new, sense, wrong = _returned(spring0[c] + share * arm * turned, limit, rolls.stiffness[c], kept)
+        worst = max(worst, wrong)
         out.force[c], out.spring[c] = found, new
         out.status[c] = SLIDING if sense != 0.0 else STICKING
         force[a] += arm * found
@@ -406,6 +424,7 @@ def rolling(q, q0, n, pairs, walls, rolls, known, overlap0, spring0, limits, fix
             tangent[c, 0] = -slides * nx
             tangent[c, 1] = -slides * nz
             tangent[c, 2] = 0.0 if sense != 0.0 else -arm * arm * rolls.stiffness[c] * share
+    return worst
 
 
 @kernel

@@ -17,9 +17,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..errors import EquilibriumError
 from ..state import FloatArray, Reached, State
 from .equilibrium import OPTIONS as NEWTON
-from .equilibrium import EquilibriumError, Rearranged, attainable, certify, external_force
+from .equilibrium import Rearranged, attainable, certify, external_force
 from .line_search import shortened
 from .problem import Problem
 from .stability import Spectrum

@@ -63,6 +63,7 @@ class Trial:
     tangent: FloatArray  #: (m + w, 3, 3); (0, 3, 3) where it was not asked for
     rolled: Rolled | None = None
     bend: float = 0.0  #: largest part of a spring that the curved way of a contact has made
+    contradiction: float = 0.0  #: largest force by which statuses that were kept differ from the return map
 
     @cached_property
     def sense(self) -> np.ndarray:
@@ -211,7 +212,7 @@ class Equations:
         force = np.zeros(self.dof)
         out = statics.Response.empty(count)
         local = np.empty((count, 3, 3)) if tangent else None
-        bend = statics.contacts(
+        bend, contradiction = statics.contacts(
             q, known.q, ahead, problem.n, problem.packing.radius, self.pairs, self.pairs.shape, self.walls,
             self.walls.shape, known.overlap, known.spring if problem.pair_friction else None,
             known.spring if problem.wall_friction else None, limits, fixed, out, local, force,
@@ -220,16 +221,17 @@ class Equations:
         if self.rolls is not None:
             found = statics.RollingResponse.empty(count)
             couple = np.zeros((count, 3)) if tangent else None
-            statics.rolling(
+            along_rolling = statics.rolling(
                 q, known.q, problem.n, self.pairs, self.walls, self.rolls, out, known.overlap, known.roll, limits,
                 fixed, found, couple, force,
             )  # fmt: skip
+            contradiction = max(contradiction, along_rolling)
             couples = NO_TANGENT[:, 0] if couple is None else couple
             roll, rolled = found.spring, Rolled(found.force, found.status, couples)
         force[self.held] = 0.0
         return Trial(
             Configuration(q, out.spring, out.overlap, roll), force, out.normal, out.tangential, out.status,
-            NO_TANGENT if local is None else local, rolled, bend,
+            NO_TANGENT if local is None else local, rolled, bend, contradiction,
         )  # fmt: skip
 
     def _stiffness(self, trial: Trial) -> FloatArray:

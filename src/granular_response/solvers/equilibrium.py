@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import SolveError
+from ..errors import EquilibriumError
 from ..state import Certificate, FloatArray, State
 from .problem import Problem
 from .stability import Spectrum
@@ -44,10 +44,6 @@ class NewtonOptions:
 
 
 OPTIONS = NewtonOptions()
-
-
-class EquilibriumError(SolveError, RuntimeError):
-    """No static equilibrium was found near the start."""
 
 
 class Rearranged(EquilibriumError):

@@ -12,10 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..errors import EquilibriumError
 from ..scene.packing import Packing
 from ..state import FloatArray, State
 from .energy import OPTIONS, minimise
-from .equilibrium import EquilibriumError
 from .problem import Problem
 
 

@@ -6,8 +6,9 @@ frictionless arrays):
 
 1. :class:`.rates.RateProblem` gives the statuses with which the equilibrium goes on, and the rates of displacements;
 2. the load at which the next contact changes follows from the rates; Newton's method with the statuses as they are
-   finds equilibrium there, and by the way the load at which the change is exact to ``PathOptions.event``; slip that
-   turns round on the way, which it does only where stiffnesses vary, is bracketed;
+   finds equilibrium there, and by the way the load at which the change is exact to ``PathOptions.event``; where the
+   return map would give another force than a status that was kept, the rates at the end tell what changed on the way,
+   and slip that turned round is bracketed;
 3. contacts that are at their change change, a mirror pair together, and so on from 1.
 
 An equilibrium is lost where the rates have no solution, where there is no equilibrium a little further with these
@@ -23,6 +24,7 @@ leaves out is measured by a path in increments of twice the length.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cache
 
@@ -35,14 +37,14 @@ from ..kernels import events
 from ..linalg.lowest import Eigenpair
 from ..linalg.updated import Updated
 from ..state import OPEN, ROLLING_EVENTS, SLIDING, STICKING, Event, FloatArray, Reached, State
-from .dynamics import Stop
+from .dynamics import DynamicsError, Stop
 from .equilibrium import OPTIONS as NEWTON
 from .equilibrium import attainable, certify, external_force
 from .increment import Work, solve_increment
 from .problem import Problem
 from .rates import Changes, RateProblem, Rates, changed
 from .settle import CROSSING, CROSSING_STOP, NotSettled, nudged, settle
-from .stability import Spectrum, divergence
+from .stability import Clustered, Spectrum, divergence, diverging
 from .system import Configuration, StaticSystem, Trial
 
 
@@ -69,9 +71,6 @@ class PathOptions:
     #: Times that an increment is shortened: to an event that came before the one expected, or to half of its length
     #: where no equilibrium is found at its end.
     landings: int = 40
-    #: Displacement in an increment up to which the rates are those of its start with a law of constant stiffness; with
-    #: another law, and after longer ones, they are found again at the end.
-    straight: float = 1e-3
     #: Points at one load after which no more are looked for there; 8 in turn were the most that led on.
     still: int = 30
     #: Load by which the next equilibrium is looked for, with limits of friction held fixed, where no statuses are found
@@ -159,6 +158,8 @@ def follow(
     ------
     Collapsed
         When the first loaded disk sinks below ``lowest``.
+    DynamicsError
+        When the motion from a lost equilibrium blows up, or the load carries a disk off.
     PathError
         When the motion does not settle either: the packing collapses or cycles under this load.
     """
@@ -198,16 +199,19 @@ class _Path:
         if self.asked is None and self.system.pattern.dissected:
             self.together = min(OPTIONS.together * self.problem.n**0.5, OPTIONS.longest)
         self.guide = {}
+        self.reported = start.load_factor
         state = self._followed(point, start)
         if self.together is None or point.factor == target:
             return state
         # what increments leave out, from those of twice the length, whose guesses are what these found
         once, self.together, self.guide = self.together, 2.0 * self.together, self.passed
-        coarse = self._followed(self._at(start), start).wall_force()
+        error = np.inf
+        with suppress(SolveError):
+            coarse = self._followed(self._at(start), start)
+            if coarse.walls.same_candidates(state.walls):
+                off = np.abs(state.wall_force() - coarse.wall_force()).max(initial=0.0)
+                error = float(off) / (self.unit * abs(target - start.load_factor))
         self.record.events[self.begun :] = state.reached.events
-        force = state.wall_force()
-        off = np.abs(force - coarse).max(initial=0.0) if len(coarse) == len(force) else np.inf
-        error = float(off) / (self.unit * abs(target - start.load_factor))
         work = self.record.work
         reached = replace(
             state.reached, increments=work.increments, factorisations=work.factorisations, events_within=once,
@@ -233,11 +237,12 @@ class _Path:
                 before, system, known = point, self.system, len(self.record.events)
                 point = self._advance(point, still > OPTIONS.still)
                 lost = any(event.lost for event in self.record.events[known:])
-                if watched and self.system is system and not lost:
-                    point = self._first_unstable(before, point)
+                if watched and not lost:
+                    point = self._first_unstable(before if self.system is system else None, point)
                 still = still + 1 if abs(point.factor - before.factor) * self.unit < self.rates.force else 0
                 self._look_down(point.factor, self.system.reference[:, 1] + point.known.q[n : 2 * n])
-                if self.progress is not None:
+                if self.progress is not None and self.direction * (point.factor - self.reported) > 0.0:
+                    self.reported = point.factor
                     self.progress(point.factor)
             state = self._state(point)
             if state.certificate.stable is not False:
@@ -249,21 +254,23 @@ class _Path:
                 raise PathError(f"the equilibrium at load factor {self.target:g} is unstable, and motion returns to it")
             try:
                 point = self._by_motion(point, "bifurcation", "unstable", None)
-            except PathError:  # motion hardly leaves it, and finds nothing beside it
+            except (DynamicsError, PathError):  # motion hardly leaves it, and finds nothing beside it
                 point = self._at(state)
                 direction = self._direction(point.trial, point.sense)
                 if direction is None:
                     raise
                 point = self._by_motion(point, "bifurcation", "unstable", direction)
 
-    def _first_unstable(self, before: Point, point: Point) -> Point:
+    def _first_unstable(self, before: Point | None, point: Point) -> Point:
         """``point``, if it is stable with the statuses of its increment; else the one that motion leads to.
 
-        That begins where stability is lost after ``before``.
+        That begins where stability is lost after ``before``; at ``point`` itself if candidates have been listed anew.
         """
         direction = self._direction(point.trial, point.sense)
         if direction is None:
             return point
+        if before is None:
+            return self._by_motion(point, "bifurcation", "unstable", direction)
         rates = self.rates.solve(before.trial, before.due) if self.together is None else None
         stable, length, last = 0.0, abs(point.factor - before.factor), before
         while (length - stable) * self.unit > OPTIONS.stability:
@@ -285,14 +292,17 @@ class _Path:
         return self._by_motion(last, "bifurcation", "unstable", direction)
 
     def _direction(self, trial: Trial, sense: np.ndarray, near: Eigenpair | None = None) -> FloatArray | None:
-        """(dof,) direction in which an equilibrium diverges with signed statuses ``sense``, or None.
+        """(dof,) direction in which an equilibrium diverges with signed statuses ``sense``; None if none is found.
 
         ``near`` : a negative eigenvalue of the point before, if it may still be there.
         """
         fixed = self.system.trial(trial.configuration, trial.configuration.q, fixed=sense)
         spectrum = Spectrum(self.system, fixed, near)
         self.unstable = spectrum.negative
-        return divergence(spectrum)
+        try:
+            return divergence(spectrum)
+        except Clustered:
+            return None
 
     def _count(self) -> None:
         """Add the factorisations of tangents with kept statuses to what the path has cost."""
@@ -394,8 +404,8 @@ class _Path:
                 # the contact changes later than its rate said; or this is another branch, if it changes before
                 left, length = (0.5 * left if left == passed_at else left), np.inf
                 continue
-            far = np.abs(trial.configuration.q - point.known.q)[: 2 * self.problem.n].max(initial=0.0)
-            again = self.varying or far > OPTIONS.straight  # whether rates are found at the end too
+            # whether rates are found at the end too: those of the start may be off by what contacts have turned since
+            again = self.varying or trial.contradiction > self.rates.force
             velocity = self._velocity(trial, rates.sense) if again else rates.velocity
             then = self.rates.changes(trial, velocity, rates.sense)
             passed = np.flatnonzero((then.rate > 0.0) & (then.left < -self.rates.force))
@@ -497,8 +507,10 @@ class _Path:
                 if renewed is None:
                     return None
                 by, velocity = renewed
+                velocity[rates.idle] = rates.velocity[rates.idle]
             before = size
             step = system.deinterleave(by.solve(system.interleave(force)))
+            step[rates.idle] = 0.0  # it would be the rounding of a torque over next to no stiffness
             longest = float(np.abs(step[: 2 * self.problem.n]).max(initial=0.0))
             if longest > NEWTON.longest_step:  # a contact of the 3/2 law that has just closed has no stiffness yet
                 step *= NEWTON.longest_step / longest
@@ -539,9 +551,11 @@ class _Path:
         found = self._increased(point, new)
         if found is not None:
             n = self.problem.n
-            moved = (found.configuration.q - point.known.q)[: 2 * n].reshape(2, n).T
+            before, after = (one.q[: 2 * n].reshape(2, n).T for one in (point.known, found.configuration))
+            moved = after - before
             if np.abs(moved).max(initial=0.0) <= OPTIONS.nearby:
-                self._record_lost("stepped over", point, new, moved, reason)
+                position = self.system.reference + before
+                self.record.events.append(lost("stepped over", point.factor, new, position, moved, reason))
                 self._record(point, found.sense, until=new)
                 return Point(new, found, found.sense, found.sense)
         return self._by_motion(point, "jump", reason, None)
@@ -551,14 +565,15 @@ class _Path:
 
         The load goes on growing as fast as the protocol says.
         """
-        here = self._state(point)
+        self._count()
+        _, here = self._uncertified(point)
         start = here if direction is None else nudged(self.problem, here, direction)
         new = self._towards(point.factor, self.jump)
         found: list[Point] = []
 
         def accept(state: State) -> bool:
             found[:] = [self._at(state)]
-            return state.certificate.stable is True or divergence(Spectrum(self.system, found[0].trial)) is None
+            return state.certificate.stable is True or not diverging(Spectrum(self.system, found[0].trial))
 
         protocol = self.problem.scene.protocol
         try:
@@ -570,7 +585,9 @@ class _Path:
             )  # fmt: skip
         except NotSettled as error:
             raise PathError(f"no equilibrium beyond load factor {point.factor:g}: {error}") from error
-        self._record_lost(kind, point, new, settled.position - here.position, reason)
+        self.record.events.append(
+            lost(kind, point.factor, new, here.position, settled.position - here.position, reason)
+        )
         self.jump *= 2.0
         return replace(found[0], factor=new)
 
@@ -584,20 +601,20 @@ class _Path:
             guesses.sort(key=lambda q: np.abs(self.system.trial(point.known, q).contact_force + external).max())
         return solve_increment(self.system, point.known, external, guesses[0], self.record.work)
 
+    def _uncertified(self, point: Point) -> tuple[Trial, State]:
+        """A point with the statuses that its contacts have at rest, and the state of that."""
+        # what is within rounding of opening or closing is as its overlap says
+        overlap = point.trial.configuration.overlap
+        along = point.trial.sense[: len(overlap)]
+        along = np.where(overlap <= 0.0, OPEN, np.where(along == OPEN, STICKING, along))
+        sense = self.system.coupled(np.concatenate([along, point.trial.sense[len(overlap) :]]))
+        trial = self.system.trial(point.known, point.known.q, fixed=sense)
+        return trial, self.system.state(trial, point.factor)
+
     def _state(self, point: Point) -> State:
         """The certified state of a point."""
-        trial = point.trial
-        # what is within rounding of opening or closing is as its overlap says
-        overlap = trial.configuration.overlap
-        along = trial.sense[: len(overlap)]
-        along = np.where(overlap <= 0.0, OPEN, np.where(along == OPEN, STICKING, along))
-        sense = self.system.coupled(np.concatenate([along, trial.sense[len(overlap) :]]))
-        trial = self.system.trial(point.known, point.known.q, fixed=sense)
-        state = self.system.state(trial, point.factor)
-        spectrum = Spectrum(self.system, trial)
-        modes = spectrum.negative_modes
-        if modes and divergence(spectrum) is None:
-            modes = 0
+        trial, state = self._uncertified(point)
+        modes = diverging(Spectrum(self.system, trial))
         self._count()
         work = self.record.work
         reached = Reached(
@@ -632,10 +649,6 @@ class _Path:
             self.record.events += [
                 Event(point.factor, kind, first, second, at_wall, float(x), float(z), until_then) for kind in kinds
             ]
-
-    def _record_lost(self, kind: str, point: Point, until: float, moved: FloatArray, reason: str) -> None:
-        """The loss of the equilibrium ``point``, from which disks have moved by ``moved`` (n, 2) to the next one."""
-        self.record.events.append(lost(kind, point.factor, until, self.system.reference, moved, reason))
 
 
 def lost(kind: str, factor: float, until: float, position: FloatArray, moved: FloatArray, reason: str) -> Event:

@@ -12,6 +12,7 @@ that can neither stay open nor stick slides.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -49,6 +50,7 @@ class Changes:
     what: np.ndarray
     left: FloatArray  #: force until then (mean weights)
     rate: FloatArray  #: of its fall
+    sticking: np.ndarray  #: (n,) contacts of each disk that stick, along the tangent or the rolling
 
     def first(self) -> tuple[int, float]:
         """The contact that changes first and after which growth of the load factor; infinity where none does."""
@@ -68,13 +70,13 @@ def next_changes(
     ``sense`` (m + w,) : signed statuses; ``force``, ``negligible`` : a force and a rate of a force that are none.
     """
     c, n = trial.configuration, system.problem.n
-    found = Changes(np.empty(len(sense), np.int8), np.empty(len(sense)), np.empty(len(sense)))
-    ties = np.zeros((2, n), np.int64)
-    ties[0, system.problem.load_disk] = LOADED
+    count = np.zeros((3, n), np.int64)
+    count[0, system.problem.load_disk] = LOADED
+    found = Changes(np.empty(len(sense), np.int8), np.empty(len(sense)), np.empty(len(sense)), count[2])
     events.next_changes(
         c.q, velocity, n, system.problem.packing.radius, system.pairs, system.walls, system.rolls, sense,
         trial.normal, trial.tangential, None if trial.rolled is None else trial.rolled.force, c.overlap, force,
-        negligible, ties, found.what, found.left, found.rate,
+        negligible, count, found.what, found.left, found.rate,
     )  # fmt: skip
     return found
 
@@ -95,6 +97,12 @@ class Rates:
     factor: Updated
     velocity: FloatArray  #: (dof,)
     changes: Changes
+
+    @cached_property
+    def idle(self) -> np.ndarray:
+        """Unknowns that change no force: angles of disks of which no contact sticks."""
+        n = len(self.changes.sticking)
+        return 2 * n + np.flatnonzero(self.changes.sticking == 0) if len(self.velocity) > 2 * n else np.empty(0, int)
 
 
 class RateProblem:

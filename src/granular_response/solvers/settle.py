@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from ..errors import SolveError
+from ..errors import EquilibriumError, SolveError
 from ..state import FloatArray, State
 from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
-from .equilibrium import EquilibriumError, finish
+from .equilibrium import finish
 from .problem import Problem
 from .stability import Spectrum
 from .system import StaticSystem

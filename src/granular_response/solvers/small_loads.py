@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..errors import EquilibriumError
 from ..state import FLOOR, FloatArray, State
-from .equilibrium import EquilibriumError
 from .problem import Problem
 from .system import StaticSystem, Trial
 

@@ -12,12 +12,13 @@ from typing import Any
 import numpy as np
 
 from ..contact import Linear
+from ..errors import EquilibriumError
 from ..scene import Scene, SceneError
 from ..state import FloatArray, State
 from .choice import Choice, idle_settings
 from .dynamics import Dynamics, Stop, relax
 from .energy import minimise
-from .equilibrium import EquilibriumError, certify, check_overlaps, finish, reaction
+from .equilibrium import certify, check_overlaps, finish, reaction
 from .nested import rest_start
 from .path import follow, lost
 from .problem import Problem

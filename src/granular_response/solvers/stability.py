@@ -22,7 +22,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from ..errors import SolveError
+from ..errors import EquilibriumError
 from ..kernels.events import SLIDES, STICKS
 from ..linalg.lowest import Eigenpair, followed, lowest_real
 from ..state import SLIDING, STICKING, FloatArray
@@ -51,7 +51,7 @@ class StabilityOptions:
 OPTIONS = StabilityOptions()
 
 
-class Clustered(SolveError, ArithmeticError):
+class Clustered(EquilibriumError):
     """Eigenvalues so near each other that none of them is found."""
 
     def __init__(self) -> None:
@@ -151,35 +151,54 @@ class Spectrum:
 
 
 def divergence(spectrum: Spectrum) -> FloatArray | None:
-    """(dof,) direction in which an equilibrium leaves by itself; None where there is none, or none is determined.
+    """(dof,) direction in which an equilibrium leaves by itself; None where there is none, or no number of them.
 
     An unstable direction of the tangent counts only if the contacts that slide do go on sliding along it: those that
     would slip back stick, which makes another tangent with another lowest direction, and so on until they agree.
+
+    Raises
+    ------
+    Clustered
+        If a lowest direction is not found.
     """
     if not spectrum.negative_modes:
         return None
     system, trial = spectrum.system, spectrum.trial
     sliding = np.flatnonzero(np.abs(trial.sense) == SLIDING)
     slides = trial.sense[sliding]
-    with suppress(Clustered):
-        for side in (1.0, -1.0):
-            direction, here = side * spectrum.direction, trial
-            for _ in range(OPTIONS.rounds):
-                what = next_changes(system, here, direction, here.sense, 0.0, 0.0).what[sliding]
-                now = here.sense[sliding]
-                after = np.where(what == STICKS, STICKING, np.where(what == np.sign(slides) * SLIDES, slides, now))
-                if np.array_equal(after, now):
-                    return direction
-                sense = here.sense.copy()
-                sense[sliding] = after
-                here = system.trial(trial.configuration, trial.configuration.q, fixed=sense)
-                turned = Spectrum(system, here)
-                if not turned.negative_modes:
-                    break
-                direction = turned.direction if float(turned.direction @ direction) >= 0.0 else -turned.direction
-            else:
+    for side in (1.0, -1.0):
+        direction, here = side * spectrum.direction, trial
+        for _ in range(OPTIONS.rounds):
+            what = next_changes(system, here, direction, here.sense, 0.0, 0.0).what[sliding]
+            now = here.sense[sliding]
+            after = np.where(what == STICKS, STICKING, np.where(what == np.sign(slides) * SLIDES, slides, now))
+            if np.array_equal(after, now):
                 return direction
+            sense = here.sense.copy()
+            sense[sliding] = after
+            here = system.trial(trial.configuration, trial.configuration.q, fixed=sense)
+            turned = Spectrum(system, here)
+            if turned.negative_modes is None:
+                raise Clustered
+            if not turned.negative_modes:
+                break
+            direction = turned.direction if float(turned.direction @ direction) >= 0.0 else -turned.direction
+        else:
+            return direction
     return None
+
+
+def diverging(spectrum: Spectrum) -> int | None:
+    """The number of unstable directions that contacts go along with, 1 for any number where contacts slide.
+
+    None where it is not determined.
+    """
+    if not spectrum.negative_modes or not _slides(spectrum.trial):
+        return spectrum.negative_modes
+    try:
+        return 0 if divergence(spectrum) is None else 1
+    except Clustered:
+        return None
 
 
 def _slides(trial: Trial) -> bool:

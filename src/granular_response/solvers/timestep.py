@@ -95,12 +95,12 @@ def _constants(law: Law, rolling: Rolling | None, force: float) -> Constants:
 def largest_force(problem: Problem) -> float:
     """Estimate of the largest normal force of a contact: twice the weight of a column, for its fall, and the loads.
 
-    A displacement counts as if one contact took all of it.
+    The loads at the largest of the protocol's load factors; a displacement counts as if one contact took all of it.
     """
     columns = max(0.5 * problem.packing.width, 1.0)
-    loads = problem.scene.loads
-    force = 2.0 * problem.n / columns + sum(float(np.hypot(*load.force)) for load in loads) + 1.0
-    travel = sum(math.hypot(*(part or 0.0 for part in load.displacement or ())) for load in loads)
+    loads, largest = problem.scene.loads, float(np.abs(problem.scene.protocol.load_factors).max(initial=0.0))
+    force = 2.0 * problem.n / columns + largest * sum(float(np.hypot(*load.force)) for load in loads) + 1.0
+    travel = largest * sum(math.hypot(*(part or 0.0 for part in load.displacement or ())) for load in loads)
     if travel > 0.0:
         one, law = np.ones(1), problem.pair_law
         contact = static_contacts(one, one, travel * one, 0.0 * one, law.shapes(one, one), law)
