@@ -372,7 +372,9 @@ def test_every_format_carries_what_the_user_guide_says(periodic, tmp_path, endin
     for name in QUANTITIES:
         back = comes_back(periodic, path, name)
         found[name] = "back" if back else "out" if holds(numbers, last[name]) else "–"
-    frames = [any(holds(numbers, values[name]) for name in ("place, radius", "contact forces")) for values in (first, last)]
+    frames = [
+        any(holds(numbers, values[name]) for name in ("place, radius", "contact forces")) for values in (first, last)
+    ]
     known = {"[True, True]": "all", "[False, True]": "one", "[False, False]": "–"}
     assert found == {name: said[name] for name in QUANTITIES}
     assert said["states"] == ("all" if ending == ".nc" else known[str(frames)])

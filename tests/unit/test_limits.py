@@ -8,10 +8,10 @@ import pytest
 from small_scenes import free_disks, scene
 
 import granular_response
+from granular_response.errors import EquilibriumError
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers import solution as solving
 from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop
-from granular_response.errors import EquilibriumError
 from granular_response.solvers.equilibrium import finish
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import CROSSING, PROTOCOL, NotSettled, settle

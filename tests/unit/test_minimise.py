@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene, started
 
+from granular_response.errors import EquilibriumError
 from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.energy import energy, minimise
-from granular_response.errors import EquilibriumError
 from granular_response.solvers.equilibrium import external_force, finish
 from granular_response.solvers.problem import Problem
 

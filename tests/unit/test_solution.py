@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
+from granular_response.errors import EquilibriumError
 from granular_response.scene import SceneError
 from granular_response.solvers import path
 from granular_response.solvers.dynamics import DynamicsError
-from granular_response.errors import EquilibriumError
 from granular_response.solvers.path import PathError
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import NotSettled

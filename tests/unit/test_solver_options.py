@@ -7,11 +7,11 @@ from dataclasses import fields, replace
 import pytest
 from small_scenes import at_rest, free_disks, scene
 
+from granular_response.errors import EquilibriumError
 from granular_response.linalg import multifrontal, nearby
 from granular_response.solvers import dynamics, energy, equilibrium, increment, path, rates, system
 from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.energy import minimise
-from granular_response.errors import EquilibriumError
 from granular_response.solvers.equilibrium import external_force, finish, newton
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem

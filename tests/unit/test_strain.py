@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from small_scenes import scene as small
 
-from granular_response.scene import Scene
 from granular_response.errors import EquilibriumError
+from granular_response.scene import Scene
 from granular_response.solvers.solution import solve_scene
 from granular_response.solvers.strain import FOLLOWING, strained
 from granular_response.state import STICKING

@@ -110,7 +110,13 @@ def test_load_factors_count_in_the_largest_force():
     limits = [
         stability_limit(
             Problem.from_scene(
-                scene(3, 5, **hertz, loads=[{"disk": "top-centre", "force": [0.0, -force]}], protocol__load_factors=[factor])
+                scene(
+                    3,
+                    5,
+                    **hertz,
+                    loads=[{"disk": "top-centre", "force": [0.0, -force]}],
+                    protocol__load_factors=[factor],
+                )
             )
         )
         for force, factor in ((1.0, 1000.0), (1000.0, 1.0), (1.0, 1.0))

@@ -389,7 +389,10 @@ def drawn(stiffness, seed):
     random = np.random.default_rng(seed)
     push = np.array([0.6 * random.normal(), -abs(random.normal())])
     size = {"layers": int(random.integers(2, 5)), "disks_per_row": int(random.integers(4, 6))}
-    friction = {"contact__friction": float(random.choice([0.05, 0.2, 0.6])), "wall__friction": float(random.choice([0.1, 0.5]))}
+    friction = {
+        "contact__friction": float(random.choice([0.05, 0.2, 0.6])),
+        "wall__friction": float(random.choice([0.1, 0.5])),
+    }
     load = {"disk": "top-centre", "force": (push / np.hypot(*push)).tolist()}
     return at_rest(scene(**size, **friction, contact__normal_stiffness=stiffness, loads=[load]))
 

@@ -119,9 +119,9 @@ def next_changes(
     twice as many with rolling resistance : negative for contacts that slide under a negative force; ``normal``,
     ``tangential``, ``rolling``, ``overlap`` (m + w,) : forces, the rolling ones None without; ``tip``, ``negligible`` :
     a force and a rate of a force that are none; ``count`` (3, n) : to count contacts in, from zero, or from more ties
-    than freedoms where a load acts; in the last row those that stick, along the tangent or the rolling. A rattler that rests on one contact and that no more ties than it has freedoms,
-    pushed along by another disk, bears nothing there however it moves: such a contact opens when the other disk
-    withdraws, and nothing else happens to it.
+    than freedoms where a load acts; in the last row those that stick, along the tangent or the rolling. A rattler that
+    rests on one contact and that no more ties than it has freedoms, pushed along by another disk, bears nothing there
+    however it moves: such a contact opens when the other disk withdraws, and nothing else happens to it.
     """
     ties, bearing = count[0], count[1]
     _count(pairs, walls, rolls, status, normal, tip, ties, bearing, count[2])

@@ -2,8 +2,8 @@
 
 A slab of half as many layers and columns whose contacts are a quarter as stiff sinks by the same lengths under
 gravity, place by place, and in the limit of many layers the same contacts open. So nearly all of the search for the
-contacts that bear is done on slabs that cost little: the rest state of 102,480 disks takes 30 iterations in place of
-43, and 1.1 times as long without.
+contacts that bear is done on slabs that cost little: without, the rest state of 230,520 disks takes 49 iterations in
+place of 28 and 1.5 times as long, that of 102,480 disks 1.25 times, but that of 57,660 disks 0.87 times.
 """
 
 from __future__ import annotations
