@@ -83,9 +83,9 @@ def fall(c, what, q, v, n, radius, pairs, walls, rolls):
 
 @kernel
 def _count(pairs, walls, rolls, status, normal, tip, ties, bearing, turning):
-    """Count what ties each disk, (n,), along normals and where contacts stick, the contacts that bear something, and
+    """Count what ties each disk, (n,), along normals and where contacts stick, and its contacts that bear something.
 
-    those that stick, so that its turn changes a force.
+    ``turning`` counts those that stick: where there is none its turn changes no force.
     """
     m = pairs.first.size
     size = m + walls.disk.size
