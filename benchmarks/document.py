@@ -26,8 +26,8 @@ TEXTS = {
     "precision": (
         "Run time against error",
         "Error: largest difference of the normalized floor response from the quasi-static limit. Times include the "
-        "fall under gravity, until the kinetic energy per disk is 1e-13 to 1e-7; with friction the equilibrium depends on "
-        "this.",
+        "fall under gravity, until the kinetic energy per disk is 1e-13 to 1e-7; with friction the equilibrium depends "
+        "on this.",
     ),
     "exactness": (
         "Accuracy of the path",
@@ -78,7 +78,7 @@ TEXTS = {
     "scale": (
         "Large systems",
         "`granular-response run` from scene file to stored result, on two threads. Slabs are four times as "
-        "wide as deep, and stiffness grows with their size.",
+        "wide as deep, and stiffness grows with their size. Open symbols: another processor, and older code.",
     ),
     "depth": (
         "The teardrop in deep slabs",

@@ -302,14 +302,16 @@ def scale(metrics: Metrics) -> Figure:
     time, memory, local = axes[0]
     for method in dict.fromkeys(row["method"] for row in metrics["runs"]):
         runs = sorted(pick(metrics["runs"], method=method), key=lambda row: row["disks"])
-        disks, seconds = (np.array([row[key] for row in runs], dtype=float) for key in ("disks", "cpu_seconds"))
         colour, marker = looks[method]
-        look = {"color": colour, "marker": marker, "linestyle": "-"}
-        time.plot(disks, seconds, label=labels[method], **look)
-        memory.plot(disks, [row["peak_gibibytes"] for row in runs], **look)
-        # one power does not fit all sizes
-        between = np.sqrt(disks[1:] * disks[:-1])
-        local.plot(between, np.diff(np.log(seconds)) / np.diff(np.log(disks)), **look)
+        for other, processor in enumerate(dict.fromkeys(row["measured_on"] for row in runs)):
+            mine = pick(runs, measured_on=processor)
+            disks, seconds = (np.array([row[key] for row in mine], dtype=float) for key in ("disks", "cpu_seconds"))
+            look = {"color": colour, "marker": marker, "linestyle": "-", "fillstyle": "none" if other else "full"}
+            time.plot(disks, seconds, label=None if other else labels[method], **look)
+            memory.plot(disks, [row["peak_gibibytes"] for row in mine], **look)
+            # one power does not fit all sizes
+            between = np.sqrt(disks[1:] * disks[:-1])
+            local.plot(between, np.diff(np.log(seconds)) / np.diff(np.log(disks)), **look)
     for panel, text in ((time, "processor time [s]"), (memory, "peak memory [GiB]")):
         _logarithmic(panel, xlabel="disks", ylabel=text)
     local.set(xscale="log", xlabel="disks", ylabel="local exponent of the time", ylim=(0.0, None), xlim=time.get_xlim())
