@@ -13,7 +13,7 @@ from granular_response.linalg.band import Band
 from granular_response.linalg.updated import Updated
 from granular_response.solvers.path import PathRecord, follow
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.rates import next_changes
+from granular_response.solvers.rates import RateProblem, next_changes
 from granular_response.solvers.solution import rest_state
 from granular_response.solvers.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
@@ -36,12 +36,6 @@ def what_is_left(system, trial, c, what) -> float:
     if what in (events.OPENS, events.CLOSES):
         return float(law.normal_stiffness * trial.configuration.overlap[c] * (1 if what == events.OPENS else -1))
     return float(law.friction * trial.normal[c] - np.sign(what) * trial.tangential[c])
-
-
-def fall(system, c, what, q, displacement) -> float:
-    """By how much a displacement lowers the force that is left until contact ``c`` does ``what``."""
-    n, radius = system.problem.n, system.problem.packing.radius
-    return events.fall(c, what, q, displacement, n, radius, system.pairs, system.walls, system.rolls)
 
 
 def added_to_tangent(system, q, c, before, after) -> tuple[np.ndarray, int]:
@@ -73,6 +67,7 @@ def test_what_is_left_falls_at_the_rate_that_is_said(law):
     for seed in range(4):
         velocity = np.random.default_rng(seed).normal(size=system.dof)
         found = next_changes(system, here, velocity, sense, 0.0, 0.0)
+        rates = RateProblem(system, 1.0, force=0.0, negligible=0.0)
         h = 1e-8
         there, back = (system.trial(known, known.q + s * h * velocity, fixed=sense) for s in (1.0, -1.0))
         for c in np.flatnonzero(found.rate > 0.0):
@@ -81,7 +76,7 @@ def test_what_is_left_falls_at_the_rate_that_is_said(law):
             assert found.left[c] == pytest.approx(what_is_left(system, here, c, what), abs=1e-12)
             by_difference = (what_is_left(system, back, c, what) - what_is_left(system, there, c, what)) / (2.0 * h)
             assert found.rate[c] == pytest.approx(by_difference, rel=2e-4, abs=1e-2)
-            assert fall(system, c, what, known.q, velocity) == pytest.approx(found.rate[c], rel=1e-12)
+            assert rates.until(here, c, what, velocity) == pytest.approx((found.left[c], found.rate[c]), rel=1e-12)
         # what is first is what comes first as all goes on
         first, length = found.first()
         others = found.left[found.rate > 0.0].clip(0.0) / found.rate[found.rate > 0.0]

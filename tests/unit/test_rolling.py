@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from small_scenes import at_rest, free_disks, scene, shaken, started
-from test_next_changes import added_to_tangent, fall
+from test_next_changes import added_to_tangent
 from test_statics import dense_tangent, numerical_tangent
 
 from granular_response.contact.coulomb import return_map
@@ -15,7 +15,7 @@ from granular_response.scene import Scene, SceneError
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.path import PathRecord, follow
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.rates import next_changes
+from granular_response.solvers.rates import RateProblem, next_changes
 from granular_response.solvers.solution import continue_solution, rest_state, solve_scene
 from granular_response.solvers.system import StaticSystem
 from granular_response.solvers.timestep import stability_limit
@@ -170,7 +170,8 @@ def test_what_comes_next_along_the_rolling_falls_at_the_rate_that_is_said():
         seen.add((int(side), bool(c - count < len(system.first))))
         assert found.left[c] == pytest.approx(left(here), abs=1e-12)
         assert found.rate[c] == pytest.approx((left(back) - left(there)) / (2.0 * h), rel=1e-4, abs=1e-2)
-        assert fall(system, c, int(found.what[c]), known.q, v) == pytest.approx(found.rate[c])
+        until = RateProblem(system, 1.0, force=0.0, negligible=0.0).until(here, c, int(found.what[c]), v)
+        assert until == pytest.approx((found.left[c], found.rate[c]))
     assert seen == {(1, True), (-1, True), (1, False), (-1, False)}
 
 

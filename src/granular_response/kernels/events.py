@@ -63,22 +63,24 @@ def _next_to_limit(what, left, rate, status, limit, force, grows, falls, tip, ne
 
 
 @kernel
-def fall(c, what, q, v, n, radius, pairs, walls, rolls):
-    """By how much displacements ``v`` (dof,) lower the force that is left until contact ``c`` does ``what``.
+def until(c, what, q, v, n, radius, pairs, walls, rolls, normal, tangential, rolling, overlap):
+    """Force that is left until contact ``c`` does ``what``, and by how much displacements ``v`` (dof,) lower it.
 
-    From m + w on, where rolling resistance goes on counting, along the rolling.
+    From m + w on, where rolling resistance goes on counting, along the rolling. The rest as of :func:`next_changes`.
     """
-    size = pairs.first.size + walls.disk.size
-    i, j, nx, nz, k, unit, mu, kt = _contact_at(c % size, q, n, pairs, walls)
+    at = c % normal.size
+    i, j, nx, nz, k, unit, mu, kt = _contact_at(at, q, n, pairs, walls)
     apart, along = _motion(v, i, j, nx, nz, n, radius)
     if what == OPENS:
-        return unit * apart
+        return unit * overlap[at], unit * apart
     if what == CLOSES:
-        return -unit * apart
-    grows, falls = -kt * along, mu * k * apart
-    if rolls is not None and c >= size:
-        grows, falls = _rolling_rates(c - size, v, i, j, apart, k, n, rolls)
-    return falls + grows if what > 0 else falls - grows
+        return -unit * overlap[at], -unit * apart
+    force, grows, falls = tangential[at], -kt * along, mu * k * apart
+    if rolls is not None and c > at:
+        mu, force = rolls.friction[at], rolling[at]
+        grows, falls = _rolling_rates(at, v, i, j, apart, k, n, rolls)
+    sense = 1.0 if what > 0 else -1.0
+    return mu * normal[at] - sense * force, falls + sense * grows
 
 
 @kernel
@@ -110,16 +112,16 @@ def _count(pairs, walls, rolls, status, normal, tip, ties, bearing, turning):
 
 @kernel
 def next_changes(
-    q, v, n, radius, pairs, walls, rolls, status, normal, tangential, rolling, overlap, tip, negligible, count, what,
+    q, v, n, radius, pairs, walls, rolls, normal, tangential, rolling, overlap, status, tip, negligible, count, what,
     left, rate,
 ):  # fmt: skip
     """Fill ``what``, ``left`` (mean weights) and ``rate`` (of the fall of ``left``), as long as ``status`` each.
 
-    ``q``, ``v`` (dof,) : displacements and their rates; ``rolls`` : ``statics.Rolls`` or None; ``status`` (m + w,), or
-    twice as many with rolling resistance : negative for contacts that slide under a negative force; ``normal``,
-    ``tangential``, ``rolling``, ``overlap`` (m + w,) : forces, the rolling ones None without; ``tip``, ``negligible`` :
-    a force and a rate of a force that are none; ``count`` (3, n) : to count contacts in, from zero, or from more ties
-    than freedoms where a load acts; in the last row those that stick, along the tangent or the rolling. A rattler that
+    ``q``, ``v`` (dof,) : displacements and their rates; ``rolls`` : ``statics.Rolls`` or None; ``normal``,
+    ``tangential``, ``rolling``, ``overlap`` (m + w,) : forces, the rolling ones None without; ``status`` (m + w,), or
+    twice as many with rolling resistance : negative for contacts that slide under a negative force; ``tip``,
+    ``negligible`` : a force and a rate of a force that are none; ``count`` (3, n) : to count contacts in, from zero, or
+    from more ties than freedoms where a load acts; in the last row those that stick. A rattler that
     rests on one contact and that no more ties than it has freedoms, pushed along by another disk, bears nothing there
     however it moves: such a contact opens when the other disk withdraws, and nothing else happens to it.
     """

@@ -324,13 +324,13 @@ def contacts(
     for c in range(m):
         i, j, ux, uz, dx, dz, d, xi = _pair_at(q, n, pairs, c)
         out.overlap[c] = xi
-        worst = max(worst, _wrongly_open(fixed, c, xi, _item(pair_shape, c), law))
+        form = _item(pair_shape, c)
+        worst = max(worst, _wrongly_open(fixed, c, xi, form, law))
         if _is_open(fixed, c, xi):
             _open(c, pair_spring, out, tangent)
             continue
         nx = dx / d
         nz = dz / d
-        form = _item(pair_shape, c)
         if pair_spring is None:
             fn = _press(c, xi, nx, nz, 1.0 / d, form, law, out, tangent)
             force[i] += fn * nx
@@ -368,11 +368,11 @@ def contacts(
         i, nx, nz, xi = _wall_at(q, n, walls, k)
         c = m + k
         out.overlap[c] = xi
-        worst = max(worst, _wrongly_open(fixed, c, xi, _item(wall_shape, k), at_wall))
+        form = _item(wall_shape, k)
+        worst = max(worst, _wrongly_open(fixed, c, xi, form, at_wall))
         if _is_open(fixed, c, xi):
             _open(c, wall_spring, out, tangent)
             continue
-        form = _item(wall_shape, k)
         if wall_spring is None:
             fn = _press(c, xi, nx, nz, 0.0, form, at_wall, out, tangent)
             ft = 0.0
@@ -462,18 +462,18 @@ def spring_forces(overlap, spring, shape, law, out):
                 out.status[c] = SLIDING
 
 
+def elastic_energy(overlap, shape, law) -> float:
+    """Energy of the normal springs of contacts (m,)."""
+    energies = np.zeros(len(overlap))
+    _elastic_energies(overlap, shape, law, energies)
+    return float(energies.sum())
+
+
 @kernel
-def elastic_energies(overlap, shape, law, out):
-    """Fill ``out`` (m,) with the elastic energies of the normal parts of contacts."""
+def _elastic_energies(overlap, shape, law, out):
+    """Fill ``out`` (m,)."""
     for c in range(overlap.size):
         out[c] = energy(law, overlap[c], _item(shape, c)) if overlap[c] > 0.0 else 0.0
-
-
-@kernel
-def stiffnesses(overlap, shape, law, out):
-    """Fill ``out`` (m,) with the normal stiffnesses of contacts."""
-    for c in range(overlap.size):
-        out[c] = stiffness(law, overlap[c], _item(shape, c)) if overlap[c] > 0.0 else 0.0
 
 
 @kernel

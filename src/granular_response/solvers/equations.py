@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -266,16 +265,6 @@ class Equations:
         """(m, ...) and (w, ...) of what all candidates have (m + w, ...)."""
         return values[: len(self.first)], values[len(self.first) :]
 
-    def elastic_energy(self, trial: Trial) -> float:
-        """Energy of the normal springs (mean disk weight times mean radius)."""
-        total = 0.0
-        listed: tuple[Any, Any] = (self.pairs, self.walls)
-        for overlap, contacts in zip(self.split(trial.configuration.overlap), listed, strict=True):
-            energies = np.zeros(len(overlap))
-            statics.elastic_energies(overlap, contacts.shape, contacts.law, energies)
-            total += float(energies.sum())
-        return total
-
     def interleave(self, vector: FloatArray) -> FloatArray:
         """``[x | z | angle]`` to disk by disk, in the order of the tangent."""
         return vector[self.pattern.interleaved]
@@ -324,27 +313,20 @@ class Equations:
         return rates
 
     def without_prestress(self, trial: Trial) -> Trial:
-        """The trial with the stiffness of its springs alone: what the turn of contacts adds is left out.
+        """The trial, whose pairs do not slide, without what the turn of their forces adds to their stiffness.
 
         Without friction this tangent has no negative eigenvalue, and its Newton steps always go downhill.
         """
-        n, q = self.problem.n, trial.configuration.q
-        dx = self.dx0 + q[self.first] - q[self.second]
-        dz = self.dz0 + q[n + self.first] - q[n + self.second]
-        normal = np.stack([dx, dz], axis=1) / np.hypot(dx, dz)[:, None]
-        stiffness = np.zeros(len(self.first))
-        statics.stiffnesses(self.split(trial.configuration.overlap)[0], self.pairs.shape, self.pairs.law, stiffness)
-        tangent_of = trial.tangent.copy()
-        g = tangent_of[: len(self.first)]
-        g[:] = 0.0
-        g[:, :2, :2] = -stiffness[:, None, None] * normal[:, :, None] * normal[:, None, :]
-        if self.problem.pair_friction:
-            tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
-            stiff = np.where(self.split(trial.status)[0] == STICKING, self.pairs.law.tangential_stiffness, 0.0)
-            along = stiff[:, None] * tangent
-            g[:, :2, :2] -= along[:, :, None] * tangent[:, None, :]
-            g[:, :2, 2], g[:, 2, :2], g[:, 2, 2] = along, -along, stiff
-        return replace(trial, tangent=tangent_of)
+        n, m, q = self.problem.n, len(self.first), trial.configuration.q
+        apart = np.stack([q[self.first] - q[self.second], q[n + self.first] - q[n + self.second]])
+        apart += self.dx0, self.dz0
+        distance = np.hypot(*apart)
+        normal = apart / distance
+        along = np.stack([-normal[1], normal[0]])
+        turned = trial.normal[:m] * along - trial.tangential[:m] * normal
+        tangent = trial.tangent.copy()
+        tangent[:m, :2, :2] -= np.einsum("ac,bc->cab", turned, along / distance)
+        return replace(trial, tangent=tangent)
 
     def meets_unlisted(self, q: FloatArray) -> bool:
         """Whether disks overlap each other or a wall that are not among the candidates: the packing has rearranged."""

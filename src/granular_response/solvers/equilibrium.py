@@ -190,13 +190,7 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
         if rolling is not None:
             over = np.abs(contacts.rolling_force) - rolling.friction * np.abs(normal)
             beyond = max(beyond, float(over[closed].max(initial=0.0)))
-    bears = problem.weight.copy()
-    for disks, forces in (
-        (state.pairs.first, state.pairs.normal_force),
-        (state.pairs.second, state.pairs.normal_force),
-        (state.walls.first, state.walls.normal_force),
-    ):
-        np.maximum.at(bears, disks, forces)
+    bears = np.maximum(problem.weight, state.largest_normal_force())
     energy = 0.5 * (problem.weight * (state.velocity**2).sum(axis=1)).sum()
     energy += 0.5 * (problem.packing.inertia * state.angular_velocity**2).sum()
     return Certificate(

@@ -61,7 +61,7 @@ def prolonged(displacement: FloatArray, coarse: Packing, fine: Packing) -> Float
         disks = slice(begin[row], begin[row + 1])
         x = coarse.position[disks, 0] / coarse.width
         along, across = displacement[disks].T
-        field[row + 1, :, 0] = _interpolated(columns, np.r_[0.0, x, 1.0], np.r_[0.0, along, 0.0])
+        field[row + 1, :, 0] = np.interp(columns, np.r_[0.0, x, 1.0], np.r_[0.0, along, 0.0])
         field[row + 1, :, 1] = _interpolated(columns, x, across)
     height = np.concatenate([[0.0], coarse.position[begin[:-1], 1] / rows])
     slope = (field[2, :, 0] - field[1, :, 0]) / (height[2] - height[1])

@@ -299,10 +299,9 @@ class _Path:
         fixed = self.system.trial(trial.configuration, trial.configuration.q, fixed=sense)
         spectrum = Spectrum(self.system, fixed, near)
         self.unstable = spectrum.negative
-        try:
+        with suppress(Clustered):
             return divergence(spectrum)
-        except Clustered:
-            return None
+        return None
 
     def _count(self) -> None:
         """Add the factorisations of tangents with kept statuses to what the path has cost."""
@@ -450,7 +449,7 @@ class _Path:
         back = np.flatnonzero((then.what == events.STICKS) & (then.rate > 0.0))
         way = np.where(rates.sense[back] > 0, events.SLIDES, -events.SLIDES)
         falls = zip(back.tolist(), way.tolist(), strict=True)
-        ahead = np.array([max(self.rates.fall(point.known.q, c, w, rates.velocity), 0.0) for c, w in falls])
+        ahead = np.array([max(self.rates.until(point.trial, c, w, rates.velocity)[1], 0.0) for c, w in falls])
         turns = length * ahead / (ahead + then.rate[back])  # were the rate of slip linear
         late = 0.5 * then.rate[back] * (length - turns) > self.rates.force
         for k in np.flatnonzero(late)[np.argsort(turns[late], kind="stable")]:
@@ -462,7 +461,7 @@ class _Path:
                 if found is None:
                     return -1.0
                 trial = found[1]
-                return self.rates.fall(trial.configuration.q, c, w, self._velocity(trial, rates.sense))
+                return self.rates.until(trial, c, w, self._velocity(trial, rates.sense))[1]
 
             # slip beyond its turn grows as the square of the length
             beyond = float(np.sqrt(self.rates.force * length / (ahead[k] + then.rate[c])))
@@ -492,7 +491,7 @@ class _Path:
             trial = system.trial(known, q, fixed=rates.sense, ahead=ahead, tangent=False)
             force = trial.contact_force + self._external(factor)
             size = float(np.abs(force).max(initial=0.0))
-            left = 0.0 if event is None else self.rates.left(trial, *event)
+            left, rate = (0.0, 0.0) if event is None else self.rates.until(trial, *event, velocity)
             if not np.isfinite(size):
                 return None
             rounding = size > 0.5 * before and size <= attainable(system, q)
@@ -508,20 +507,20 @@ class _Path:
                     return None
                 by, velocity = renewed
                 velocity[rates.idle] = rates.velocity[rates.idle]
+                if event is not None:
+                    _, rate = self.rates.until(trial, *event, velocity)
             before = size
             step = system.deinterleave(by.solve(system.interleave(force)))
             step[rates.idle] = 0.0  # it would be the rounding of a torque over next to no stiffness
             longest = float(np.abs(step[: 2 * self.problem.n]).max(initial=0.0))
             if longest > NEWTON.longest_step:  # a contact of the 3/2 law that has just closed has no stiffness yet
                 step *= NEWTON.longest_step / longest
-            if event is not None:
-                rate = self.rates.fall(q, *event, velocity)
-                if rate <= 0.0:  # it does not come nearer: on with new rates from here
-                    event = None
-                else:
-                    further = float((left - self.rates.fall(q, *event, step)) / rate)
-                    factor += self.direction * further
-                    step += further * velocity
+            if event is not None and rate <= 0.0:  # it does not come nearer: on with new rates from here
+                event = None
+            elif event is not None:
+                further = (left - self.rates.until(trial, *event, step)[1]) / rate
+                factor += self.direction * further
+                step += further * velocity
             q = system.displaced(q + step, factor)
         return None
 

@@ -69,16 +69,23 @@ def next_changes(
 
     ``sense`` (m + w,) : signed statuses; ``force``, ``negligible`` : a force and a rate of a force that are none.
     """
-    c, n = trial.configuration, system.problem.n
-    count = np.zeros((3, n), np.int64)
+    count = np.zeros((3, system.problem.n), np.int64)
     count[0, system.problem.load_disk] = LOADED
     found = Changes(np.empty(len(sense), np.int8), np.empty(len(sense)), np.empty(len(sense)), count[2])
     events.next_changes(
-        c.q, velocity, n, system.problem.packing.radius, system.pairs, system.walls, system.rolls, sense,
-        trial.normal, trial.tangential, None if trial.rolled is None else trial.rolled.force, c.overlap, force,
-        negligible, count, found.what, found.left, found.rate,
+        trial.configuration.q, velocity, *_contacts(system, trial), sense, force, negligible, count, found.what,
+        found.left, found.rate,
     )  # fmt: skip
     return found
+
+
+def _contacts(system: StaticSystem, trial: Trial) -> tuple:
+    """The contacts of a trial, as the kernels of events take them."""
+    rolling = None if trial.rolled is None else trial.rolled.force
+    return (
+        system.problem.n, system.problem.packing.radius, system.pairs, system.walls, system.rolls, trial.normal,
+        trial.tangential, rolling, trial.configuration.overlap,
+    )  # fmt: skip
 
 
 def changed(sense: np.ndarray, contacts: np.ndarray, what: np.ndarray) -> np.ndarray:
@@ -136,23 +143,9 @@ class RateProblem:
         """What each contact does next with signed statuses ``sense`` (m + w,)."""
         return next_changes(self.system, trial, velocity, sense, self.force, self.negligible)
 
-    def left(self, trial: Trial, c: int, what: int) -> float:
-        """Force that is left (mean weights) until contact ``c`` does ``what``."""
-        system, rolled, sense = self.system, trial.rolled, np.sign(what)
-        c, along_rolling = c % len(trial.normal), c >= len(trial.normal)
-        if along_rolling and rolled is not None and system.rolls is not None:
-            return float(system.rolls.friction[c] * trial.normal[c] - sense * rolled.force[c])
-        law = system.problem.pair_law if c < len(system.first) else system.problem.wall_law
-        if what in (events.OPENS, events.CLOSES):
-            overlap = law.normal_stiffness * float(trial.configuration.overlap[c])
-            return overlap if what == events.OPENS else -overlap
-        return float(law.friction * trial.normal[c] - sense * trial.tangential[c])
-
-    def fall(self, q: FloatArray, c: int, what: int, displacement: FloatArray) -> float:
-        """By how much a displacement (dof,) lowers that force."""
-        system = self.system
-        n, radius = system.problem.n, system.problem.packing.radius
-        return events.fall(c, what, q, displacement, n, radius, system.pairs, system.walls, system.rolls)
+    def until(self, trial: Trial, c: int, what: int, displacement: FloatArray) -> tuple[float, float]:
+        """Force (mean weights) left until contact ``c`` does ``what``; by how much a displacement (dof,) lowers it."""
+        return events.until(c, what, trial.configuration.q, displacement, *_contacts(self.system, trial))
 
     def solve(self, trial: Trial, sense: np.ndarray) -> Rates | None:
         """Rates at an equilibrium with statuses that do not contradict themselves; None where none are found.

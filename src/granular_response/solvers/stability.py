@@ -151,7 +151,7 @@ class Spectrum:
 
 
 def divergence(spectrum: Spectrum) -> FloatArray | None:
-    """(dof,) direction in which an equilibrium leaves by itself; None where there is none, or no number of them.
+    """(dof,) direction in which an equilibrium leaves by itself; None where none is known.
 
     An unstable direction of the tangent counts only if the contacts that slide do go on sliding along it: those that
     would slip back stick, which makes another tangent with another lowest direction, and so on until they agree.
@@ -208,12 +208,7 @@ def _slides(trial: Trial) -> bool:
 
 def _too_light(system: StaticSystem, trial: Trial) -> bool:
     """Whether a disk bears so little that the turn of its contacts is lost in the rounding of their stiffness."""
-    n = system.problem.n
-    borne = np.zeros(n)
-    pair, wall = system.split(trial.normal)
-    np.maximum.at(borne, system.first, pair)
-    np.maximum.at(borne, system.second, pair)
-    np.maximum.at(borne, system.wall_disk, wall)
+    borne = system.state(trial, 0.0).largest_normal_force()
     stiffness = borne / system.problem.packing.radius
     return bool((stiffness[borne > 0.0] < OPTIONS.rounding * system.problem.stiffness).any())
 

@@ -65,10 +65,6 @@ class StaticSystem(Equations):
         self._kept = None
         self._steps.forget()
 
-    def _keep(self, trial: Trial, factor: Factor, shift: float) -> None:
-        """Keep the factorisation of a tangent for trials with the same statuses, unless it has a shift."""
-        self._kept = (trial.sense, factor) if shift == 0.0 else None
-
     def step(self, trial: Trial, force: FloatArray, shift: float = 0.0) -> FloatArray:
         """(dof,) displacements that take ``force`` up, by the tangent with ``shift`` on its diagonal.
 
@@ -83,13 +79,12 @@ class StaticSystem(Equations):
             held[:, 2:][self.pattern.without_effect(matrix).reshape(held.shape)[:, 2:]] = 1.0
         matrix.data[self.pattern.diagonal] += held.ravel() * self.problem.stiffness
         self._kept = None
-        found = self._steps.solve(matrix, right, OPTIONS.left_over, shift)
+        found, factor = self._steps.solve(matrix, right, OPTIONS.left_over, shift), self._steps.factor
         if found is None:
             factor = self.factorise(matrix)
-            self._keep(trial, factor, shift)
-            return self.deinterleave(factor.solve(right))
-        if self._steps.factor is not None:
-            self._keep(trial, self._steps.factor, shift)
+            found = factor.solve(right)
+        if factor is not None and shift == 0.0:
+            self._kept = trial.sense, factor
         return self.deinterleave(found)
 
     def updated_factor(self, known: Configuration, sense: np.ndarray) -> Updated:

@@ -117,6 +117,14 @@ class State:
         """(w, 2) force on ``walls.first``."""
         return contact_force(wall_normals(self.walls.second), self.walls.normal_force, self.walls.tangential_force)
 
+    def largest_normal_force(self) -> FloatArray:
+        """(n,) of the contacts of each disk, 0 without any (mean weights)."""
+        largest = np.zeros(len(self.position))
+        pairs, walls = self.pairs, self.walls
+        for disk, contacts in ((pairs.first, pairs), (pairs.second, pairs), (walls.first, walls)):
+            np.maximum.at(largest, disk, contacts.normal_force)
+        return largest
+
     def contact_count(self, pairs: NDArray[np.bool_] | None = None, *, walls: bool = True) -> NDArray[np.intp]:
         """(n,) closed contacts of each disk, with or without ``walls``. Two are the least that hold one under gravity.
 

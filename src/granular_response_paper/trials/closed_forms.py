@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from granular_response.kernels.statics import elastic_energies
+from granular_response.kernels.statics import elastic_energy
 from granular_response.scene import Packing, Scene
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.problem import Problem
@@ -39,9 +39,7 @@ def mechanical_energy(dynamics: Dynamics, gravity: float = 1.0) -> float:
     problem, state = dynamics.problem, dynamics.state()
     total = dynamics.kinetic_energy() * problem.n + gravity * float(problem.weight @ state.position[:, 1])
     for contacts, law, shape, _ in problem.kinds(state):
-        energies = np.zeros(len(contacts.overlap))
-        elastic_energies(contacts.overlap, shape, law, energies)
-        total += float(energies.sum())
+        total += elastic_energy(contacts.overlap, shape, law)
         total += 0.5 * law.tangential_stiffness * float((contacts.spring[contacts.touching] ** 2).sum())
     return total
 
