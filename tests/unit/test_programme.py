@@ -6,7 +6,9 @@ from small_scenes import scene
 
 from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.scene import Scene, SceneError
+from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import continue_solution, solve_scene
+from granular_response.solvers.timestep import resolve_time_step
 
 LOAD = [{"disk": "top-centre", "force": [0.0, -6.0]}]
 PROGRAMME = (0.5, 1.0, 0.5, 0.0, 1.0)
@@ -58,6 +60,19 @@ def test_a_result_holds_the_programme_that_was_solved():
     assert solution.scene.protocol.load_factors == (0.5,)
     further = continue_solution(solution, [1, np.float64(0.25)])
     assert further.scene.protocol.load_factors == further.load_factors == (0.5, 1.0, 0.25)
+
+
+def test_loads_that_go_on_are_looked_at_as_those_of_a_scene():
+    """The time step of dynamics is stable for them too, and what no contact bears is refused before it is put on."""
+    by_motion = {"protocol__method": "dynamics", "protocol__ramp_time": 1.0, "protocol__time_step": "auto"}
+    scene = slab(contact__law="hertz", contact__friction=0.0, contact__damping_ratio=0.05, **by_motion)
+    solution = solve_scene(scene, load_factors=[0.1])
+    further = continue_solution(solution, [100.0])
+    assert further.loaded[0].reached.time_step > further.loaded[1].reached.time_step
+    whole = resolve_time_step(Problem.from_scene(scene.updated({"protocol.load_factors": [0.1, 100.0]})))
+    assert further.loaded[1].reached.time_step == resolve_time_step(further.problem) == whole
+    with pytest.raises(SceneError, match=r"^loads\[0\]\.force: .* must be at most"):
+        continue_solution(solve_scene(slab(), load_factors=[1.0]), [1e4])
 
 
 @pytest.mark.parametrize("programme", [2, "12", [True], [[1, 2]], ["1"], None])

@@ -304,6 +304,13 @@ def test_the_documents_hold_what_is_stored(kind, block):
     assert generated.replace(text, block, report.BLOCKS[kind][block](ROOT / "data")) == text, "make quote"
 
 
+def test_the_stored_page_shows_the_stored_benchmarks():
+    stored = (ROOT / report.OUTPUT).read_text()
+    shown = [one.picture for one in benchmarks.collect(ROOT / "benchmarks")]
+    assert len(shown) > 5
+    assert [one.stem for one in shown if one.source not in stored or one.vector not in stored] == [], "make reproduce"
+
+
 def test_every_figure_with_parameters_stands_beside_its_caption():
     assert [row.figure for row in against.ROWS] == sorted(row.figure for row in against.ROWS)
     assert {row.figure for row in against.ROWS} == set(range(1, 25)) - {11}  # a drawing of springs

@@ -183,23 +183,26 @@ def continue_solution(
 ) -> Solution:
     """The solution with states at further ``load_factors``, as if they had been asked for from the beginning.
 
-    They may grow or fall. The new states have the bits of a run that was never cut.
+    They may grow or fall. The new states have the bits of a run that was never cut, but for dynamics with a law whose
+    stiffness grows with the load: its time step, if ``auto``, is the one that the loads up to here ask for.
 
     Raises
     ------
     SceneError
-        When the scene has no loads, or the factors are none or not finite.
+        When the scene has no loads, or the factors are none, not finite or more than its contacts bear.
     NotSettled, DynamicsError, EquilibriumError, PathError
         As of ``solve_scene``.
     """
     if not solution.loaded:
         raise SceneError("loads: none in this scene, so there is nothing to change")
     factors = load_programme(load_factors)
-    _, states = loaded_states(solution.problem, solution.rest, factors, before=solution.loaded, progress=progress)
-    for state in states:
-        check_overlaps(solution.problem, state)
     scene = solution.scene.updated({"protocol.load_factors": [*solution.load_factors, *factors]})
-    return replace(solution, scene=scene, loaded=(*solution.loaded, *states))
+    problem = replace(solution.problem, scene=scene)
+    _check_loads(problem, factors)
+    _, states = loaded_states(problem, solution.rest, factors, before=solution.loaded, progress=progress)
+    for state in states:
+        check_overlaps(problem, state)
+    return replace(solution, scene=scene, problem=problem, loaded=(*solution.loaded, *states))
 
 
 def load_programme(factors: Any) -> list[float]:

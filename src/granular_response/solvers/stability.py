@@ -195,10 +195,9 @@ def diverging(spectrum: Spectrum) -> int | None:
     """
     if not spectrum.negative_modes or not _slides(spectrum.trial):
         return spectrum.negative_modes
-    try:
-        return 0 if divergence(spectrum) is None else 1
-    except Clustered:
-        return None
+    with suppress(Clustered):
+        return int(divergence(spectrum) is not None)
+    return None
 
 
 def _slides(trial: Trial) -> bool:
