@@ -18,7 +18,7 @@ def loaded(friction: float, force: float) -> tuple[LoadPath, Solid, np.ndarray]:
     path = LoadPath.of(scene)
     state = path.at(force)
     solid = Solid(path.problem, state, triangles(path.problem.packing.position))
-    load = path.problem.load_vector()
+    load = path.problem.load_vector
     return path, solid, solid.floor_forces(solid.system.answers(solid.trial)(load))
 
 

@@ -97,6 +97,16 @@ def test_loads_count_in_the_balance():
     assert certify(problem, replace(state, load_factor=1.0)).force_residual == pytest.approx(1.0)
 
 
+def test_torques_count_in_the_balance():
+    problem = Problem.from_scene(scene(loads=[{"disk": "top-centre", "force": [0.0, 0.0], "torque": 1.0}]))
+    rest = rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    assert certify(problem, rest, modes=0).stable
+    turned = certify(problem, replace(rest, load_factor=1.0), modes=0)
+    assert turned.torque_residual == pytest.approx(1.0) and turned.unbalanced_part > 0.1
+    assert not turned.balanced and turned.stable is False
+
+
 def test_loose_disks_are_counted():
     problem, state = free_disks([[500.0, 1.0 - 1 / 6000.0], [510.0, 1.0 - 1 / 6000.0]])
     assert certify(problem, state).loose_disks == 2

@@ -32,6 +32,15 @@ def travel(solution, state) -> np.ndarray:
     return state.position[disk] - solution.rest.position[disk]
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_a_disk_may_be_lifted_away_from_all_others(friction):
+    table = {"kind": "arrays", "x": [5.0, 12.0], "z": [1.0, 1.0], "radius": [1.0, 1.0], "width": 20.0}
+    loads = [{"disk": disk, "displacement": [0.0, height]} for disk, height in ((0, 1.0), (1, 2.0))]
+    solution = solve_scene(Scene.from_dict({"packing": table, "contact": {"friction": friction}, "loads": loads}))
+    assert solution.reaction(solution.loaded[0]) == pytest.approx(np.array([[0.0, 1.0], [0.0, 1.0]]), abs=1e-9)
+    assert not solution.loaded[0].walls.touching.any()
+
+
 def check_audit(solution) -> None:
     """Every state is in balance, reactions included, as summed anew from its positions."""
     for state in (solution.rest, *solution.loaded):

@@ -16,7 +16,7 @@ from granular_response.solvers.equilibrium import finish
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import CROSSING, PROTOCOL, NotSettled, settle
 from granular_response.solvers.solution import rest_state, solve_scene
-from granular_response.solvers.stability import Spectrum
+from granular_response.solvers.stability import Clustered, Spectrum
 from granular_response.solvers.system import StaticSystem
 from granular_response.solvers.timestep import resolve_time_step
 
@@ -111,6 +111,13 @@ def test_a_response_that_is_rounding_says_so(force, stiffness, said):
     assert any(line in str(warning.message) for warning in caught) is said
 
 
+def test_a_response_to_a_torque_that_is_rounding_says_so():
+    loads = [{"disk": "top-centre", "force": [0.0, 0.0], "torque": 1e-12}]
+    solution = solve_scene(scene(preparation__gravity="frictionless", loads=loads))
+    assert solution.rounding > 1.0
+    assert any("may be rounding" in remark for remark in solution.remarks)
+
+
 def counted_steps(monkeypatch) -> list[int]:
     """The time steps that dynamics takes from here on, a number for each call."""
     taken: list[int] = []
@@ -151,6 +158,23 @@ def test_every_further_try_of_statics_has_what_is_left_of_the_steps(monkeypatch,
     with pytest.raises(NotSettled):
         settle(problem, start, often, Stop(1e-9, maximum_steps=3000), what="gravity", accept=lambda state: False)
     assert len(taken) > 5 and 0 < sum(taken) <= 3000
+
+
+def test_a_direction_that_is_not_found_costs_no_steps(monkeypatch):
+    """The motion goes on from where it is, and its steps count once."""
+
+    class Unknown(Spectrum):
+        @property
+        def direction(self):
+            raise Clustered
+
+    problem = Problem.from_scene(scene(contact__friction=0.3, loads=[]))
+    start, taken = rest_state(problem), counted_steps(monkeypatch)
+    monkeypatch.setattr("granular_response.solvers.settle.Spectrum", Unknown)
+    often = replace(PROTOCOL, tries=100, wait=0.1)
+    with pytest.raises(NotSettled, match="so near each other"):
+        settle(problem, start, often, Stop(1e-9, maximum_steps=3000), what="gravity", accept=lambda state: False)
+    assert sum(taken) == 3000
 
 
 @pytest.mark.parametrize("how", [PROTOCOL, CROSSING])

@@ -90,7 +90,7 @@ def test_loads_on_one_disk_add_up():
     loads = [{"disk": 3, "force": [1.0, -2.0], "torque": 0.5}, {"disk": 3, "force": [0.5, 0.0]}]
     problem = Problem.from_scene(scene(loads=loads))
     problem = problem.with_loads(problem.packing.position)
-    vector = problem.load_vector().reshape(3, -1)
+    vector = problem.load_vector.reshape(3, -1)
     assert vector[:, 3] == pytest.approx([1.5, -2.0, 0.5])
     assert np.count_nonzero(vector) == 3
 

@@ -99,7 +99,7 @@ def test_rates_of_random_packings_do_not_contradict_themselves():
         kept, free = (system.trial(known, known.q + h * rates.velocity, fixed=f) for f in (rates.sense, None))
         # the forces of contacts grow as the load asks, up to the turn of those that bear something
         grown = (kept.contact_force - here.contact_force) / h
-        assert np.abs(grown + problem.load_vector()).max() < 2e-2 * max(1.0, np.abs(rates.velocity).max() * 10.0)
+        assert np.abs(grown + problem.load_vector).max() < 2e-2 * max(1.0, np.abs(rates.velocity).max() * 10.0)
         assert np.array_equal(rates.sense[~slides], sense[~slides])
         assert (np.abs(rates.sense[slides]) == SLIDING).tolist() == (free.status[slides] == SLIDING).tolist()
         moving = np.abs(rates.sense) == SLIDING

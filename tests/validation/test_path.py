@@ -438,6 +438,17 @@ def test_an_error_that_is_not_measured_costs_no_result(monkeypatch):
     assert np.array_equal(found.position, whole.position) and tuple(record.events) == found.reached.events
 
 
+def test_what_increments_leave_out_is_measured_in_a_short_leg_too():
+    """One that a single increment would take, so that one of twice the length is the same."""
+    load = [{"disk": "top-centre", "force": [1.0, -6.0]}]
+    problem, rest = at_rest(scene(loads=load))
+    (exact,) = follow(problem, rest, [0.4])
+    (found,) = follow(problem, rest, [0.4], together=4.0)
+    off = np.abs(exact.wall_force() - found.wall_force()).max() / (0.4 * problem.load_size)
+    assert off > 1e-4 and found.reached.events_error > 0.3 * off
+    assert found.reached.events_within == pytest.approx(0.5 * 0.4 * problem.load_size)
+
+
 def test_progress_does_not_go_back():
     """Also where a path is followed twice, to measure what increments leave out."""
     load = [{"disk": "top-centre", "force": [0.0, -1.0]}]

@@ -103,7 +103,7 @@ class Result:
         ``result.events.to_dataframe()`` a table. Without a path, by dynamics or by minimisation, no contact events are
         known. Where events were taken together, as in packings of many thousand disks, ``reached.events_within`` of a
         state is the load within which they were (mg), and ``reached.events_error`` what that leaves out
-        of a force of the floor or a wall, per load.
+        of a force of the floor or a wall since the state before, per load.
         """
         found = [(k, event) for k, state in enumerate(self._states) for event in state.reached.events]
         return Events((event for _, event in found), (k for k, _ in found))
@@ -277,7 +277,8 @@ class Result:
         -------
         Dimensions ``floor_disk``, ``disk`` and ``component``: per unit force along "x" and "z" and, where disks turn,
         per unit "torque". With ``x`` of the floor disks from the loaded disk, and ``disk_x``, ``disk_z`` of all disks.
-        NaN for disks with fewer than two contacts, and along x where nothing holds the packing as a whole.
+        NaN for disks with fewer than two contacts, unless one resists rolling, and along x where nothing holds the
+        packing as a whole. 0 where a load holds the disk.
 
         Raises
         ------

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ..contact.coulomb import return_map
 from ..contact.law import elastic_force, energy, stiffness
 from ..machine.machine_code import kernel
-from ..state.status import OPEN, SLIDING, STICKING
+from ..state.status import AT_LIMIT, OPEN, SLIDING, STICKING
 
 Floats = NDArray[Any]
 
@@ -435,7 +435,7 @@ def rolling_spring_forces(spring, status, normal, rolling, out):
             continue
         out.spring[c] = spring[c]
         out.force[c] = -rolling.stiffness * spring[c]
-        within = abs(out.force[c]) < rolling.friction * abs(normal[c]) * (1 - 1e-9)
+        within = abs(out.force[c]) < rolling.friction * abs(normal[c]) * (1 - AT_LIMIT)
         out.status[c] = STICKING if within else SLIDING
 
 
@@ -443,7 +443,7 @@ def rolling_spring_forces(spring, status, normal, rolling, out):
 def spring_forces(overlap, spring, shape, law, out):
     """Fill ``out`` (:class:`Response`) with forces from overlaps and springs (m,) as they are.
 
-    A touching contact slides when its spring force has reached the Coulomb limit (to 1e-9 of it).
+    A touching contact slides when its spring force has reached the Coulomb limit (to ``AT_LIMIT`` of it).
     """
     rubs = law.friction > 0.0
     for c in range(overlap.size):
@@ -458,7 +458,7 @@ def spring_forces(overlap, spring, shape, law, out):
         if rubs:
             out.spring[c] = spring[c]
             out.tangential[c] = -law.tangential_stiffness * spring[c]
-            if abs(out.tangential[c]) >= law.friction * abs(fn) * (1 - 1e-9):
+            if abs(out.tangential[c]) >= law.friction * abs(fn) * (1 - AT_LIMIT):
                 out.status[c] = SLIDING
 
 

@@ -272,12 +272,11 @@ class Equations:
     def deinterleave(self, vector: FloatArray) -> FloatArray:
         """Disk by disk, in the order of the tangent, to ``[x | z | angle]``.
 
-        Nothing holds a packing with periodic sides on a smooth floor along x, unless a load does: as a whole it stays
-        where it is.
+        A packing that nothing holds along x stays where it is as a whole.
         """
         result = np.empty(self.dof)
         result[self.pattern.interleaved] = vector
-        if self.problem.packing.periodic and not self.problem.wall_friction and 0 not in self.problem.held.axis:
+        if self.problem.slides_freely:
             along = result[: self.problem.n]
             along -= along.mean()
         return result

@@ -52,9 +52,7 @@ class Rearranged(EquilibriumError):
 
 def external_force(problem: Problem, load_factor: float) -> FloatArray:
     """(dof,) gravity and the scene's loads times ``load_factor``; nothing on what is held."""
-    force = problem.weight_vector() + load_factor * problem.load_vector()
-    force[problem.held.unknowns(problem.n)] = 0.0
-    return force
+    return problem.weight_vector + load_factor * problem.load_vector
 
 
 def attainable(system: StaticSystem, q: FloatArray) -> float:
@@ -191,6 +189,7 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
             over = np.abs(contacts.rolling_force) - rolling.friction * np.abs(normal)
             beyond = max(beyond, float(over[closed].max(initial=0.0)))
     bears = np.maximum(problem.weight, state.largest_normal_force())
+    turned = np.abs(torque) / problem.packing.radius if problem.rotations else np.zeros(n)
     energy = 0.5 * (problem.weight * (state.velocity**2).sum(axis=1)).sum()
     energy += 0.5 * (problem.packing.inertia * state.angular_velocity**2).sum()
     return Certificate(
@@ -201,7 +200,7 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
         kinetic_energy=float(energy) / n,
         negative_modes=modes,
         loose_disks=int((state.contact_count() < 2).sum()),
-        unbalanced_part=float((np.abs(force).max(axis=1) / bears).max()),
+        unbalanced_part=float((np.maximum(np.abs(force).max(axis=1), turned) / bears).max()),
         rolling_excess=beyond,
     )
 

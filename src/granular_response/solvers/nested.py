@@ -62,7 +62,8 @@ def prolonged(displacement: FloatArray, coarse: Packing, fine: Packing) -> Float
         x = coarse.position[disks, 0] / coarse.width
         along, across = displacement[disks].T
         field[row + 1, :, 0] = np.interp(columns, np.r_[0.0, x, 1.0], np.r_[0.0, along, 0.0])
-        field[row + 1, :, 1] = _interpolated(columns, x, across)
+        k, part = _between(columns, x)
+        field[row + 1, :, 1] = (1.0 - part) * across[k] + part * across[k + 1]
     height = np.concatenate([[0.0], coarse.position[begin[:-1], 1] / rows])
     slope = (field[2, :, 0] - field[1, :, 0]) / (height[2] - height[1])
     field[0, :, 0] = field[1, :, 0] - slope * height[1]
@@ -80,9 +81,3 @@ def _between(x: FloatArray, nodes: FloatArray) -> tuple[np.ndarray, FloatArray]:
     """The interval of ``nodes`` that holds each ``x``, or is next to it, and the place in its units."""
     k = np.clip(np.searchsorted(nodes, x) - 1, 0, len(nodes) - 2)
     return k, (x - nodes[k]) / (nodes[k + 1] - nodes[k])
-
-
-def _interpolated(x: FloatArray, nodes: FloatArray, values: FloatArray) -> FloatArray:
-    """Linear interpolation, and extrapolation beyond the first and the last node."""
-    k, part = _between(x, nodes)
-    return (1.0 - part) * values[k] + part * values[k + 1]

@@ -27,6 +27,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cache
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,10 +165,7 @@ def follow(
         When the motion does not settle either: the packing collapses or cycles under this load.
     """
     path = _Path(problem, together, lowest, PathRecord() if record is None else record, progress)
-    states: list[State] = []
-    for factor in factors:
-        states.append(path.to(states[-1] if states else start, float(factor)))
-    return states
+    return list(accumulate(map(float, factors), path.to, initial=start))[1:]
 
 
 class _Path:
@@ -180,8 +178,6 @@ class _Path:
         self.asked, self.lowest = together, lowest
         self.unstable: Eigenpair | None = None  #: the negative eigenvalue that was found last
         self.unit = problem.load_size
-        self.weight = external_force(problem, 0.0)
-        self.load = external_force(problem, 1.0) - self.weight
         laws = problem.pair_law, problem.wall_law
         self.stiffest = max(law.tangential_stiffness for law in laws)
         #: whether the stiffness of contacts varies with their overlap
@@ -198,6 +194,8 @@ class _Path:
         point = self._at(start)
         if self.asked is None and self.system.pattern.dissected:
             self.together = min(OPTIONS.together * self.problem.n**0.5, OPTIONS.longest)
+        if self.together is not None:  # in two increments at least, or there are none of twice the length
+            self.together = min(self.together, 0.5 * self.unit * abs(target - start.load_factor))
         self.guide = {}
         self.reported = start.load_factor
         state = self._followed(point, start)
@@ -308,10 +306,6 @@ class _Path:
         self.record.work.factorisations += self.system.renewals
         self.system.renewals = 0
 
-    def _external(self, factor: float) -> FloatArray:
-        """(dof,) gravity and loads; nothing on what is held."""
-        return self.weight + factor * self.load
-
     def _at(self, state: State) -> Point:
         """A point of a new system around the positions and candidates of a state."""
         self.system = StaticSystem(self.problem, state)
@@ -327,7 +321,7 @@ class _Path:
 
     def _balanced(self, point: Point) -> Point:
         """A start that dynamics alone has left nearly at rest: the equilibrium beside it."""
-        external = self._external(point.factor)
+        external = external_force(self.problem, point.factor)
         if float(np.abs(point.trial.contact_force + external).max(initial=0.0)) < 10.0 * self.rates.force:
             return point
         found = solve_increment(self.system, point.known, external, point.known.q, self.record.work)
@@ -384,7 +378,7 @@ class _Path:
         if fastest * left > OPTIONS.listed_again:
             left = OPTIONS.listed_again / fastest
         contact, length = changes.first()
-        what = int(changes.what[contact])
+        what = int(changes.what[contact]) if np.isfinite(length) else events.NOTHING
         passed_at = np.inf  #: length of an increment within which a contact is known to change
         for _ in range(OPTIONS.landings):
             event = (contact, what) if length < left else None
@@ -489,7 +483,7 @@ class _Path:
         for done in range(OPTIONS.newton):
             ahead = abs(factor - point.factor) * rates.velocity
             trial = system.trial(known, q, fixed=rates.sense, ahead=ahead, tangent=False)
-            force = trial.contact_force + self._external(factor)
+            force = trial.contact_force + external_force(self.problem, factor)
             size = float(np.abs(force).max(initial=0.0))
             left, rate = (0.0, 0.0) if event is None else self.rates.until(trial, *event, velocity)
             if not np.isfinite(size):
@@ -592,7 +586,7 @@ class _Path:
 
     def _increased(self, point: Point, new: float) -> Trial | None:
         """Equilibrium with the return map, one increment on, whatever changes within it."""
-        external = self._external(new)
+        external = external_force(self.problem, new)
         guess = point.known.q if self.velocity is None else point.known.q + abs(new - point.factor) * self.velocity
         guesses = [guess, self.guide[new] - self.origin] if new in self.guide else [guess]
         guesses = [self.system.displaced(one, new) for one in guesses]

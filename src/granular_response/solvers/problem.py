@@ -257,10 +257,12 @@ class Problem:
         size = max(float(applied), float(np.abs(self.load[:, 2]).sum()), 1e-300)
         return size + self.stiffness * float(np.abs(self.held.travel).sum())
 
+    @cached_property
     def load_vector(self) -> FloatArray:
-        """(dof,) generalised load at load factor 1."""
+        """(dof,) generalised load at load factor 1; nothing on what is held."""
         total = np.zeros((3, self.n))
         np.add.at(total.T, self.load_disk, self.load)
+        total[self.held.axis, self.held.disk] = 0.0
         return total[: self.freedoms].ravel()
 
     @property
@@ -268,11 +270,18 @@ class Problem:
         """In which a compression wave runs through the packing, in sqrt(R/g): before, parts know nothing of others."""
         return float(self.packing.position[:, 1].max()) / (2.0 * self.scene.contact.normal_stiffness**0.5)
 
+    @cached_property
     def weight_vector(self) -> FloatArray:
-        """(dof,) generalised gravity."""
+        """(dof,) generalised gravity; nothing on what is held."""
         total = np.zeros((self.freedoms, self.n))
         total[1] = -self.weight
+        total[self.held.axis, self.held.disk] = 0.0
         return total.ravel()
+
+    @property
+    def slides_freely(self) -> bool:
+        """Whether nothing holds the packing as a whole along x: no side walls, a smooth floor, no displacement."""
+        return self.packing.periodic and not self.wall_friction and not (self.held.axis == 0).any()
 
     def list_candidates(self, position: FloatArray, *, search: bool = False, stride: float = 0.0) -> Candidates:
         """List candidate contacts at ``position`` (n, 2).

@@ -122,10 +122,7 @@ class RateProblem:
     def __init__(self, system: StaticSystem, direction: float, *, force: float, negligible: float):
         self.system, self.direction, self.force = system, direction, force
         self.negligible = negligible * system.problem.load_size
-        load = direction * system.problem.load_vector()
-        load[system.held] = 0.0
-        self._load = load
-        self._right = system.interleave(load)
+        self._right = system.interleave(direction * system.problem.load_vector)
         #: (dof,) rates of what loads hold
         self._held = np.zeros(system.dof)
         self._held[system.held] = direction * system.problem.held.travel
@@ -135,9 +132,9 @@ class RateProblem:
         system = self.system
         if not system.held.size:
             return system.deinterleave(factor.solve_same(self._right))
-        force = self._load + system.force_rates(system.trial(known, known.q, fixed=sense), self._held)
-        force[system.held] = 0.0
-        return self._held + system.deinterleave(factor.solve(system.interleave(force)))
+        rates = system.force_rates(system.trial(known, known.q, fixed=sense), self._held)
+        rates[system.held] = 0.0
+        return self._held + system.deinterleave(factor.solve(self._right + system.interleave(rates)))
 
     def changes(self, trial: Trial, velocity: FloatArray, sense: np.ndarray) -> Changes:
         """What each contact does next with signed statuses ``sense`` (m + w,)."""

@@ -35,7 +35,7 @@ class HandOver:
     wait: float = 20.0  #: least time of dynamics between tries
     fallen: float = 1.0  #: part of its largest value since the last try to which the kinetic energy falls
     nearly: float = 1e3  #: kinetic energy over its limit up to which a state whose steps ran out is tried all the same
-    nudged: bool = False  #: from the third unstable equilibrium on, dynamics starts from it, displaced a little
+    nudged: bool = False  #: from the third try on, dynamics starts from an unstable equilibrium, displaced a little
 
 
 #: Rest under gravity, and loads by dynamics: the fall is long, and a wait costs little of it.
@@ -101,9 +101,9 @@ def settle(
                 return found
             why = ": the equilibrium found is unstable"
             if how.nudged and attempt > 2:
-                spent += dynamics.steps
                 system = StaticSystem(problem, found)
                 displaced = nudged(problem, found, Spectrum(system, system.at(found)).direction)
+                spent += dynamics.steps
                 dynamics = Dynamics(problem, displaced, integrator, time_step)
         except EquilibriumError as error:
             why = f": {error}"

@@ -12,12 +12,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import EquilibriumError
-from ..state import FLOOR, FloatArray, State
+from ..state import AT_LIMIT, FLOOR, OPEN, FloatArray, State
 from .problem import Problem
 from .system import StaticSystem, Trial
-
-#: A contact is at the Coulomb limit when what is left is less than this part of it.
-AT_LIMIT = 1e-9
 
 
 def at_limit(problem: Problem, state: State) -> int:
@@ -26,8 +23,7 @@ def at_limit(problem: Problem, state: State) -> int:
     for contacts, law, _, rolling in problem.kinds(state):
         count += int(contacts.near_limit(law.friction, AT_LIMIT).sum())
         if rolling is not None:
-            limit = (1.0 - AT_LIMIT) * rolling.friction * contacts.normal_force
-            count += int((contacts.touching & (np.abs(contacts.rolling_force) >= limit)).sum())
+            count += int(contacts.near_limit(rolling.friction, AT_LIMIT, rolling=True).sum())
     return count
 
 
@@ -44,8 +40,8 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
     Returns
     -------
     (k, n, freedoms) mean disk weights per mean disk weight along x and z, and per mean disk weight times mean radius
-    for a torque where disks turn. NaN where nothing bears the load: for disks with less than two contacts, and along
-    x where nothing holds the packing as a whole.
+    for a torque where disks turn. NaN where nothing bears the load: for disks with less than two contacts, unless one
+    resists rolling, and along x where nothing holds the packing as a whole. 0 where a load holds the disk.
 
     Raises
     ------
@@ -63,9 +59,7 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
         force = np.zeros((freedoms, n))
         force[:, disk] = system.split(trial.tangent)[1][here, 1, :freedoms].sum(axis=0)
         result[row] = answer(force.ravel()).reshape(freedoms, n).T
-    result[:, state.contact_count() < 2] = np.nan
-    if problem.packing.periodic and not problem.wall_friction and not (problem.held.axis == 0).any():
-        result[:, :, 0] = np.nan
+    result[:, _loose(problem, state)] = np.nan
     return result
 
 
@@ -82,7 +76,7 @@ def contact_answers(
     Returns
     -------
     (k, m, 2) and (k, w, 2): what is added to the force on ``pairs.first`` and on ``walls.first`` of the state, per
-    force, at contacts that stay where they are. NaN for disks with less than two contacts, which nothing bears.
+    force, at contacts that stay where they are. NaN for disks that nothing bears, as of :func:`influence`.
 
     Raises
     ------
@@ -94,9 +88,20 @@ def contact_answers(
     on_walls = np.empty((len(disks), len(system.wall_disk), 2))
     for row, disk in enumerate(disks):
         on_pairs[row], on_walls[row] = added_forces(system, trial, answer(force_on(problem, disk, 1, -1.0)))
-    borne = state.contact_count()[disks] >= 2
-    on_pairs[~borne] = on_walls[~borne] = np.nan
+    loose = _loose(problem, state)[disks, 1]
+    on_pairs[loose] = on_walls[loose] = np.nan
     return on_pairs, on_walls
+
+
+def _loose(problem: Problem, state: State) -> np.ndarray:
+    """(n, freedoms) which unknowns nothing holds."""
+    # one contact that resists rolling holds a disk alone
+    rolls, at_wall = state.pairs.rolling_status != OPEN, state.walls.rolling_status != OPEN
+    ties = state.contact_count() + state.contact_count(rolls, walls=at_wall)
+    loose = np.repeat(ties[:, None] < 2, problem.freedoms, axis=1)
+    loose[:, 0] |= problem.slides_freely
+    loose[problem.held.disk, problem.held.axis] = False
+    return loose
 
 
 def force_on(problem: Problem, disk: int, axis: int, size: float = 1.0) -> FloatArray:

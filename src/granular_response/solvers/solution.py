@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from numbers import Real
 from typing import Any
 
@@ -74,9 +73,11 @@ class Solution:
     def rounding(self) -> float:
         """How much of a response may be no more than rounding.
 
-        Forces out of balance and what the last digit of a position is worth as a force, over the smallest load.
+        Forces out of balance and what the last digit of a position is worth as a force, over the smallest load, of
+        which a torque counts as a force at one radius.
         """
-        loads = [self.applied_force(state) for state in self.loaded if state.load_factor]
+        torque = float(np.abs(self.problem.load[:, 2]).sum())
+        loads = [self.applied_force(one) + abs(one.load_factor) * torque for one in self.loaded if one.load_factor]
         if not loads or min(loads) <= 0.0:
             return 0.0
         stiffness = max(self.problem.stiffness, self.problem.wall_law.normal_stiffness)
@@ -262,8 +263,8 @@ def loaded_states(
     states = [rest, *before]
     for done, factor in enumerate(factors, 1):
         if choice.method == "dynamics":
-            so_far = [*(state.load_factor for state in states), factor]
-            turned = len({after > here for here, after in pairwise(so_far) if after != here}) > 1
+            moves = np.diff([*(state.load_factor for state in states), factor])
+            turned = moves.min() < 0.0 < moves.max()
             states.append(_by_dynamics(problem, states[-1] if turned else rest, factor, progress))
             continue
         states.append(_by_minimisation(problem, states[-1], factor, progress))
@@ -288,8 +289,7 @@ def _by_minimisation(problem: Problem, before: State, factor: float, progress: P
 
 
 def _on_path(problem: Problem, start: State, factors: Sequence[float], progress: Progress | None) -> list[State]:
-    turns = [start.load_factor, *factors]
-    whole = sum(abs(after - here) for here, after in pairwise(turns))
+    whole = float(np.abs(np.diff([start.load_factor, *factors])).sum())
     done = 0.0
     last = start.load_factor
 

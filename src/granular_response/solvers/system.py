@@ -52,7 +52,7 @@ class StaticSystem(Equations):
         self._steps = Sequence(self.storage, same=OPTIONS.same_shift * problem.stiffness)
 
     def factorise(self, matrix: sp.csc_array) -> Eliminated:
-        """LU of a tangent, alone in memory."""
+        """LU of a tangent, after those of steps have gone."""
         self.forget()
         return self.storage.factor(matrix)
 
@@ -61,7 +61,7 @@ class StaticSystem(Equations):
         return self.tangent(trial, OPTIONS.regularisation * self.problem.stiffness)
 
     def forget(self) -> None:
-        """Let all factorisations go before one is made: two need not be in memory."""
+        """Let factorisations of steps go before one is made: only that of the rates stays in memory beside it."""
         self._kept = None
         self._steps.forget()
 

@@ -4,9 +4,10 @@ from .box import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, Box, FloatArray, foo
 from .events import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Event
 from .reached import Certificate, Reached
 from .state import Contacts, State, contact_force
-from .status import OPEN, SLIDING, STICKING
+from .status import AT_LIMIT, OPEN, SLIDING, STICKING
 
 __all__ = [
+    "AT_LIMIT",
     "CONTACT_EVENTS",
     "FLOOR",
     "LEFT_WALL",

@@ -18,8 +18,8 @@ class Certificate:
     largest ``|f_t| - friction f_n``. ``smallest_normal_force``: over closed contacts. ``kinetic_energy``: per
     disk. ``negative_modes``: unstable directions of the tangent with the recorded statuses (where contacts slide 1
     stands for any number; None: not determined). ``loose_disks``: disks with fewer than two contacts.
-    ``unbalanced_part``: largest unbalanced force on a disk as a part of what it bears, its weight or its largest
-    contact force (nan: not measured, in files from before).
+    ``unbalanced_part``: largest unbalanced force on a disk, or torque per radius, as a part of what it bears, its
+    weight or its largest contact force (nan: not measured, in files from before).
     ``rolling_excess``: largest rolling force beyond its limit.
 
     Examples
@@ -40,7 +40,7 @@ class Certificate:
 
     @property
     def balanced(self) -> bool:
-        """Whether forces on each disk cancel, as far as it bears any."""
+        """Whether forces and torques on each disk cancel, as far as it bears any."""
         return not self.unbalanced_part > BALANCED
 
     @property
@@ -81,7 +81,7 @@ class Reached:
     factorisations: int | None = None  #: of the path so far
     events: tuple[Event, ...] = ()  #: of the path since the state before
     events_within: float | None = None  #: load within which a path took events together (mean weights)
-    events_error: float | None = None  #: what that leaves out of a floor or wall force, per load, as measured
+    events_error: float | None = None  #: measured: what that leaves out of a floor or wall force since then, per load
 
     def after(self, earlier: Reached) -> Reached:
         """This record, and what only the one ``earlier`` knows."""

@@ -58,10 +58,14 @@ class Contacts:
         """Whether some contact rolls against a resistance."""
         return bool((self.rolling_status != OPEN).any())
 
-    def near_limit(self, friction: float, margin: float) -> NDArray[np.bool_]:
-        """(m,) whether the contact is closed with ``|f_t| >= (1 - margin) friction f_n``; none without friction."""
+    def near_limit(self, friction: float, margin: float, *, rolling: bool = False) -> NDArray[np.bool_]:
+        """(m,) whether the contact is closed with ``|f_t| >= (1 - margin) friction f_n``; none without friction.
+
+        Of the force along the ``rolling`` in place of the tangential one, if asked.
+        """
         limit = (1.0 - margin) * friction * self.normal_force
-        return self.touching & (np.abs(self.tangential_force) >= limit) & (friction > 0.0)
+        force = self.rolling_force if rolling else self.tangential_force
+        return self.touching & (np.abs(force) >= limit) & (friction > 0.0)
 
     def same_candidates(self, other: Contacts) -> bool:
         """Whether both list the same candidates in the same order, so that they subtract contact by contact."""
@@ -125,10 +129,12 @@ class State:
             np.maximum.at(largest, disk, contacts.normal_force)
         return largest
 
-    def contact_count(self, pairs: NDArray[np.bool_] | None = None, *, walls: bool = True) -> NDArray[np.intp]:
-        """(n,) closed contacts of each disk, with or without ``walls``. Two are the least that hold one under gravity.
+    def contact_count(
+        self, pairs: NDArray[np.bool_] | None = None, *, walls: bool | NDArray[np.bool_] = True
+    ) -> NDArray[np.intp]:
+        """(n,) closed contacts of each disk. Two are the least that hold one under gravity.
 
-        ``pairs`` : (m,) those that count; by default all that touch.
+        ``pairs`` (m,), ``walls`` (w,), or for all : those that count; by default all that touch.
         """
         live = self.pairs.touching if pairs is None else pairs
         at_wall = self.walls.first[self.walls.touching & walls]

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+#: Part of its limit by which a force may be below it and count as at the limit.
+AT_LIMIT = 1e-9
+
 #: Not in touch; in touch within the Coulomb limit (or without friction); at the Coulomb limit.
 OPEN, STICKING, SLIDING = 0, 1, 2
 #: Their names, in order.

@@ -100,7 +100,7 @@ def respond(asked: Parameters, friction: float, forces: tuple[float, ...]) -> Ou
     def step(state: State, after: State) -> Step:
         solid = Solid(problem, state, corners)
         answer = solid.system.answers(solid.trial)
-        measured = solid.floor_forces(answer(problem.load_vector()))[disks]
+        measured = solid.floor_forces(answer(problem.load_vector))[disks]
         largest = smooth(measured).max()
         families = loads(problem, state, asked.waves)
         fields = {name: solid.fields(map(answer, family)) for name, family in families.items()}
