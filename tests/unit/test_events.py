@@ -345,3 +345,15 @@ def test_crossings_of_a_broken_file_are_refused():
     with pytest.raises(ResultError, match=r"^is not a whole result: variable crossing_end is missing$"):
         checked(data.drop_vars("crossing_end"))
     assert events_from(data) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ((None, 0.0, 1.0), "happened = None: must be a kind of event, or a function of the result"),
+        (("opens", "0", 1.0), "low = '0', high = 1.0: must be numbers"),
+    ],
+)
+def test_what_find_event_cannot_look_for_is_one_line(arguments, said):
+    with pytest.raises(ValueError, match=said):
+        gr.find_event(SCENE, *arguments, progress=False)

@@ -283,6 +283,8 @@ def test_gsd_of_others_has_its_origin_in_the_middle(tmp_path):
     ("name", "text", "said"),
     [
         ("a.csv", "x,z,radius,stiffness\n1,1,1,5\n", "column stiffness: must be left out, contact.normal_stiffness is"),
+        ("a.csv", "x,z,radius,k_n\n1,1,1,5\n", "column k_n: must be left out, contact.normal_stiffness is"),
+        ("a.csv", "x,z,radius,Mu\n1,1,1,5\n", "column mu: must be left out, contact.friction is"),
         ("a.csv", "x,z,radius,mass,density\n1,1,1,5,1\n", "columns mass and density: must have one of them"),
         ("a.csv", "x,z,radius,density\n1,1,1,0\n", "line 2: density = 0.0: must be greater than 0"),
         ("a.data", DATA.replace("3 atoms", "4 atoms"), "is not a whole LAMMPS data file"),

@@ -146,7 +146,7 @@ def test_a_split_singular_matrix_is_an_error(monkeypatch):
 
 
 def test_less_than_one_thread_is_an_error():
-    with pytest.raises(ValueError, match="threads = 0: must be 1 or more"), threads.using(0):
+    with pytest.raises(ValueError, match="threads = 0: must be a whole number, 1 or more"), threads.using(0):
         pass
 
 

@@ -74,3 +74,8 @@ def test_mistakes_name_the_key_the_value_and_what_is_allowed(changes, message):
     with pytest.raises(gr.SceneError) as caught:
         gr.Scene.from_arrays(**{**PYRAMID, **changes})
     assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
+
+
+def test_a_packing_beside_the_arrays_is_refused():
+    with pytest.raises(gr.SceneError, match=r"^scene\.packing: must be left out"):
+        gr.Scene.from_arrays([1.0], [1.0], 1.0, scene={"packing": {"kind": "slab"}})

@@ -204,6 +204,7 @@ def test_short_texts_for_people(result):
         assert 10 < len(repr(value)) < 2000
     assert "initial equilibrium: stable" in repr(result) and "load factor 1: stable" in repr(result)
     assert "103 disks" in repr(result.rest)
+    assert str(gr.Slab()) == "SlabPacking()" and str(result.scene) == repr(result.scene)
     assert "<table>" in result._repr_html_() and "friction: 0.2" in result.scene._repr_html_()
 
 

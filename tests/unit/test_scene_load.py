@@ -147,5 +147,5 @@ def test_sideways_forces_that_sum_to_zero_but_for_rounding_are_allowed():
     assert sum(load["force"][0] for load in loads) != 0.0
     Scene().updated({"packing.sides": "periodic", "loads": loads})
     loads[0]["force"] = [0.1001, 0.0]
-    with pytest.raises(SceneError, match="must sum to 0"):
+    with pytest.raises(SceneError, match="sum of the forces along x, must be 0"):
         Scene().updated({"packing.sides": "periodic", "loads": loads})

@@ -82,3 +82,11 @@ def test_impossible_disks(values, message):
 def test_unknown_quantity():
     with pytest.raises(SceneError, match=r"^quantity = 'stifness': must be .* did you mean stiffness\?$"):
         LaboratoryUnits().unit("stifness")
+
+
+def test_the_box_of_poured_disks_has_a_width_in_metres():
+    units = LaboratoryUnits()
+    poured = units.reduced_scene({"packing": {"kind": "poured", "disks": 20, "width": 0.0375}})
+    assert poured["packing"]["width"] == pytest.approx(10.0)
+    own = {"packing": {"kind": "file", "path": "disks.csv", "width": 0.0375}}
+    assert units.reduced_scene(own) == own

@@ -80,3 +80,11 @@ def test_a_path_from_a_start_that_is_not_in_balance_begins_with_an_equilibrium()
     residuals = [state.certificate.force_residual for state in solution.loaded]
     assert max(residuals) < 1e-9
     assert certify(solution.problem, solution.rest).force_residual > 1e-6
+
+
+def test_a_result_without_statics_says_how_far_it_is_out_of_balance():
+    """Where the static finish is asked for, and the law has none. It is not called unstable: nobody has looked."""
+    asked = {"packing.layers": 3, "packing.disks_per_row": 5, "protocol.friction_law": "unloading"}
+    with pytest.warns(UserWarning, match="not certified: up to .* out of balance .*friction_law unloading is a law of"):
+        result = gr.solve(gr.Scene(loads=[gr.Load(disk="top-centre", force=(0, -3))]).updated(asked), progress=False)
+    assert result.certificate.unbalanced_part > 1e-6 and "not in balance" in repr(result)

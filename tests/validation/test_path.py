@@ -449,6 +449,23 @@ def test_what_increments_leave_out_is_measured_in_a_short_leg_too():
     assert found.reached.events_within == pytest.approx(0.5 * 0.4 * problem.load_size)
 
 
+def test_a_path_does_not_step_for_ever_where_no_statuses_go_on(monkeypatch):
+    """A disk that is pressed in by 0.79 radii: contacts change to and fro at one load, again and again."""
+    stepped = []
+    lost = path.lost
+
+    def counting(kind, *args):
+        stepped.append(kind)
+        assert len(stepped) < 100
+        return lost(kind, *args)
+
+    monkeypatch.setattr(path, "lost", counting)
+    load = [{"disk": "top-centre", "displacement": [None, -0.79]}]
+    packing = {"kind": "slab", "layers": 4, "disks_per_row": 7}
+    solution = solve_scene(gr.Scene.from_dict({"packing": packing, "contact": {"friction": 0.2}, "loads": load}))
+    assert "stepped over" in stepped and solution.loaded[0].certificate.stable
+
+
 def test_progress_does_not_go_back():
     """Also where a path is followed twice, to measure what increments leave out."""
     load = [{"disk": "top-centre", "force": [0.0, -1.0]}]

@@ -98,7 +98,9 @@ def test_stress_beyond_a_side_is_that_at_the_other():
 
 
 def test_what_a_periodic_slab_cannot_hold_is_refused():
-    with pytest.raises(SceneError, match="forces along x must sum to 0 with periodic sides on a smooth floor"):
+    with pytest.raises(
+        SceneError, match="is the sum of the forces along x, must be 0 with periodic sides on a smooth floor"
+    ):
         slab("top-centre").updated({"loads": [{"disk": 3, "force": [1.0, -4.0]}]})
     slab("top-centre").updated({"loads": [{"disk": 3, "force": [1.0, -4.0]}], "wall.friction": 0.3})
     with pytest.raises(SceneError, match=r"packing\.disks_per_row = 4: must be at least 5 with periodic sides"):

@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from itertools import pairwise
+from numbers import Real
 from typing import Any
 
 from ..observe.events import Bracket, EventNotBracketed, bisect_event
@@ -90,8 +91,12 @@ def find_event(
     kind = happened if isinstance(happened, str) else None
     if kind is not None:
         check_kind(kind)
+    elif not callable(happened):
+        raise ValueError(f"happened = {happened!r}: must be a kind of event, or a function of the result")
     elif where is not None:
         raise ValueError("where: is asked of events, must be left out with a function of the result")
+    if not all(isinstance(end, Real) for end in (low, high)):
+        raise ValueError(f"low = {low!r}, high = {high!r}: must be numbers")
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise ValueError(f"low = {low}, high = {high}: must be finite, and low below high")
     low, high = float(low), float(high)

@@ -410,6 +410,7 @@ class Result:
             contacts = f"{touching} contacts between disks" + (f" ({change:+d})" if change else "")
             name = f"load factor {state.load_factor:g}" if k else "initial equilibrium"
             stable = {True: "stable", False: "unstable", None: "stability not determined"}[state.certificate.stable]
+            stable = stable if state.certificate.balanced else "not in balance"
             rows.append((name, f"{stable}, max. unbalanced force {state.certificate.force_residual:.1e}, {contacts}"))
         return rows
 
@@ -452,8 +453,9 @@ def solve(
     granular_response.SolveError
         For one that has no such states, with one line that says what to change.
 
-    Warns (UserWarning) of states that are still moving where no static finish is asked for, of a load so small that
-    rounding is seen in its response, and of settings for another method, which have no effect.
+    Warns (UserWarning) of states that are still moving where no static finish is asked for, of states that are not in
+    balance as statics does not have their law, of a load so small that rounding is seen in its response, and of settings
+    for another method, which have no effect.
 
     Examples
     --------

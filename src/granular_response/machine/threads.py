@@ -14,7 +14,8 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import ContextVar
-from typing import Any
+from operator import index
+from typing import Any, SupportsIndex
 
 _COUNT: ContextVar[int] = ContextVar("threads", default=1)
 
@@ -35,8 +36,8 @@ def using(count: int) -> Iterator[None]:
     >>> with gr.threads(2):
     ...     result = gr.solve(gr.Scene(packing=gr.Slab(layers=4, disks_per_row=9)))
     """
-    if count < 1:
-        raise ValueError(f"threads = {count}: must be 1 or more")
+    if not (isinstance(count, SupportsIndex) and index(count) >= 1):
+        raise ValueError(f"threads = {count!r}: must be a whole number, 1 or more")
     token = _COUNT.set(count)
     try:
         yield

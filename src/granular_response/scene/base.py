@@ -97,6 +97,9 @@ class Description(BaseModel, metaclass=_Public):
     def __dir__(self) -> Iterable[str]:
         return sorted({*dir(type(self)), *type(self).model_fields})
 
+    def __str__(self) -> str:
+        return repr(self)
+
     def __repr_args__(self) -> Iterable[tuple[str | None, Any]]:
         """What differs from its default."""
         for name, value in super().__repr_args__():

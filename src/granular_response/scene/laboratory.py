@@ -149,16 +149,13 @@ class LaboratoryUnits:
 
         def reduced(value: Any, quantity: str = "", keys: Mapping[str, str] = _KEYS) -> Any:
             if isinstance(value, Mapping):
-                return {
-                    key: reduced(part, keys.get(key, ""), _PLACE if key == "disk" else _KEYS)
-                    for key, part in value.items()
-                }
+                return {key: reduced(part, keys.get(key, ""), _quantities(key, part)) for key, part in value.items()}
             if isinstance(value, (list, tuple)):
                 return [reduced(part, quantity) for part in value]
             number = quantity and isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
             return self.to_reduced(quantity, float(value)) if number else value
 
-        return {key: reduced(part) for key, part in scene.items()}
+        return {key: reduced(part, keys=_quantities(key, part)) for key, part in scene.items()}
 
     def define(self, registry: Any) -> None:
         """Define the units that results name in a registry of pint: mean_radius, mean_mass, reduced_time, mean_weight.
@@ -173,6 +170,12 @@ class LaboratoryUnits:
         named = {LENGTH: "length", MASS: "mass", TIME: "time", FORCE: "force"}
         for (name, quantity), unit in zip(named.items(), ("m", "kg", "s", "N"), strict=True):
             registry.define(f"{name} = {self.unit(quantity)!r} {unit}")
+
+
+def _quantities(key: str, part: Any) -> Mapping[str, str]:
+    """What the keys of a part of a scene are; the box of poured disks has no unit of its own, as that of a file has."""
+    poured = isinstance(part, Mapping) and part.get("kind") == "poured"
+    return _PLACE if key == "disk" else {**_KEYS, "width": "length"} if poured else _KEYS
 
 
 def _listed(value):

@@ -67,7 +67,8 @@ class PouredPacking(PackingDescription):
         largest = float(self._radius().max())
         least = 6.0 * largest if self.periodic else 2.0 * largest
         if not least <= self.width <= 1e6:
-            rule = f"must be from {least:.4g}, {'three times' if self.periodic else ''} the largest disk, to 1e6"
+            size = "three diameters" if self.periodic else "the diameter"
+            rule = f"must be from {least:.4g}, {size} of the largest disk, to 1e6"
             raise Problem(rule, key=("width",), value=self.width)
         return self
 

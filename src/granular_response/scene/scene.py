@@ -106,7 +106,7 @@ class Scene(Description):
         rounding = 1e-12 * sum(abs(load.force[0]) for load in self.loads)
         if self.packing.periodic and not rough_floor and abs(sideways) > rounding and not held:
             raise Problem(
-                "forces along x must sum to 0 with periodic sides on a smooth floor, which hold nothing",
+                "is the sum of the forces along x, must be 0 with periodic sides on a smooth floor, which hold nothing",
                 key=("loads",),
                 value=sideways,
             )
@@ -130,8 +130,6 @@ class Scene(Description):
         named["packing"] = {**main, **named.get("packing", {})}
         named["contact"] = {"friction": self.contact.friction, **named.get("contact", {})}
         return f"Scene.from_dict({shortened({**named, 'loads': loads})})"
-
-    __str__ = __repr__
 
     def _repr_html_(self) -> str:
         """All keys, folded up, for a notebook."""
@@ -198,7 +196,8 @@ class Scene(Description):
             right wall touches the disk that reaches farthest.
         origin : x of the left wall and z of the floor.
         sides : "walls" or "periodic".
-        scene : all else, as a scene or nested mappings with its keys; that of ``Scene()`` if left out.
+        scene : all else, as a scene, whose packing is left out, or nested mappings with its other keys; that of
+            ``Scene()`` if left out.
 
         Raises SceneError where a number is not allowed, as ``packing.x[3] = -1.0``, or the columns differ in length.
 
@@ -213,6 +212,8 @@ class Scene(Description):
         columns |= {"radius": listed(radius, count), "mass": None if mass is None else listed(mass, count)}
         if not isinstance(scene, (Scene, Mapping, type(None))):
             raise SceneError(f"scene = {show(scene)}: must be a scene, or a mapping with its keys")
+        if isinstance(scene, Mapping) and "packing" in scene:
+            raise SceneError("scene.packing: must be left out, the packing is that of the arrays")
         rest = scene.to_dict() if isinstance(scene, Scene) else scene or {}
         packing = {"kind": "arrays", **columns, "width": width, "origin": origin, "sides": sides}
         return cls.from_dict({**rest, "packing": packing})
@@ -292,6 +293,8 @@ class Scene(Description):
         >>> gr.Scene().updated({"packing.layers": 8, "wall": gr.Wall(friction=0.5)}).packing.layers
         8
         """
+        if not isinstance(changes, Mapping):
+            raise SceneError(f"changes = {show(changes)}: must be a mapping from keys to values")
         folders = [value.folder for value in changes.values() if isinstance(value, FilePacking)]
         return type(self).from_dict(self.merged(changes), folder=(folders or [self.folder])[0])
 

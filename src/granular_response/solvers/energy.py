@@ -92,12 +92,8 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
             raise EquilibriumError(f"no minimum of the energy within {OPTIONS.iterations} iterations")
         descent.go_on()
     state = descent.system.state(descent.trial, load_factor)
-    reached = Reached(
-        method="minimise",
-        certificate=certify(problem, state, modes=0),
-        newton_iterations=descent.iterations,
-        escapes=descent.escapes,
-    )
+    certificate = certify(problem, state, modes=0)
+    reached = Reached("minimise", certificate, newton_iterations=descent.iterations, escapes=descent.escapes)
     return replace(state, reached=reached)
 
 

@@ -75,7 +75,8 @@ class PathOptions:
     #: Points at one load after which no more are looked for there; 8 in turn were the most that led on.
     still: int = 30
     #: Load by which the next equilibrium is looked for, with limits of friction held fixed, where no statuses are found
-    #: for the rates. In lattices the path mostly goes on there, only with other statuses.
+    #: for the rates; doubled while the path does not go on after it, or it would take as many steps as a slab has loads
+    #: of this size. In lattices the path mostly goes on there, only with other statuses.
     beyond: float = 1e-4
     #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
     nearby: float = 1e-3
@@ -154,6 +155,7 @@ def follow(
     together : load (mean weights) within which events are taken together, with the return map of whole increments;
         by default none, but in large packings.
     lowest : height below which the first loaded disk must not sink.
+    record : what the path costs, and its events; by default goes on from what ``start`` has cost.
 
     Raises
     ------
@@ -164,7 +166,8 @@ def follow(
     PathError
         When the motion does not settle either: the packing collapses or cycles under this load.
     """
-    path = _Path(problem, together, lowest, PathRecord() if record is None else record, progress)
+    spent = Work(start.reached.increments or 0, start.reached.factorisations or 0)
+    path = _Path(problem, together, lowest, record or PathRecord(spent), progress)
     return list(accumulate(map(float, factors), path.to, initial=start))[1:]
 
 
@@ -189,7 +192,7 @@ class _Path:
             return replace(start, reached=replace(start.reached, events=()))
         self.begun, self.start = len(self.record.events), start
         self.target, self.direction = target, 1.0 if target >= start.load_factor else -1.0
-        self.jump = OPTIONS.jump / self.unit
+        self.jump, self.beyond = OPTIONS.jump / self.unit, OPTIONS.beyond / self.unit
         self.together = self.asked or None
         point = self._at(start)
         if self.asked is None and self.system.pattern.dissected:
@@ -211,10 +214,8 @@ class _Path:
                 error = float(off) / (self.unit * abs(target - start.load_factor))
         self.record.events[self.begun :] = state.reached.events
         work = self.record.work
-        reached = replace(
-            state.reached, increments=work.increments, factorisations=work.factorisations, events_within=once,
-            events_error=error,
-        )  # fmt: skip
+        reached = replace(state.reached, increments=work.increments, factorisations=work.factorisations)
+        reached = replace(reached, events_within=once, events_error=error)
         return replace(state, reached=reached)
 
     def _followed(self, point: Point, start: State, watched: bool = False) -> State:
@@ -418,7 +419,8 @@ class _Path:
                 left, length = part * abs(factor - point.factor), np.inf
                 continue
             self.record.work.increments += 1
-            self.jump = OPTIONS.jump / self.unit
+            if abs(factor - point.factor) * self.unit > self.rates.force:
+                self.jump, self.beyond = OPTIONS.jump / self.unit, OPTIONS.beyond / self.unit
             due = then.due(self.rates.force)
             if not again:  # what the rates of the start say of contacts that bear nothing is the turn on the way
                 due = due[(changes.rate[due] > 0.0) | (due == contact)]
@@ -540,7 +542,7 @@ class _Path:
         Motion alone would shake contacts off their limit where slow loading passes: in a slab of 32 disks at friction 1
         it leaves twice the distance from slow dynamics.
         """
-        new = self._towards(point.factor, OPTIONS.beyond / self.unit)
+        new = self._towards(point.factor, self.beyond)
         found = self._increased(point, new)
         if found is not None:
             n = self.problem.n
@@ -550,6 +552,7 @@ class _Path:
                 position = self.system.reference + before
                 self.record.events.append(lost("stepped over", point.factor, new, position, moved, reason))
                 self._record(point, found.sense, until=new)
+                self.beyond *= 2.0
                 return Point(new, found, found.sense, found.sense)
         return self._by_motion(point, "jump", reason, None)
 
@@ -609,13 +612,8 @@ class _Path:
         trial, state = self._uncertified(point)
         modes = diverging(Spectrum(self.system, trial))
         self._count()
-        work = self.record.work
-        reached = Reached(
-            method="path",
-            certificate=certify(self.problem, state, modes=modes),
-            increments=work.increments,
-            factorisations=work.factorisations,
-        )
+        work, certificate = self.record.work, certify(self.problem, state, modes=modes)
+        reached = Reached("path", certificate, increments=work.increments, factorisations=work.factorisations)
         return replace(state, reached=reached)
 
     def _record(self, point: Point, after: np.ndarray, until: float | None = None) -> None:

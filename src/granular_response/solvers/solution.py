@@ -91,7 +91,14 @@ class Solution:
         part, rounded = self.rounding, ""
         if part > ROUNDED:
             rounded = f"up to {part:.1g} of the response to the smallest load may be rounding; take larger loads"
-        return [line for line in (*idle_settings(self.problem), self.unsettled or rounded) if line]
+        plan, states = self.problem.plan, (self.rest, *self.loaded)
+        out, uncertified = max(state.certificate.unbalanced_part for state in states), ""
+        if self.scene.protocol.static_finish and not plan.static and not all(s.certificate.balanced for s in states):
+            uncertified = (
+                f"not certified: up to {out:.1g} of what a disk bears is out of balance ({plan.rest.reason}); "
+                "take a smaller protocol.stop_kinetic_energy"
+            )
+        return [line for line in (*idle_settings(self.problem), self.unsettled or uncertified or rounded) if line]
 
     @property
     def unsettled(self) -> str:
@@ -197,7 +204,7 @@ def continue_solution(
     if not solution.loaded:
         raise SceneError("loads: none in this scene, so there is nothing to change")
     factors = load_programme(load_factors)
-    scene = solution.scene.updated({"protocol.load_factors": [*solution.load_factors, *factors]})
+    scene = solution.scene.updated({"protocol.load_factors": [*solution.scene.protocol.load_factors, *factors]})
     problem = replace(solution.problem, scene=scene)
     _check_loads(problem, factors)
     _, states = loaded_states(problem, solution.rest, factors, before=solution.loaded, progress=progress)

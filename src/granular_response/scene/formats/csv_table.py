@@ -18,7 +18,11 @@ from .table import NO_BOX, FormatError, Mark, Table, lines_of, numbers
 COLUMNS = ("x", "z", "radius")
 MATERIAL = ("mass", "density")
 #: Columns that look as if they were heeded, and cannot be: contacts have one law.
-REFUSED = {"stiffness": "contact.normal_stiffness", "friction": "contact.friction"}
+REFUSED = {
+    **dict.fromkeys(("friction", "mu", "µ", "μ", "friction_coefficient"), "contact.friction"),
+    **dict.fromkeys(("stiffness", "kn", "k_n", "young", "youngs_modulus", "young_modulus"), "contact.normal_stiffness"),
+    "cohesion": "contact.law",
+}
 #: Other words for mass and density.
 _OTHER_WORDS = {"m": "mass", "rmass": "mass", "weight": "mass", "rho": "density", "ρ": "density"}
 
