@@ -454,8 +454,8 @@ def solve(
         For one that has no such states, with one line that says what to change.
 
     Warns (UserWarning) of states that are still moving where no static finish is asked for, of states that are not in
-    balance as statics does not have their law, of a load so small that rounding is seen in its response, and of settings
-    for another method, which have no effect.
+    balance as statics does not have their law, of a load so small that rounding is seen in its response, and of
+    settings for another method, which have no effect.
 
     Examples
     --------
