@@ -404,5 +404,24 @@ def test_a_sweep_has_the_attributes_that_all_results_share():
     assert list(found.attrs) == ["shared"]
 
 
+def test_the_place_of_a_load_is_an_axis_with_the_name_of_its_key():
+    base = SCENE.updated({"loads.0.disk": {"x": 0.0}})
+    found = gr.sweep(base, {"loads.0.disk.x": [-2.0, 2.0]}, workers=1, progress=False)
+    assert found["loads_0_disk_x"].values.tolist() == [-2.0, 2.0] and "x" in found.coords
+
+
+def test_packings_of_ones_own_are_told_apart():
+    places = {"z": [1.0, 1.0, 1.0, 2.75, 2.75], "radius": [1.0] * 5}
+    near, far = (gr.Arrays(x=[1.0, x, 5.0, 2.0, 4.0], **places) for x in (3.0, 3.1))
+    assert gr.sweep(gr.Scene(), {"packing": [near, far]}, workers=1, progress=False).sizes["packing"] == 2
+    with pytest.raises(ValueError, match=r"packing has .* twice"):
+        gr.sweep(gr.Scene(), {"packing": [near, near.model_copy()]}, workers=1)
+
+
+def test_load_factors_are_an_axis_or_the_same_for_all():
+    with pytest.raises(ValueError, match="load_factors: is an axis too, must be one of the two"):
+        gr.sweep(SCENE, {"protocol.load_factors": [[0.5], [1.0]]}, load_factors=[0.2], workers=1)
+
+
 def test_a_sweep_without_axes_is_one_result():
     assert gr.sweep(SCENE, {}, lambda result: 1, workers=1, progress=False)["measure"].item() == 1

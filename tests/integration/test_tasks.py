@@ -226,9 +226,9 @@ def test_a_script_without_its_guard_is_told_what_is_missing(tmp_path):
     assert "SweepError: worker processes end before they begin: a script has its calls under" in run.stderr
 
 
-@pytest.mark.parametrize("workers", [0, -1])
+@pytest.mark.parametrize("workers", [0, -1, 1.5, "2"])
 def test_the_number_of_workers_is_checked(workers):
-    with pytest.raises(SweepError, match=f"workers = {workers}: must be 1 or more"):
+    with pytest.raises(SweepError, match=f"workers = {workers!r}: must be a whole number, 1 or more"):
         map_tasks(slow_first, [1], workers=workers)
 
 

@@ -127,3 +127,7 @@ def test_functions_of_a_script_count_by_its_file_and_those_of_a_notebook_not_at_
     (tmp_path / "script.py").write_text(lines.replace("return x", "return 2 * x"))
     assert first == again != run(tmp_path / "script.py").stdout
     assert "Indistinct: function measure stands in no module that can be imported" in run("-c", lines).stderr
+
+
+def test_fields_of_an_array_are_told_apart():
+    assert key(np.zeros(1, [("a", "f8")])) != key(np.zeros(1, [("b", "f8")]))

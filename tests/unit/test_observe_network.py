@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from observe_states import contacts, opened, pair_index, slab, state, with_pairs
@@ -101,8 +103,9 @@ def chain_with_loose_ends():
     """A triangle 0, 1, 2, a tail 2-3-4, and disk 5 alone on the floor; the pair 3-4 is closed, 1-5 open."""
     position = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 2.7], [4.0, 2.7], [6.0, 2.7], [9.0, 1.0]])
     status = np.array([STICKING] * 5 + [OPEN])
-    pairs = contacts([(0, 1), (1, 2), (0, 2), (2, 3), (3, 4), (1, 5)], status=status)
-    walls = contacts([(0, FLOOR), (1, FLOOR), (5, FLOOR), (4, FLOOR)], status=np.array([STICKING] * 3 + [OPEN]))
+    at_walls = np.array([STICKING] * 3 + [OPEN])
+    links, floor = [(0, 1), (1, 2), (0, 2), (2, 3), (3, 4), (1, 5)], [(0, FLOOR), (1, FLOOR), (5, FLOOR), (4, FLOOR)]
+    pairs, walls = (contacts(of, 1.0 * (on != OPEN), status=on) for of, on in ((links, status), (floor, at_walls)))
     return state(position, pairs, walls)
 
 
@@ -111,6 +114,15 @@ def test_rattlers_are_removed_one_after_the_other():
     assert np.flatnonzero(rattlers(s)).tolist() == [3, 4, 5]
     assert np.flatnonzero(rattlers(s, 1)).tolist() == []
     assert np.flatnonzero(rattlers(s, 3)).tolist() == [0, 1, 2, 3, 4, 5]
+
+
+def test_a_disk_that_touches_another_by_rounding_is_a_rattler_still():
+    s = chain_with_loose_ends()
+    status, force = np.full(6, STICKING), np.append(np.ones(5), 1e-13)
+    touching = replace(s, pairs=replace(s.pairs, status=status, normal_force=force))
+    assert np.flatnonzero(rattlers(touching)).tolist() == [3, 4, 5]
+    bearing = replace(s, pairs=replace(s.pairs, status=status, normal_force=np.ones(6)))
+    assert np.flatnonzero(rattlers(bearing)).tolist() == [3, 4]
 
 
 def test_coordination_number_by_definition():

@@ -239,3 +239,13 @@ def test_what_is_done_to_what_a_result_gives_does_not_change_it(result):
     for given in (result.floor_response, result.contacts["contact_force"], result.to_dataset()["position"]):
         given.values[...] = 0.0
     assert result.to_dataset().identical(before)
+
+
+def test_two_loads_on_one_disk_have_its_place_as_origin():
+    disk, slab = gr.Row(row="top", offset=2), gr.Slab(layers=3, disks_per_row=9)
+    parts = [gr.Load(disk=disk, force=(0, -1)), gr.Load(disk=disk, force=(0.2, 0))]
+    two, one = (
+        gr.solve(gr.Scene(packing=slab, loads=loads), progress=False)
+        for loads in (parts, [gr.Load(disk=disk, force=(0.2, -1))])
+    )
+    np.testing.assert_array_equal(two.floor_response["x"], one.floor_response["x"])

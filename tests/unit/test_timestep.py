@@ -104,6 +104,21 @@ def test_one_small_disk_shortens_the_step():
     assert stability_limit(slab) == stability_limit(Problem.from_scene(scene()))
 
 
+def test_a_light_disk_on_a_stiff_floor_shortens_the_step():
+    """Its own mass on the springs of the wall: with its neighbours' alone it never came to rest."""
+    own = {"kind": "arrays", "x": [1.0, 3.0, 5.0], "z": [1.0] * 3, "radius": [1.0] * 3, "mass": [1.0, 0.05, 1.0]}
+    described = {"packing": {**own, "width": 6.5}, "contact": {"friction": 0.0, "normal_stiffness": 300.0}, "loads": []}
+    soft, stiff = (Scene.from_dict({**described, "wall": {"normal_stiffness": k}}) for k in (600.0, 6e4))
+    assert stability_limit(Problem.from_scene(stiff)) < 0.5 * stability_limit(Problem.from_scene(soft))
+    assert solve_scene(stiff).rest.certificate.stable
+
+
+def test_small_disks_may_touch_in_packings_of_ones_own():
+    own = {"kind": "arrays", "x": [1.0, 2.5, 3.0], "z": [1.0, 0.25, 0.25], "radius": [1.0, 0.25, 0.25]}
+    problem = Problem.from_scene(Scene.from_dict({"packing": own, "contact": {"normal_stiffness": 600.0}, "loads": []}))
+    assert resolve_time_step(problem) == pytest.approx(0.6 * stability_limit(problem, smallest=True))
+
+
 def test_load_factors_count_in_the_largest_force():
     """With the 3/2 law contacts are as stiff as the largest load makes them."""
     hertz = {"contact__law": "hertz", "contact__normal_stiffness": 3e4, "contact__friction": 0.0}

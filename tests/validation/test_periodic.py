@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from granular_response.observe.floor import floor_disks, floor_force
+import granular_response as gr
+from granular_response.observe.floor import floor_disks, floor_force, smoothed_response
 from granular_response.observe.profile import force_profile
 from granular_response.observe.stress import (
     coarse_grained_stress,
@@ -162,3 +163,25 @@ def test_what_is_measured_of_contacts_does_not_depend_on_where_the_side_is():
     for other in found[1:]:
         for one, value in zip(found[0], other, strict=True):
             np.testing.assert_allclose(value, one, atol=1e-4)
+
+
+def test_the_response_at_a_place_counts_images():
+    """The nearest floor disk and the Gaussian go across the sides: a period further on is the same place."""
+    result = gr.solve(slab("top-centre"), progress=False)
+    period, x = result.rest.box.width, result.floor_response["x"].values
+    assert result.response_at(period).identical(result.response_at(0.0))
+    copies = np.add.outer(period * np.arange(-3, 4), x).ravel()
+    expected = smoothed_response([0.5 * period], copies, np.tile(result.floor_response.values, 7), 2.0)[:, 0]
+    assert result.response_at(0.5 * period, smooth=2.0).values == pytest.approx(expected, rel=1e-12)
+    assert result.response_at(-0.5 * period, smooth=2.0).values == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_disk_beyond_a_side_covers_the_one_below_it():
+    covered = {"x": [0.9, 38.9, 39.9], "z": [1.0, 1.0, 2.731], "radius": 1.0, "width": 40.0}
+    rest = {
+        "contact": {"friction": 0.8},
+        "wall": {"friction": 0.8},
+        "loads": [{"disk": "top-centre", "force": [0, -1]}],
+    }
+    scene = gr.Scene.from_arrays(**covered, sides="periodic", scene=rest)
+    assert gr.solve(scene, progress=False).to_dataset()["loaded_disk"].values.tolist() == [2]

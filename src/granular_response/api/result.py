@@ -156,8 +156,10 @@ class Result:
         (place,) = _places("x", [x])
         data = self._data
         if smooth is None:
-            return data["floor_response"].isel(floor_disk=int(np.abs(data["x"].values - place).argmin())).copy()
-        smoothed = smoothed_response([place], data["x"].values, data["floor_response"].values, smooth)[:, 0]
+            away = self.rest.box.separation(np.c_[data["x"], np.zeros_like(data["x"])], np.array([place, 0.0]))[:, 0]
+            return data["floor_response"].isel(floor_disk=int(np.abs(away).argmin())).copy()
+        at, response, period = data["x"].values, data["floor_response"].values, self.rest.box.period
+        smoothed = smoothed_response([place], at, response, smooth, period)[:, 0]
         labels = {"long_name": "smoothed floor response", "units": f"1 / {LENGTH}"}
         along = {name: data[name] for name in ("load", "load_factor", "step", "branch")}
         return xr.DataArray(smoothed, {**along, "x": place}, ("load",), "smoothed_response", labels)

@@ -16,8 +16,10 @@ import xarray as xr
 
 from ..errors import SolveError
 from ..scene import Scene
+from ..scene.base import Description
 from ..scene.errors import show
 from ..solvers.solution import Solution, checked_problem, load_programme, solve_scene
+from ..store.result import COORDINATES
 from ..sweeps.errors import SweepError
 from ..sweeps.memory import Memory
 from ..sweeps.resources import current, using
@@ -99,7 +101,9 @@ def sweep(
     values = _values(axes)
     programme = {} if load_factors is None else {"protocol.load_factors": load_programme(load_factors)}
     points = (dict(zip(values, point, strict=True)) for point in itertools.product(*values.values()))
-    scenes = [base.updated(point).updated(programme) for point in points]
+    if programme.keys() & values.keys():
+        raise ValueError("load_factors: is an axis too, must be one of the two")
+    scenes = [base.updated({**point, **programme}) for point in points]
     for each in scenes:
         checked_problem(each)
     folder = checkpoint or current().checkpoint
@@ -136,6 +140,8 @@ def _values(axes: Any) -> dict[str, list[Any]]:
 def _comparable(value: Any) -> Any:
     """What is equal, and has the same hash, for equal values: numbers as numbers, but truth values apart from them."""
     value = _plain(value)
+    if isinstance(value, Description):
+        return "description", type(value).__name__, _comparable(value.model_dump(mode="json"))
     if isinstance(value, bool):
         return "truth", value
     if isinstance(value, (numbers.Real, str)) or value is None:
@@ -319,10 +325,11 @@ def _same(measured: np.ndarray) -> bool:
 
 
 def _names(values: Iterable[str]) -> dict[str, str]:
-    """The dimension of each key."""
+    """The dimension of each key: its last part, or all of it where a coordinate of a result or another key has that."""
     keys = list(values)
     last = [key.rpartition(".")[2] for key in keys]
-    return {key: end if last.count(end) == 1 else key.replace(".", "_") for key, end in zip(keys, last, strict=True)}
+    taken = COORDINATES | {end for end in last if last.count(end) > 1}
+    return {key: key.replace(".", "_") if end in taken else end for key, end in zip(keys, last, strict=True)}
 
 
 def _coordinate(values: Sequence[Any]) -> np.ndarray:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..machine.lanes import magnitude, root
+from .rolling import arms
 
 
 class Hertz(NamedTuple):
@@ -52,8 +53,7 @@ class Hertz(NamedTuple):
 
     def shapes(self, first, second):
         # 1 between the bodies for which the stiffness is given
-        reduced = first if second is None else first * second / (first + second)
-        return np.sqrt(reduced / self.reduced_radius)
+        return np.sqrt(arms(first, second) / self.reduced_radius)
 
     def stiffest(self, force: float) -> float:
         return self.normal_stiffness * max(force, 0.0) ** (1.0 / 3.0)

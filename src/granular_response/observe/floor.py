@@ -5,6 +5,7 @@ Forces are in mean disk weights, lengths in mean radii.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,6 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..state import FLOOR, Box, FloatArray, State
 from .positive import check_positive
+
+#: Widths of the Gaussian beyond which images across periodic sides are left out.
+CUTOFF = 7.0
 
 
 def floor_disks(states: Sequence[State], bottom_row: ArrayLike = ()) -> NDArray[np.intp]:
@@ -50,18 +54,26 @@ def floor_response(rest: State, loaded: State, disks: NDArray[np.intp], total_fo
     return (floor_force(loaded, disks) - floor_force(rest, disks)) / total_force
 
 
-def smoothed_response(x_eval: ArrayLike, x_disk: ArrayLike, response: ArrayLike, width: float) -> FloatArray:
+def smoothed_response(
+    x_eval: ArrayLike, x_disk: ArrayLike, response: ArrayLike, width: float, period: float | None = None
+) -> FloatArray:
     """Gaussian coarse graining of a floor response along x (Sec. VI).
 
     The kernel is ``exp(-(x/width)^2) / (width sqrt(pi))``, so the result is the vertical stress on the
     floor per applied force, in 1/mean radius; its integral over x is the sum of the response. ``x_disk`` is
     (k,), ``response`` (..., k), ``x_eval`` (e,); returns (..., e). Within about ``width`` of a side wall part
-    of the kernel lies outside the box. Raises ``ValueError`` unless ``width`` is positive.
+    of the kernel lies outside the box. With a ``period`` of x all images of the disks count. Raises ``ValueError``
+    unless ``width`` is positive.
     """
     check_positive(width=width)
-    distance = (np.asarray(x_eval, dtype=float)[:, None] - np.asarray(x_disk, dtype=float)) / width
+    x, at, given = (np.asarray(values, dtype=float) for values in (x_eval, x_disk, response))
+    if period is not None:
+        x, at = np.mod(x, period), np.mod(at, period)
+        copies = np.arange(-(reach := math.ceil(CUTOFF * width / period)), reach + 1)
+        at, given = np.add.outer(copies * period, at).ravel(), np.tile(given, len(copies))
+    distance = (x[:, None] - at) / width
     kernel = np.exp(-(distance**2)) / (width * np.sqrt(np.pi))
-    return np.asarray(response, dtype=float) @ kernel.T
+    return given @ kernel.T
 
 
 def interior_mask(x: ArrayLike, width: float, margin: float = 10.0, *, left_wall: float = 0.0) -> NDArray[np.bool_]:

@@ -16,6 +16,9 @@ from ..state import Contacts, FloatArray, State
 from .difference import pair_numbers, require_same
 from .floor import interior_mask
 
+#: Normal force (mean disk weights) up to which a contact bears nothing: equilibria balance to 1e-10, and a disk that
+#: lies loose may touch another one by that.
+ROUNDING = 1e-8
 #: Directions of the triangular lattice, as returned by :func:`lattice_direction`.
 HORIZONTAL, RISING, FALLING = 0, 1, 2
 
@@ -90,16 +93,16 @@ def bulk_disks(state: State, width: float, side_margin: float = 10.0, vertical_m
 
 
 def rattlers(state: State, minimum_contacts: int = 2) -> BoolArray:
-    """(n,) disks with fewer than ``minimum_contacts`` contacts, walls included, removed again and again.
+    """(n,) disks with fewer than ``minimum_contacts`` contacts of more than ``ROUNDING``, removed again and again.
 
-    A disk whose partners are rattlers loses those contacts too. Under gravity two contacts hold a disk
+    Walls count. A disk whose partners are rattlers loses those contacts too. Under gravity two contacts hold a disk
     (Sec. III.C asks for at least two), so what is left out by default are disks that lie loose.
     """
-    pairs = state.pairs
+    pairs, at_wall = state.pairs, state.walls.normal_force > ROUNDING
     loose = np.zeros(len(state.position), dtype=bool)
     while True:
-        live = pairs.touching & ~loose[pairs.first] & ~loose[pairs.second]
-        found = (state.contact_count(live) < minimum_contacts) & ~loose
+        live = (pairs.normal_force > ROUNDING) & ~loose[pairs.first] & ~loose[pairs.second]
+        found = (state.contact_count(live, walls=at_wall) < minimum_contacts) & ~loose
         if not found.any():
             return loose
         loose |= found

@@ -37,8 +37,6 @@ from .difference import pair_force_difference, wall_force_difference
 from .floor import smoothed_response
 from .positive import check_positive
 
-#: Widths of the Gaussian beyond which images of a force on a line are left out.
-LINE_CUTOFF = 7.0
 #: Evaluations of a contact at a point that are held in memory at once.
 _CHUNK = 2_000_000
 
@@ -170,13 +168,7 @@ def line_stress(contacts: ContactForces, height: float, x: FloatArray, width: fl
     The forces that cross the line (:func:`line_forces`) under the Gaussian ``exp(-(x/width)^2) / (width sqrt(pi))``:
     the stress above, averaged over no height. Raises ``ValueError`` unless ``width`` is positive.
     """
-    at, force = line_forces(contacts, height)
-    if contacts.period is not None:
-        x, at = np.mod(x, contacts.period), np.mod(at, contacts.period)
-        copies = np.arange(-(reach := math.ceil(LINE_CUTOFF * width / contacts.period)), reach + 1)
-        at = np.add.outer(copies * contacts.period, at).ravel()
-        force = np.tile(force, len(copies))
-    return smoothed_response(x, at, force, width)
+    return smoothed_response(x, *line_forces(contacts, height), width, contacts.period)
 
 
 def grid_points(x: FloatArray, z: FloatArray) -> FloatArray:

@@ -10,8 +10,9 @@ from typing import Any, Final, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from .base import UNITS
+from .base import UNITS, unit_of
 from .errors import SceneError, describe, suggestion
+from .material import KNOWN_LAWS
 
 Value = TypeVar("Value", float, NDArray[np.float64])
 
@@ -149,13 +150,14 @@ class LaboratoryUnits:
 
         def reduced(value: Any, quantity: str = "", keys: Mapping[str, str] = _KEYS) -> Any:
             if isinstance(value, Mapping):
-                return {key: reduced(part, keys.get(key, ""), _quantities(key, part)) for key, part in value.items()}
+                own = {key: _quantities(key, part, value) for key, part in value.items()}
+                return {key: reduced(part, keys.get(key, ""), own[key]) for key, part in value.items()}
             if isinstance(value, (list, tuple)):
                 return [reduced(part, quantity) for part in value]
             number = quantity and isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
             return self.to_reduced(quantity, float(value)) if number else value
 
-        return {key: reduced(part, keys=_quantities(key, part)) for key, part in scene.items()}
+        return {key: reduced(part, keys=_quantities(key, part, scene)) for key, part in scene.items()}
 
     def define(self, registry: Any) -> None:
         """Define the units that results name in a registry of pint: mean_radius, mean_mass, reduced_time, mean_weight.
@@ -172,10 +174,18 @@ class LaboratoryUnits:
             registry.define(f"{name} = {self.unit(quantity)!r} {unit}")
 
 
-def _quantities(key: str, part: Any) -> Mapping[str, str]:
-    """What the keys of a part of a scene are; the box of poured disks has no unit of its own, as that of a file has."""
+def _quantities(key: str, part: Any, whole: Mapping[str, Any]) -> Mapping[str, str]:
+    """What the keys of a part of a scene are, by the unit that a law says of its parameters.
+
+    The box of poured disks has no unit of its own, as that of a file has.
+    """
+    if key == "disk":
+        return _PLACE
+    if key == "parameters" and (law := KNOWN_LAWS.get(str(whole.get("law")))):
+        units = {name: unit_of(name, info) for name, info in law.parameters.model_fields.items()}
+        return {name: _QUANTITIES[unit] for name, unit in units.items() if unit in _QUANTITIES}
     poured = isinstance(part, Mapping) and part.get("kind") == "poured"
-    return _PLACE if key == "disk" else {**_KEYS, "width": "length"} if poured else _KEYS
+    return {**_KEYS, "width": "length"} if poured else _KEYS
 
 
 def _listed(value):

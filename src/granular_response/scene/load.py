@@ -139,14 +139,13 @@ def resolve_disk(
     the message calls the selector.
     """
     if selector == TOP_CENTRE:
-        return _nearest_on_top(packing.radius, packing.middle, np.asarray(position))
+        return _nearest_on_top(packing, packing.middle, np.asarray(position))
     if isinstance(selector, TopSelector):
         half = 0.5 * packing.width
         if not abs(selector.x) <= half:
             rule = f"must be from {-half:g} to {half:g}, the packing is {packing.width:g} wide"
             raise SceneError(f"{key}.x = {show(selector.x)}: {rule}")
-        place = np.array([packing.middle + selector.x, 0.0])
-        return _nearest_on_top(packing.radius, 0.0, packing.box.separation(position, place))
+        return _nearest_on_top(packing, packing.middle + selector.x, np.asarray(position))
     try:
         return check_disk(selector, packing.n, packing.row_count)
     except Problem as problem:
@@ -182,9 +181,9 @@ def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.
     return int(row_count[:row].sum()) + middle + selector.offset
 
 
-def _nearest_on_top(radius: NDArray[np.float64], place: float, position: NDArray[np.float64]) -> int:
-    x, z = position[:, 0], position[:, 1]
-    away, largest = np.abs(x - place), float(radius.max())
+def _nearest_on_top(packing: Packing, place: float, position: NDArray[np.float64]) -> int:
+    radius, box, z = packing.radius, packing.box, position[:, 1]
+    away, largest = np.abs(box.separation(position, np.array([place, 0.0]))[:, 0]), float(radius.max())
     reach = 4.0 * largest
     found: list[int] = []
     while not found:
@@ -193,7 +192,7 @@ def _nearest_on_top(radius: NDArray[np.float64], place: float, position: NDArray
         for i in band[np.argsort(away[band], kind="stable")]:
             if found and away[i] > away[found[0]] + 1e-6:
                 break
-            dx, dz = np.abs(x[around] - x[i]), z[around] - z[i]
+            dx, dz = np.abs(box.separation(position[around], position[i])[:, 0]), z[around] - z[i]
             if not np.any((dx < radius[around] + radius[i]) & (dz > 0.0) & (dz > COVERING_SLOPE * dx)):
                 found.append(int(i))
         reach *= 2.0

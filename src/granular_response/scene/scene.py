@@ -153,8 +153,8 @@ class Scene(Description):
 
     @property
     def small_disks_gather(self) -> bool:
-        """Whether the smallest disks of the packing may touch each other, as where disks are poured."""
-        return isinstance(self.packing, PouredPacking)
+        """Whether the smallest disks of the packing may touch each other: poured ones, and those of own packings."""
+        return not isinstance(self.packing, LatticePacking)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], *, folder: str | PathLike[str] | None = None) -> Scene:

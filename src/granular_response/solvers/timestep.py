@@ -13,7 +13,8 @@ moment of inertia 1/2 (radius 1), so that a tangential spring of stiffness k_T t
 * *a disk on the floor* with four neighbours, *a disk in a corner* with two: the wall's springs couple translation and
   rotation, ``slip = u_x - sqrt(2) w`` for the floor and ``u_z - sqrt(2) w`` for a side wall, ``w`` scaled with the
   square root of the moment of inertia;
-* *the smallest disk* alone among heavier ones of radius 1, as many as fit around it.
+* *the smallest disk* alone among heavier ones of radius 1, as many as fit around it; half of these where it lies on the
+  floor, a quarter in a corner.
 
 Rolling resistance turns two equal disks with a quarter of its stiffness where they spin the opposite ways, tangential
 springs where they spin the same way; so the larger of ``k_T`` and ``k_R / 4`` counts at each contact between disks, and
@@ -132,11 +133,6 @@ def _at_wall(pair: Constants, wall: Constants, neighbours: float, walls: int) ->
     return motions
 
 
-def _around(outer: float, inner: float) -> float:
-    """How many disks of radius ``outer`` fit around one of radius ``inner``; not a whole number."""
-    return float(np.pi / np.arcsin(outer / (outer + inner)))
-
-
 def stiffest_motions(problem: Problem, *, smallest: bool = False) -> list[Motion]:
     """Motions among which the one that limits the time step is; see the module.
 
@@ -155,7 +151,10 @@ def stiffest_motions(problem: Problem, *, smallest: bool = False) -> list[Motion
     mass = float(problem.packing.mass.min())
     if smallest:
         return [(direct / mass, spring / mass, damping / mass) for direct, spring, damping in motions]
-    half = 0.5 * _around(1.0, small) / mass
+    around = float(np.pi / np.arcsin(1.0 / (1.0 + small)))  # how many disks of radius 1 fit, not a whole number
+    at_wall = _at_wall(pair, wall, 0.25 * around, 1) + _at_wall(pair, wall, 0.125 * around, 2)
+    motions += [(direct / mass, spring / mass, damping / mass) for direct, spring, damping in at_wall]
+    half = 0.5 * around / mass
     motions += [(half * kn, half * kt, half * (nun + nut)), (0.0, 4 * half * kt, 4 * half * nut)]
     if kr:  # the arm of its rolling is small / (1 + small)
         part = 4 * half / (1.0 + small) ** 2
@@ -177,9 +176,9 @@ def stability_limit(problem: Problem, integrator: str | None = None, *, smallest
 def _chosen(problem: Problem) -> tuple[float, str]:
     """The time step of a scene's dynamics, and where it comes from.
 
-    The paper's counts as stable among poured disks, of which small ones gather, where it is so if all were the
-    smallest: three small disks that touch in a poured packing of two sizes bear 0.92 of the estimate, and above it
-    never rest.
+    Among poured disks and in own packings, where small ones may gather, the paper's counts as stable where it is so if
+    all were the smallest: three small disks that touch in a poured packing of two sizes bear 0.92 of the estimate, and
+    above it never rest.
     """
     step = problem.scene.protocol.time_step
     if not (step is None or step == "auto"):

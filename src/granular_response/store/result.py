@@ -278,7 +278,8 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     states = common_candidates(own, packing.radius)
     rest, loaded = states[0], states[1:]
     disks = floor_disks(states, np.flatnonzero(packing.row == 0))
-    origin = float(rest.position[problem.load_disk[0], 0]) if len(problem.load_disk) == 1 else 0.5 * packing.width
+    alone = len(set(problem.load_disk.tolist())) == 1
+    origin = float(rest.position[problem.load_disk[0], 0]) if alone else 0.5 * packing.width
     x = packing.box.separation(rest.position[disks], np.array([origin, 0.0]))[:, 0]
     by = np.argsort(x, kind="stable")
     disks, x = disks[by], x[by]

@@ -128,7 +128,7 @@ VARIABLES: dict[str, Stored] = {
     "loaded_disk": Stored("load_point", "disks that carry the loads", kinds=WHOLE),
     "applied_load": Stored("load_point component", f"force x, z {WEIGHTS} and torque at load factor 1", ""),
     "floor_disk": Stored("floor_disk", "index of the floor disk", kinds=WHOLE),
-    "x": Stored("floor_disk", f"rest position from the loaded disk {RADII}", LENGTH),
+    "x": Stored("floor_disk", f"rest position from the loaded disk, or the middle if several are {RADII}", LENGTH),
     "floor_force_rest": Stored("floor_disk", f"vertical floor force at rest {WEIGHTS}", FORCE),
     "contact_disk": Stored("contact", _FIRST, kinds=WHOLE),
     "contact_partner": Stored("contact", "other disk", kinds=WHOLE),

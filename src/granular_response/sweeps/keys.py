@@ -90,7 +90,7 @@ def _parts(value: Any, by_name: Collection[str]) -> list[Any]:
     if isinstance(value, (bytes, bytearray)):
         return [_sha256(value)]
     if isinstance(value, (np.ndarray, np.generic)) and not value.dtype.hasobject:
-        return [value.dtype.str, value.shape, _sha256(value.tobytes())]
+        return [repr(value.dtype.descr), value.shape, _sha256(value.tobytes())]
     if isinstance(value, (Path, range)):
         return [str(value)]
     if isinstance(value, Enum):

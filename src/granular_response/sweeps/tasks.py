@@ -17,7 +17,7 @@ import os
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, SupportsIndex, TypeVar
 
 from ..machine import threads
 from .cluster import over_dask
@@ -81,8 +81,8 @@ def map_tasks(
     """
     given = current()
     workers, progress = given.workers if workers is None else workers, progress or given.progress
-    if workers is not None and workers < 1:
-        raise SweepError(f"workers = {workers}: must be 1 or more")
+    if workers is not None and not (isinstance(workers, SupportsIndex) and workers.__index__() >= 1):
+        raise SweepError(f"workers = {workers!r}: must be a whole number, 1 or more")
     items = list(items)
     scheduler = scheduler or given.scheduler or os.environ.get(SCHEDULER_VARIABLE) or None
     folder = checkpoint or given.checkpoint
