@@ -44,7 +44,7 @@ def force(data: xr.Dataset, place: tuple[int, ...]) -> str:
     value, kind = float(data["force"].values[place]), int(data["kind"].values[place])
     text = {FOUND: "", BELOW: "below ", ABOVE: "above "}[kind] + f"{value:.3g}"
     low, high = (float(data["interval"].values[place][end]) for end in ENDS)
-    if kind != FOUND or low == high:
+    if low == high:
         return text
     return f"{text} ({number(low)} to {number(high)})"
 

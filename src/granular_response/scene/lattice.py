@@ -26,6 +26,11 @@ LatticeConstant = Annotated[
 LEAST_PERIOD = 5
 
 
+def touching_largest(polydispersity: float) -> float:
+    """Lattice constant at which two of the largest disks just touch: twice their radius, with a mean radius of 1."""
+    return 2.0 / (1.0 - 0.5 * polydispersity)
+
+
 class LatticePacking(PackingDescription):
     """What slab and pile share: a triangular lattice, and radii drawn from one interval."""
 
@@ -64,7 +69,7 @@ class LatticePacking(PackingDescription):
     def spacing(self) -> float:
         """The lattice constant as a number, in mean radii."""
         if isinstance(self.lattice_constant, str):
-            return 2.0 / (1.0 - 0.5 * self.polydispersity)
+            return touching_largest(self.polydispersity)
         return self.lattice_constant
 
     @model_validator(mode="after")

@@ -56,6 +56,8 @@ def _visible_from(data: Data, friction: float, words: Bounds) -> Quantity:
     return asked.dips_from(_curve(data, friction, "central_dip"), "force", words)
 
 
+#: Frictions of the paper (Fig. 6, Sec. V.B).
+OWN_FRICTIONS = (0.0, 0.2, 1.0)
 #: Ends of the linear range that other preparations have too, by event.
 _EVENTS = {"response 1 % off": "linear_range", "first opening": "first_opening"}
 
@@ -92,7 +94,7 @@ def linear_range(data: Data, words: Bounds) -> Finding:
             for mu, end in zip((0.2, 1.0), ends, strict=True)
         ]
 
-    found = _ranges(data, [0.0, 0.2, 1.0])
+    found = _ranges(data, list(OWN_FRICTIONS))
     ratios = {
         name: " and ".join(f"{ends[mu].per(ends[0.0]).value:.3g}" for mu in (0.2, 1.0)) for name, ends in found.items()
     }
@@ -370,10 +372,12 @@ def range_grows(data: Data, words: Bounds) -> Finding:
     frictions = np.unique(data.get(GROUP, "response")["friction"].values).tolist()
     found = _ranges(data, frictions)
     texts = {name: ", ".join(f"{end.value:.3g}" for end in ends.values()) for name, ends in found.items()}
+    own = {name: asked.rises("range", [ends[mu] for mu in OWN_FRICTIONS]) for name, ends in found.items()}
     return Finding(
         f"at friction {', '.join(f'{mu:g}' for mu in frictions)}: "
         + "; ".join(f"{name} at {ends} mg" for name, ends in texts.items()),
-        _by_end(data, found, lambda *ends: [asked.rises("range", ends)]),
+        _by_end(data, found, lambda *ends: [asked.rises("range", ends)])
+        + [Reading(f"{name}, the paper's three frictions", rises) for name, rises in own.items()],
     )
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from granular_response.scene.lattice import touching_largest
 from granular_response.state import FloatArray
 
 from ...claims import asked
@@ -80,7 +81,7 @@ def title(start: str, polydispersity: float = 0.01) -> str:
     """An initial lattice in words."""
     if start == STARTS[0]:
         return "start with the largest disks touching"
-    wider = float(start) > 2.0 / (1.0 - 0.5 * polydispersity)
+    wider = float(start) > touching_largest(polydispersity)
     return f"start with lattice constant {start}{', ' + WIDER if wider else ''}"
 
 
@@ -193,36 +194,23 @@ def _by_case(study: xr.Dataset) -> dict[tuple[float, float], Crossover]:
     return {key: Crossover.of(_case(study, *key)) for key in keys}
 
 
-@dataclass(frozen=True)
-class Crossovers:
-    """Those of the usual start, of the mean and of the median realization, by polydispersity and friction."""
+def _crossovers(data: Data, width: float, words: Bounds) -> dict[str, dict[tuple[float, float], Crossover]]:
+    """Those of the usual start, by statistic, which where packings collapse is a matter of interpretation; each by
+    polydispersity and friction."""
+    study = at(data.get(GROUP, "medians"), width=width)
+    return {"mean of the realizations": _by_case(_defined(data, width, words)), "median realization": _by_case(study)}
 
-    means: dict[tuple[float, float], Crossover]
-    medians: dict[tuple[float, float], Crossover]
-    collapsed: dict[tuple[float, float], bool]
 
-    @classmethod
-    def of(cls, data: Data, width: float, words: Bounds) -> Crossovers:
-        """With packings that collapse for some of the keys."""
-        study = at(data.get(GROUP, "medians"), width=width)
-        means, medians = _by_case(_defined(data, width, words)), _by_case(study)
-        return cls(means, medians, {key: bool(_case(study, *key)["collapsed"]) for key in medians})
-
-    def lines(self, what: str, means: bool = False) -> list[tuple[str, list[Crossover]]]:
-        """Crossovers of disorder along friction or polydispersity, by the value of the other.
-
-        Bounds alone are left out. They are all medians of realizations if packings of one of them collapse, unless
-        ``means`` are wanted.
-        """
-        along, across = (1, 0) if what == "friction" else (0, 1)
-        lines = []
-        for other in sorted({key[across] for key in self.means if key[0] > 0.0}):
-            keys = sorted((key for key in self.means if key[0] > 0.0 and key[across] == other), key=lambda k: k[along])
-            found = self.means if means or not any(self.collapsed[key] for key in keys) else self.medians
-            line = [found[key] for key in keys]
-            if any(after.comparable(before) for before, after in pairwise(line)):
-                lines.append((f"{'polydispersity' if along else 'friction'} {other:g}", line))
-        return lines
+def _lines(found: dict[tuple[float, float], Crossover], what: str) -> list[tuple[str, list[Crossover]]]:
+    """Crossovers of disorder along friction or polydispersity, by the value of the other; bounds alone are left out."""
+    along, across = (1, 0) if what == "friction" else (0, 1)
+    lines = []
+    for other in sorted({key[across] for key in found if key[0] > 0.0}):
+        keys = sorted((key for key in found if key[0] > 0.0 and key[across] == other), key=lambda k: k[along])
+        line = [found[key] for key in keys]
+        if any(after.comparable(before) for before, after in pairwise(line)):
+            lines.append((f"{'polydispersity' if along else 'friction'} {other:g}", line))
+    return lines
 
 
 def trend(line: Sequence[Crossover]) -> Quantity:
@@ -246,30 +234,25 @@ def _trend(line: Sequence[Crossover]) -> Quantity:
 
 
 def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
-    """The trend of the crossover force along one axis, and steps against it, for every value of the other; both
-    widths."""
+    """The trend of the crossover force along one axis, and steps against it, for every value of the other; of both
+    statistics at both widths."""
     rows, turned = [], slice(None, None, -1 if rising == "falls" else 1)
-    found = {width: Crossovers.of(data, width, words) for width in WIDTHS}
     for width, change in WIDTHS.items():
-        conditions, trends = [], []
-        for name, line in found[width].lines(what):
-            steps = [after.per(before) for before, after in pairwise(line[turned]) if after.comparable(before)]
-            trends.append(_trend(line[turned]))
-            back = Quantity.exact(sum(step.high < 1.0 for step in steps))
-            conditions += [
-                Condition(f"{name}, trend (Kendall's tau)", trends[-1], least=0.0, strict=True, words=("visible",)),
-                Condition(f"{name}, steps against it, clear of their intervals", back, most=0.0, words=("visible",)),
-            ]
-        rows.append(
-            (f"trend {', '.join(q.text() for q in trends)}", Reading(f"w = {width:g}", *conditions, change=change))
-        )
-    means = ", ".join(f"{_trend(line[turned]).text()} ({name})" for name, line in found[6.0].lines(what, means=True))
-    return asked.told(
-        f"crossover force {rising} with {what}: ",
-        rows,
-        f"Where packings collapse, medians of realizations are compared; of means alone (w = 6): trend {means}",
-        between=", ",
-    )
+        for statistic, found in _crossovers(data, width, words).items():
+            conditions, trends = [], []
+            for name, line in _lines(found, what):
+                steps = [after.per(before) for before, after in pairwise(line[turned]) if after.comparable(before)]
+                trends.append(_trend(line[turned]))
+                back = Quantity.exact(sum(step.high < 1.0 for step in steps))
+                conditions += [
+                    Condition(f"{name}, trend (Kendall's tau)", trends[-1], least=0.0, strict=True, words=("visible",)),
+                    Condition(
+                        f"{name}, steps against it, clear of their intervals", back, most=0.0, words=("visible",)
+                    ),
+                ]
+            reading = Reading(f"{statistic}, w = {width:g}", *conditions, change=change)
+            rows.append((f"trend {', '.join(q.text() for q in trends)}", reading))
+    return asked.told(f"crossover force {rising} with {what}: ", rows, between=", ")
 
 
 CLAIMS.measures("D3a")(partial(_orders, what="friction", rising="rises"))
@@ -313,17 +296,16 @@ def five_enough(data: Data, words: Bounds) -> Finding:
 def below_lattice(data: Data, words: Bounds) -> Finding:
     rows = []
     for width, change in WIDTHS.items():
-        crossovers = Crossovers.of(data, width, words)
-        conditions = []
-        for key in sorted(crossovers.means):
-            found = crossovers.medians if crossovers.collapsed[key] else crossovers.means
-            lattice = found.get((0.0, key[1]))
-            if key[0] > 0.0 and lattice is not None and found[key].comparable(lattice):
-                name = f"per lattice at polydispersity {key[0]:g}, friction {key[1]:g}"
-                conditions.append(Condition(name, found[key].per(lattice), most=1.0, words=("visible",)))
-        clear = sum(condition.found.high <= 1.0 for condition in conditions)
-        reading = Reading(f"w = {width:g}", *conditions, change=change)
-        rows.append((f"{clear} of {len(conditions)} clear", reading))
+        for statistic, found in _crossovers(data, width, words).items():
+            conditions = []
+            for key in sorted(found):
+                lattice = found.get((0.0, key[1]))
+                if key[0] > 0.0 and lattice is not None and found[key].comparable(lattice):
+                    name = f"per lattice at polydispersity {key[0]:g}, friction {key[1]:g}"
+                    conditions.append(Condition(name, found[key].per(lattice), most=1.0, words=("visible",)))
+            clear = sum(condition.found.high <= 1.0 for condition in conditions)
+            reading = Reading(f"{statistic}, w = {width:g}", *conditions, change=change)
+            rows.append((f"{clear} of {len(conditions)} clear", reading))
     return asked.told("crossover force below that of the lattice: ", rows, between=", ")
 
 

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from granular_response.plot import style
+from granular_response.scene.lattice import touching_largest
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, of_group
 from granular_response_paper.panels import different, family, label_ends, outer, packing, titles
@@ -268,7 +269,7 @@ def _starts(starts: xr.Dataset) -> Figure:
     figure, panels = style.figure(2, len(deltas), width="double", height=4.0, sharex="col")
     names: list[str] = []
     for column, delta in enumerate(deltas):
-        touching = 2.0 / (1.0 - 0.5 * delta)
+        touching = touching_largest(delta)
         dips, contacts = panels[:, column]
         for friction, look in family(frictions, of="friction"):
             here = (starts["polydispersity"].values == delta) & (starts["friction"].values == friction)

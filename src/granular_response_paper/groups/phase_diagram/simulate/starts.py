@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from granular_response.scene.lattice import touching_largest
 from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response_paper.ensembles.averages import at_rest
@@ -42,7 +43,7 @@ def starts_of(source: xr.Dataset, packings: xr.Dataset, asked: Parameters) -> li
         alike = np.isclose(source["polydispersity"].values, one.polydispersity)[:, None]
         for case, step in np.argwhere(alike & np.isclose(source["force"].values, one.force)).tolist():
             usual = constant[case] == constant[0]
-            distance = 2.0 / (1.0 - 0.5 * one.polydispersity) if usual else float(constant[case])
+            distance = touching_largest(one.polydispersity) if usual else float(constant[case])
             packing = packings.isel(case=case, realization=slice(0, int(packings["realizations"].values[case])))
             horizontal, oblique = (float(lattice[kind].values) - packing[kind].values for kind in CONTACTS)
             contacts, part = packing["coordination_number_with_walls"].values, horizontal / (horizontal + oblique)
