@@ -113,7 +113,8 @@ class Result:
         """What each load adds to the vertical force on each floor disk, per total magnitude of the applied forces.
 
         Dimensions ``load`` (with ``load_factor``, ``step`` and ``branch``) and ``floor_disk`` (with ``x``, its place
-        from the loaded disk in mean radii). NaN after unloading, where :attr:`floor_force_change` is defined.
+        from the loaded disk in mean radii). NaN where no force is applied, after unloading and under torques alone;
+        :attr:`floor_force_change` is defined there.
 
         Examples
         --------

@@ -1,7 +1,8 @@
 """GSD, the format of HOOMD, for OVITO: one frame for each state, contacts as bonds.
 
 Coordinates are (x, z, 0), measured from the lower left corner. The format puts the middle of its box at the origin, so
-the box is twice as wide and high as the packing and holds every disk in its upper right quarter; the log entries
+the box is twice as wide and high as the packing and holds disks between walls in its upper right quarter (those beside
+periodic sides may stand beyond them); the log entries
 ``origin``, ``box_width`` and ``periodic`` say so.
 """
 
