@@ -54,7 +54,8 @@ TEXTS = {
     ),
     "responses": (
         "Comparison with other codes: a response",
-        "Scenes and errors as above. The other codes ramp the load between two equilibria.",
+        "Scenes and errors as above; errors below 1e-7 are drawn there. The other codes ramp the load between two "
+        "equilibria.",
     ),
     "bounces": (
         "Single collisions with a frictional wall",

@@ -105,7 +105,9 @@ def test_a_result_is_animated(inputs, tmp_path):
     ):
         assert said in refused("plot", "result.nc", *arguments, folder=tmp_path)
     assert contents(tmp_path) == before
-    succeeded("plot", "result.nc", "--animate", "growing.gif", folder=tmp_path)
+    assert "one load makes no animation" in refused("plot", "result.nc", "--animate", "still.gif", folder=tmp_path)
+    succeeded("continue", "result.nc", "--to", "2", "-o", "further.nc", folder=tmp_path)
+    succeeded("plot", "further.nc", "--animate", "growing.gif", folder=tmp_path)
     assert (tmp_path / "growing.gif").read_bytes().startswith(b"GIF89a")
 
 

@@ -473,3 +473,36 @@ def test_progress_does_not_go_back():
     reported: list[float] = []
     follow(problem, rest, [1.0, 3.0], together=0.3, progress=reported.append)
     assert reported == sorted(set(reported)) and reported[-1] == 3.0
+
+
+def lost_on(scene: gr.Scene, programme) -> list[tuple[str, float]]:
+    """Kind and load factor of the equilibria that a path through the factors loses."""
+    problem, rest = at_rest(scene)
+    states = follow(problem, rest, programme)
+    return [(event.kind, event.load_factor) for state in states for event in state.reached.events if event.lost]
+
+
+@pytest.mark.parametrize("programme", [[1.0], [0.9, 1.0]])
+def test_an_event_beyond_a_limit_point_is_none(programme):
+    """The equilibrium of nine soft disks is lost where their load is largest, not at an event of the way back."""
+    x = [3.00434, 3.17038, 2.24407, 4.10762, 1.38986, 2.65412, 3.87251, 1.33676, 3.44901]
+    z = [0.70573, 2.29356, 3.99841, 3.34056, 0.88077, 5.78437, 4.78113, 2.50699, 7.28686]
+    radius = [0.70573, 0.79356, 0.99841, 0.59056, 0.88077, 0.78437, 0.78113, 0.50699, 0.78686]
+    contact = {"law": "hertz", "normal_stiffness": 56.215, "stiffness_ratio": 0.5, "friction": 0.0060915}
+    wall = {"friction": 0.00027692, "normal_stiffness": 46.157}
+    rest = {"contact": contact, "wall": wall, "loads": [{"disk": 2, "force": [0.067622, -0.32886]}]}
+    found = lost_on(gr.Scene.from_arrays(x, z, radius, width=5.7923, scene=rest), programme)
+    assert found == [("jump", pytest.approx(0.9006, abs=3e-4))]
+
+
+def test_an_event_that_newtons_method_lets_go_is_no_lost_equilibrium():
+    """Two rows that roll: the same is lost wherever the programme is cut."""
+    rolls = {"friction": 0.82203, "rolling_friction": 0.11134, "rolling_stiffness_ratio": 0.1}
+    contact = {"law": "hertz", "normal_stiffness": 222.906, "stiffness_ratio": 2.0, **rolls}
+    packing = {"kind": "slab", "layers": 2, "disks_per_row": 3, "polydispersity": 0.25, "seed": 930}
+    wall = {"friction": 0.49857, "normal_stiffness": 277.055}
+    loads = [{"disk": 0, "force": [0.37469, -0.98461]}]
+    scene = gr.Scene.from_dict({"packing": packing, "contact": contact, "wall": wall, "loads": loads})
+    whole, cut = (lost_on(scene, np.linspace(0.0, 1.0, parts + 1)[1:]) for parts in (1, 43))
+    assert whole == [("jump", pytest.approx(0.06209, abs=1e-4))]
+    assert cut == [(kind, pytest.approx(factor, abs=1e-5)) for kind, factor in whole]

@@ -102,8 +102,8 @@ class Result:
         ``result.events.of("opens")`` has one kind of them, ``result.events.lost`` the lost equilibria,
         ``result.events.to_dataframe()`` a table. Without a path, by dynamics or by minimisation, no contact events are
         known. Where events were taken together, as in packings of many thousand disks, ``reached.events_within`` of a
-        state is the load within which they were (mg), and ``reached.events_error`` what that leaves out
-        of a force of the floor or a wall since the state before, per load.
+        state is the load within which they were (mg), and ``reached.events_error`` an estimate, no
+        bound, of what that leaves out of a force of the floor or a wall since the state before, per load.
         """
         found = [(k, event) for k, state in enumerate(self._states) for event in state.reached.events]
         return Events((event for _, event in found), (k for k, _ in found))

@@ -226,7 +226,7 @@ def show(
     "plot slab.nc -o slab.pdf",
     "plot slab.nc -o chains.png --what forces --scale percentile",
     "plot slab.nc -o rest.png --what packing,forces --state 0",
-    "plot slab.nc --animate growing.gif",
+    "plot growing.nc --animate growing.gif",
 )
 def plot(
     result: StoredResult,

@@ -121,6 +121,8 @@ class Frames:
         if any(one.shape != forces[0].shape or not np.allclose(one, forces[0], rtol=1e-6) for one in forces):
             raise PictureError("results: must have the same forces, one for each frame")
         self.forces: FloatArray = forces[0]
+        if len(self.forces) < 2:
+            raise PictureError("results: one load makes no animation, must have two or more (load_factors)")
         self.half = half_width or max(max(one.origin, one.box.width - one.origin) for one in shown)
         self.responses = [np.atleast_2d(one.data["floor_response"].values) for one in shown]
         near = [np.abs(one.data["x"].values) <= self.half for one in shown]

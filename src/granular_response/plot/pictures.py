@@ -32,6 +32,10 @@ from .field import draw_field, root_norm
 Scale = Literal["linear", "sqrt", "percentile"]
 
 
+#: Most curves that a legend names: of more, some from the first to the last.
+MOST_NAMED = 8
+
+
 class PictureError(GranularError, ValueError):
     """A picture that cannot be drawn as asked. The message is one line."""
 
@@ -149,9 +153,10 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
         forces, colours = np.atleast_1d(shown.data["total_force"].values), style.ordered_colours(len(curves))
         branches = shown.data["branch"].values if "branch" in shown.data.variables else ["loading"] * len(curves)
         one_branch = all(branch == "loading" for branch in branches)
+        named = set(np.linspace(0, len(curves) - 1, min(len(curves), MOST_NAMED)).round().astype(int).tolist())
         for k, (curve, force, branch) in enumerate(zip(curves, forces, branches, strict=True)):
             if not np.isnan(curve).all():  # unloaded: floor draws what is left
-                label = f"{force:g}" if one_branch else f"{force:g} ({branch})"
+                label = (f"{force:g}" if one_branch else f"{force:g} ({branch})") if k in named else None
                 look = {**style.marked_line(k, colour=colours[k]), "markersize": 2.6, "label": label, **line}
                 axes.plot(shown.data["x"].values, curve, **look)
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)

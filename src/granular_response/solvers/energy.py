@@ -101,8 +101,7 @@ class _Descent:
     """A configuration on its way down, and how much its steps are damped."""
 
     def __init__(self, problem: Problem, start: State, load_factor: float) -> None:
-        self.problem = problem
-        self.stiffness = problem.stiffness
+        self.problem, self.stiffness = problem, problem.stiffness
         self.system = StaticSystem(problem, start)
         self.external = external_force(problem, load_factor)
         self.known = self.system.start(start)

@@ -25,8 +25,7 @@ def rest_start(problem: Problem) -> State:
     For slabs of more than ``MinimiseOptions.large`` equal disks that touch; else, or where the smaller slab has no rest
     state, the packing as built.
     """
-    bare = problem.bare_state()
-    packing = problem.packing
+    bare, packing = problem.bare_state(), problem.packing
     touching = packing.lattice_constant == 2.0 * packing.radius[0]
     half = problem.scene.packing.half()
     if half is None or not (packing.ordered and touching and problem.n > OPTIONS.large):

@@ -18,7 +18,7 @@ load, with the limits of friction held fixed (:func:`.increment.solve_increment`
 disks leads to it (:mod:`.settle`). All are events of the result.
 
 In packings too large for a banded factorisation events are taken together within an increment of the load; what that
-leaves out is measured by a path in increments of twice the length.
+leaves out is estimated by a path in increments of twice the length: no bound, since both may miss the same.
 """
 
 from __future__ import annotations
@@ -401,6 +401,9 @@ class _Path:
             # whether rates are found at the end too: those of the start may be off by what contacts have turned since
             again = self.varying or trial.contradiction > self.rates.force
             velocity = self._velocity(trial, rates.sense) if again else rates.velocity
+            if event is not None and float(velocity @ rates.velocity) < 0.0:
+                left, length = 0.5 * min(length, left), np.inf  # another branch, beyond a limit point of the load
+                continue
             then = self.rates.changes(trial, velocity, rates.sense)
             passed = np.flatnonzero((then.rate > 0.0) & (then.left < -self.rates.force))
             if len(passed):  # another contact came first
@@ -408,6 +411,8 @@ class _Path:
                 contact = int(passed[np.argmax(back)])
                 left = passed_at = abs(factor - point.factor)
                 what, length = int(then.what[contact]), max(left - float(back.max()), 0.0)
+                if event is not None and contact == event[0]:  # Newton's method has let it go
+                    left, length = 0.5 * left, np.inf
                 continue
             turn = self._turn(point, rates, then, abs(factor - point.factor)) if again else None
             if turn is not None:

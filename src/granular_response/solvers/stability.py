@@ -207,9 +207,8 @@ def _slides(trial: Trial) -> bool:
 
 def _too_light(system: StaticSystem, trial: Trial) -> bool:
     """Whether a disk bears so little that the turn of its contacts is lost in the rounding of their stiffness."""
-    borne = system.state(trial, 0.0).largest_normal_force()
-    stiffness = borne / system.problem.packing.radius
-    return bool((stiffness[borne > 0.0] < OPTIONS.rounding * system.problem.stiffness).any())
+    stiffness = system.state(trial, 0.0).largest_normal_force() / system.problem.packing.radius
+    return bool(((stiffness > 0.0) & (stiffness < OPTIONS.rounding * system.problem.stiffness)).any())
 
 
 def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArray]:

@@ -82,7 +82,6 @@ MOMENT = 0.5
 #: Stiffness that follows positions, stiffness of tangential springs, and damping rate, all over the mass.
 Motion = tuple[float, float, float]
 
-
 #: Normal stiffness, normal damping, tangential stiffness, tangential damping, rolling stiffness, rolling damping.
 Constants = tuple[float, float, float, float, float, float]
 

@@ -136,7 +136,7 @@ def _events(result: xr.Dataset) -> Iterator[RenderableType]:
         yield _text(f"first opening at load factor {opening.load_factor:.9g}, {opening.where}")
     if "reached_events_within" in result:
         within, error = (float(np.nanmax(result[f"reached_events_{name}"].values)) for name in ("within", "error"))
-        yield _text(f"events taken together within {within:.3g} mg, measured error {error:.1e} of the load")
+        yield _text(f"events taken together within {within:.3g} mg, estimated error {error:.1e} of the load")
     if lost := [event for _, event in found if event.lost]:
         yield Text("\nequilibria lost on the way", style="bold")
         titles = ("at load factor", "until", "what", "largest displacement", "of", "why")

@@ -73,6 +73,7 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
     def on_lines(column: int, kind: type = float) -> np.ndarray:
         return np.concatenate([np.zeros(n, kind), table[:, column].astype(kind)])
 
+    factor = np.atleast_1d(state["state_load_factor"].values)
     loaded = np.zeros(n, np.int32)
     loaded[state["loaded_disk"].values] = 1
     stress = coarse_grained_stress(load_forces(state_from(dataset, 0), state_from(dataset, index)), position)
@@ -104,7 +105,7 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
             '<?xml version="1.0"?>',
             '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
             "<UnstructuredGrid>",
-            *_section("FieldData", _events(dataset, index)),
+            *_section("FieldData", {"load_factor": factor, **_events(dataset, index)}),
             piece,
             *_section("Points", {"points": centres}),
             *_section("Cells", cells),
