@@ -81,7 +81,7 @@ class Reached:
     factorisations: int | None = None  #: of the path so far
     events: tuple[Event, ...] = ()  #: of the path since the state before
     events_within: float | None = None  #: load within which a path took events together (mean weights)
-    events_error: float | None = None  #: estimate, no bound: what that leaves out of a floor or wall force since then, per load
+    events_error: float | None = None  #: estimate of what that leaves out since then of a floor or wall force
 
     def after(self, earlier: Reached) -> Reached:
         """This record, and what only the one ``earlier`` knows."""
