@@ -69,7 +69,7 @@ figure: setup ## Draw one figure group: make figure GROUP=pile_dip
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/dvc" repro draw@$(GROUP)
 
-survey: setup ## Run the large ensembles of disordered slabs and larger packings, an hour and a half on one core (survey/dvc.yaml); goes on where it was
+survey: setup ## Run the large ensembles of disordered slabs and larger packings, an hour on two cores (survey/dvc.yaml); goes on where it was
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/dvc" repro survey/dvc.yaml
 	"$(BIN)/python" survey/document.py
