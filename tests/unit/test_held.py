@@ -312,7 +312,7 @@ def test_a_path_finds_contacts_that_the_list_of_the_fall_has_not(tmp_path):
     loads = [{"disk": 3, "displacement": [0.098, 0.065]}, {"disk": 4, "displacement": [-0.098, 0.065]}]
     result = of_table(
         tmp_path, disks, width=6.0, friction=0.5, loads=loads, preparation={"gravity": "slow"},
-        protocol={"method": "path", "maximum_steps": 300_000},
+        protocol={"method": "path", "maximum_steps": 600_000},
     )  # fmt: skip
     last = result.loaded[-1]
     reach = 2.0 * result.to_dataset()["radius"].values[3]
