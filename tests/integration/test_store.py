@@ -290,8 +290,9 @@ started = time.perf_counter()
 store.write(path, versions[1])
 duration = time.perf_counter() - started
 generator = random.Random(0)
-seen = interrupted = 0
-for kill in range(kills):
+seen = interrupted = done = 0
+while done < kills or (not interrupted and done < 10 * kills):  # on a busy machine few kills fall into a write
+    done += 1
     child = os.fork()
     if child == 0:
         while True:
@@ -304,7 +305,7 @@ for kill in range(kills):
     back = store.read(path)[""]
     seen += any(back.equals(version) for version in versions)
 store.write(path, versions[0])
-print(seen, interrupted, sorted(entry.name for entry in path.parent.iterdir()))
+print(seen == done, interrupted, sorted(entry.name for entry in path.parent.iterdir()))
 """
 
 
@@ -312,6 +313,6 @@ def test_killed_at_random_moments(path):
     command = [sys.executable, "-c", KILL_LOOP, Path(__file__).parent, path, str(KILLS)]
     output = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60 + KILLS).stdout
     seen, interrupted, names = output.split(maxsplit=2)
-    assert int(seen) == KILLS
+    assert seen == "True"
     assert int(interrupted) > 0, "no kill fell into a write: the test proves nothing"
     assert names.strip() == "['result.nc']"
