@@ -28,48 +28,42 @@ unexport PYTHONDONTWRITEBYTECODE
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce quote figure survey test fuzz broken scenes coverage lint docs notebooks archive restore package matrix
+.PHONY: help setup reproduce extensions figure survey test fuzz broken scenes coverage lint docs archive restore package matrix
 .PHONY: benchmark arena lock clean
 
 help: ## Show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2} /^##/ {print "\n" substr($$0, 4)}' $(MAKEFILE_LIST)
 
-setup: $(STAMP) ## Create .venv with the pinned versions, the library and the reproduction (PYTHON=python3.12 picks another one)
+## For readers of the paper
 
-$(STAMP): requirements.lock pyproject.toml src/granular_response_paper/pyproject.toml
+setup: $(STAMP) ## Create .venv with the pinned versions and the three packages (PYTHON=python3.12 picks another one)
+
+$(STAMP): requirements.lock pyproject.toml src/granular_response_paper/pyproject.toml extensions/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 	  || { echo "$(PYTHON) is older than Python 3.11: make setup PYTHON=python3.12" >&2; exit 1; }
 	@echo "Installing the pinned versions into .venv (some minutes the first time)"
 	@test -x "$(BIN)/python" || $(PYTHON) -m venv "$(VENV)"
 	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check -r requirements.lock
 	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check --no-deps --no-build-isolation \
-	  -e . -e src/granular_response_paper
+	  -e . -e src/granular_response_paper -e extensions
 	@touch "$@"
 
-# Quoting makes the report again, with benchmarks that are no dependency of its stage.
-reproduce: setup ## Run what is not up to date: simulations, figures, claims, report (REPRO=--force: all, whatever is)
+reproduce: setup ## Rebuild what is out of date of the paper: simulations, figures, claims, page (REPRO=--force: everything)
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
-	"$(BIN)/dvc" repro $(REPRO) < /dev/null
-	@$(MAKE) --no-print-directory quote
+	@"$(BIN)/granular-response-paper" reproduce $(REPRO)
 
-# Not in the pipeline: its stages write what they declare, and these files are otherwise written by hand. The page is made
-# again with them, so dvc.lock records it again: benchmarks, which it shows, are no dependency that DVC would look at.
-quote: setup ## Renew the lines that README and documents quote from stored results and code (tests compare them)
-	"$(BIN)/granular-response-paper" claims --list --readme README.md > /dev/null & claims=$$!; \
-	"$(BIN)/granular-response" keys --page docs/scene-reference.md & keys=$$!; \
-	"$(BIN)/granular-response-paper" report --notes docs/reproduction-notes.md --figures docs/figures.md \
-	  --beyond docs/beyond.md --data data/README.md && wait $$claims && wait $$keys
+extensions: setup ## The same for the questions beyond the paper, in the folder extensions/
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
-	@"$(BIN)/dvc" commit --quiet --force report < /dev/null
+	@"$(BIN)/granular-response-paper" reproduce --collection extensions $(REPRO)
 
-figure: setup ## Draw one figure group: make figure GROUP=pile_dip
-	@test -n "$(GROUP)" || { echo "make figure GROUP=name, one of (seconds on two cores):"; \
-	  "$(BIN)/granular-response-paper" groups; exit 1; } >&2
-	@"$(BIN)/granular-response-paper" groups | grep -q "^$(GROUP) " || { echo "no group $(GROUP): make figure lists them" >&2; exit 1; }
+figure: ## Draw one figure of the paper: make figure FIGURE=17, or one figure group: make figure GROUP=pile_dip
+	@.ci/figure "$(GROUP)" "$(FIGURE)" > /dev/null
+	@$(MAKE) --no-print-directory setup
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
-	"$(BIN)/dvc" repro draw@$(GROUP)
+	@group=$$(.ci/figure "$(GROUP)" "$(FIGURE)") && "$(BIN)/dvc" repro --quiet draw@$$group < /dev/null && .ci/figure --drawn $$group
 
-survey: setup ## Run the large ensembles of disordered slabs and larger packings, an hour on two cores (survey/dvc.yaml); goes on where it was
+## For own work on it
+survey: setup ## Run the large ensembles of disordered slabs and larger packings: 70 minutes on two cores; continues where it was
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/dvc" repro survey/dvc.yaml
 	"$(BIN)/python" survey/document.py
@@ -100,9 +94,6 @@ docs: setup ## Build the documentation site into docs/_build/html, running every
 	"$(BIN)/python" -m sphinx -W --keep-going -q -b html docs docs/_build/html
 	"$(BIN)/python" .ci/links docs/_build/html
 
-notebooks: setup ## Write a notebook for each figure group into notebooks/
-	"$(BIN)/granular-response-paper" notebooks
-
 archive: setup ## Write datasets, figures, claims and how each was made into one RO-Crate
 	"$(BIN)/granular-response-paper" archive
 
@@ -132,10 +123,10 @@ lock: ## Renew requirements.lock with the newest versions that pyproject.toml al
 	"$(VENV)-lock/bin/python" -m pip install -qq hatchling editables ".[dask,docs,export,pipeline,test]" \
 	  "./src/granular_response_paper[archive]"
 	{ sed -n '/^#/p' requirements.lock; \
-	  "$(VENV)-lock/bin/python" -m pip freeze --exclude granular-response --exclude granular-response-paper; } > requirements.lock.new
+	  "$(VENV)-lock/bin/python" -m pip freeze --exclude granular-response --exclude granular-response-paper --exclude granular-response-extensions; } > requirements.lock.new
 	mv requirements.lock.new requirements.lock
 	rm -rf "$(VENV)-lock"
 
 clean: ## Remove .venv, caches and datasets; the DVC cache and the figures stay
-	rm -rf .venv .venv-lock docs/_build docs/gallery .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc data/.rest_states data/.*.checkpoint notebooks/*.ipynb notebooks/*.nc
+	rm -rf .venv .venv-lock docs/_build docs/gallery .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc data/.rest_states data/.*.checkpoint extensions/data/*.nc extensions/data/.rest_states
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,6 +1,7 @@
 """Runs blocks of the survey: python run.py BLOCK [BLOCK ...], all of them if none is named.
 
-A block is one of ``params.yaml``, or a figure group with packings that ``../params.yaml`` leaves to the survey.
+A block is one of ``params.yaml``, or a figure group with packings that ``../extensions/params.yaml`` leaves to the
+survey.
 
 ``DASK_SCHEDULER_ADDRESS`` sends the tasks to a Dask cluster. What is finished is kept in ``.realizations.checkpoint``.
 """
@@ -26,21 +27,17 @@ def main() -> None:
     from granular_response.scene import SceneError
     from granular_response.store.files import StoreError
     from granular_response.sweeps.errors import SweepError
-    from granular_response_paper.pipeline import GroupError
-    from granular_response_paper.survey.simulate import (
-        GROUPS,
-        SurveyError,
-        ensemble,
-        packings_of,
-        read_parameters,
-        run,
-    )
+    from granular_response_extensions.surveyed import block as packings
+    from granular_response_extensions.surveyed import surveyed_groups
+    from granular_response_paper.registry import GroupError
+    from granular_response_paper.survey.simulate import SurveyError, ensemble, read_parameters, run
 
     own = HERE / "params.yaml"
     try:
-        for name in given.blocks or [*read_parameters(own).blocks, *GROUPS]:
-            if name in GROUPS:
-                block = packings_of(name, HERE.parent / "params.yaml")
+        groups = surveyed_groups()
+        for name in given.blocks or [*read_parameters(own).blocks, *groups]:
+            if name in groups:
+                block = packings(name, HERE.parent / "extensions" / "params.yaml")
             else:
                 block = ensemble(name, own, given.realizations)
             print(f"\n{run(block, HERE, workers=given.workers, progress=progress)}")

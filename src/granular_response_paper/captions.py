@@ -16,10 +16,11 @@ import re
 import string
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 from granular_response.scene import text as yaml
+
+from .registry import group_path
 
 if TYPE_CHECKING:
     from granular_response.scene import Scene
@@ -103,12 +104,17 @@ def of_group(group: str, parameters: Mapping[str, Mapping[str, Value]], **fields
 
     Raises KeyError for a picture without a template, or a field that is not given.
     """
-    templates = yaml.read(resources.files(f"{__package__}.groups.{group}").joinpath(TEMPLATES).read_text("utf-8"))
+    templates = yaml.read((group_path(group) / TEMPLATES).read_text("utf-8"))
 
     def filled(stem: str, name: str) -> str:
         return _Fields().vformat(templates[stem][name], (), fields)
 
     return {stem: Caption(filled(stem, "text"), filled(stem, "alternative"), of) for stem, of in parameters.items()}
+
+
+def question(group: str) -> str:
+    """The question that the figures of a group answer, as its ``captions.yaml`` says. Raises KeyError without one."""
+    return str(yaml.read((group_path(group) / TEMPLATES).read_text("utf-8"))["question"])
 
 
 def of_scene(scene: Scene, *, frictions: Value | None = None, **others: Value | None) -> dict[str, Value]:
@@ -182,8 +188,11 @@ def number(stem: str) -> int | None:
     return int(match[1]) if match and 1 <= int(match[1]) <= NUMBER_OF_FIGURES else None
 
 
-def document(captions: Mapping[str, Caption], panels: Mapping[str, Sequence[str]]) -> dict[str, dict[str, Any]]:
-    """What ``captions.json`` holds: by file stem the paper's figure, the letters drawn, the texts, the parameters.
+def document(
+    captions: Mapping[str, Caption], panels: Mapping[str, Sequence[str]], question: str = ""
+) -> dict[str, dict[str, Any]]:
+    """What ``captions.json`` holds: by file stem the paper's figure, the question that it answers, the letters drawn,
+    the texts, the parameters.
 
     ``panels`` are the letters of each picture. Raises ValueError for a picture without a caption.
     """
@@ -192,6 +201,7 @@ def document(captions: Mapping[str, Caption], panels: Mapping[str, Sequence[str]
     return {
         stem: {
             "figure": number(stem),
+            "question": question,
             "panels": list(panels[stem]),
             "caption": captions[stem].whole,
             "alternative": captions[stem].alternative,

@@ -10,7 +10,7 @@ import typer
 from granular_response import __version__
 from granular_response.cli.command_line import CommandLine, loaded, output_option
 
-from .groups import NAMES
+from .registry import PAPER, collection, collections
 
 commands = CommandLine(
     "granular-response-paper",
@@ -20,7 +20,19 @@ commands = CommandLine(
 )
 
 
-Group = Annotated[str, typer.Argument(help="Figure group.", autocompletion=lambda: list(NAMES))]
+def _every_group() -> list[str]:
+    return [name for one in collections() for name in one.groups]
+
+
+Group = Annotated[str, typer.Argument(help="Figure group.", autocompletion=_every_group)]
+CollectionName = Annotated[
+    str,
+    typer.Option(
+        "--collection",
+        help="The paper, or another collection of figure groups.",
+        autocompletion=lambda: [one.name for one in collections()],
+    ),
+]
 #: Folders and files that several commands take.
 LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
 GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
@@ -71,40 +83,18 @@ def simulate(
     typer.echo(str(path))
 
 
-@commands.command("draw pile_dip", "draw pile_dip --measure", "draw pile_dip --data other.nc -o other-figures")
+@commands.command("draw pile_dip", "draw pile_dip --data other.nc -o other-figures")
 def draw(
     group: Group,
     data: GroupData = None,
     output: Annotated[Path | None, output_option(help="Folder of the figures; figures/GROUP if not given.")] = None,
-    measured: Annotated[
-        bool, typer.Option("--measure", help="Write its numbers too, to figures/metrics/GROUP.json.")
-    ] = False,
 ) -> None:
     """Draw the figures of a group."""
-    from .pipeline import drawing, measuring
+    from .pipeline import drawing
 
     loaded()
-    numbers = [measuring.measure(group, data)] if measured else []  # first: they do not wait for pictures
-    for path in (*drawing.draw(group, data, output), *numbers):
+    for path in drawing.draw(group, data, output):
         typer.echo(str(path))
-
-
-@commands.command("measure pile_dip", "measure pile_dip --data other.nc -o other.json")
-def measure(
-    group: Group,
-    data: GroupData = None,
-    output: Annotated[
-        Path | None, output_option(help="Numbers (JSON); figures/metrics/GROUP.json if not given.")
-    ] = None,
-) -> None:
-    """Write the numbers of a group, as its own datasets have them, for comparing experiments.
-
-    The table of claims (granular-response-paper claims) needs the datasets of all groups.
-    """
-    from .pipeline import measuring
-
-    loaded()
-    typer.echo(str(measuring.measure(group, data, output)))
 
 
 @commands.command("claims", "claims --list", "claims --readme README.md")
@@ -131,19 +121,56 @@ def claims(
     typer.echo(f"{output}: {stored.quoted(found)}")
 
 
-@commands.command("groups")
-def groups(root: Annotated[Path, typer.Option(help="Folder with figures/ and benchmarks/.")] = Path(".")) -> None:
-    """List the figure groups: figures of the paper, and the seconds that simulation and drawing took on two cores."""
+@commands.command("groups", "groups --collection extensions")
+def groups(
+    name: CollectionName = PAPER.name,
+    root: Annotated[Path, typer.Option(help="Folder of the checkout.")] = Path("."),
+) -> None:
+    """List the figure groups of a collection: figures, stored seconds on two cores, the question that each answers."""
     from granular_response.inputs import read_json
 
-    runs = {run["group"]: run for run in read_json(root / "benchmarks" / "pipeline.json")["runs"]}
-    for name in NAMES:
-        file = root / "figures" / name / "captions.json"
-        captions = read_json(file) if file.exists() else {}  # a new group is not drawn yet
-        numbers = sorted({one["figure"] for one in captions.values() if one.get("figure")})
-        shown = f"Fig. {', '.join(map(str, numbers))}" if numbers else "beyond the paper"
-        seconds = sum(runs[name][f"{part}_seconds"] for part in ("simulate", "draw")) if name in runs else None
-        typer.echo(f"{name:28} {shown:26} {'-' if seconds is None else f'{seconds:.0f} s':>6}")
+    from . import captions
+    from .pipeline.reproduce import stored_times
+
+    one = collection(name)
+    times, _ = stored_times(one, root)
+    for group in one.groups:
+        file = root / one.folder / "figures" / group / captions.FILE
+        said = read_json(file) if file.exists() else {}  # a new group is not drawn yet
+        numbers = sorted({entry["figure"] for entry in said.values() if entry.get("figure")})
+        shown = f"Fig. {', '.join(map(str, numbers))}" if numbers else "-"
+        parts = [times.get(f"{part}@{group}") for part in ("simulate", "draw")]
+        seconds = f"{sum(filter(None, parts)):.0f} s" if None not in parts else "-"
+        typer.echo(f"{group:26} {shown:22} {seconds:>6}  {captions.question(group)}")
+
+
+@commands.command("stages", "stages --collection extensions")
+def stages(
+    name: CollectionName = PAPER.name,
+    root: Annotated[Path, typer.Option(help="Folder of the checkout.")] = Path("."),
+) -> None:
+    """Write the pipeline (dvc.yaml) of a collection from its figure groups and what their modules import."""
+    from .pipeline import stages as made
+
+    typer.echo(str(made.write(collection(name), root)))
+
+
+@commands.command("reproduce", "reproduce --collection extensions", "reproduce --force")
+def reproduce(
+    name: CollectionName = PAPER.name,
+    root: Annotated[Path, typer.Option(help="Folder of the checkout.")] = Path("."),
+    force: Annotated[bool, typer.Option("--force", help="Run every stage, up to date or not.")] = False,
+    keep_times: Annotated[
+        bool, typer.Option("--keep-times", help="Store the seconds of all stages in benchmarks/stages.json.")
+    ] = False,
+) -> None:
+    """Run every stage of a collection that is not up to date, and say how far it is."""
+    from .pipeline import reproduce as running
+
+    arguments = ["--force"] if force else []
+    status = running.reproduce(collection(name), root, arguments=arguments, keep_times=keep_times, say=typer.echo)
+    if status:
+        raise typer.Exit(status)
 
 
 @commands.command(
@@ -170,26 +197,6 @@ def report(
     typer.echo(str(reporting.write(output, root, keep=[*documents.values()])))
     for kind, file in documents.items():
         reporting.renew(kind, file, root)
-
-
-@commands.command("notebooks", "notebooks pile_dip -o elsewhere")
-def notebooks(
-    groups: Annotated[
-        list[str] | None,
-        typer.Argument(help="Figure groups; all of them if none is given.", autocompletion=lambda: list(NAMES)),
-    ] = None,
-    params: Annotated[Path, typer.Option(help="Parameters of the reproduction.")] = Path("params.yaml"),
-    reduced: Annotated[Path, typer.Option(help="Parameters that the notebooks begin with.")] = Path(
-        "notebooks/reduced.yaml"
-    ),
-    output: Annotated[Path, output_option(help="Folder of the notebooks.")] = Path("notebooks"),
-) -> None:
-    """Write a notebook for each figure group: its parameters, simulation, figures and captions."""
-    from . import notebooks as writing
-
-    loaded()
-    for path in writing.write(output, groups or NAMES, own=params, reduced=reduced):
-        typer.echo(str(path))
 
 
 @commands.command("archive", "archive -o slabs.zip")

@@ -29,10 +29,8 @@ COMMANDS = {
     "continue": (["continue", "result.nc", "--to", "2"], ["result.nc"]),
     "simulate": (["simulate", "theory", "--params", "params.yaml"], ["params.yaml"]),
     "draw": (["draw", "theory", "--data", "theory/fig01_predictions.png"], ["theory"]),
-    "measure": (["measure", "theory", "--data", "theory/fig01_predictions.png"], ["theory/fig01_predictions.png"]),
     "export": (["export", "result.nc"], ["result.nc"]),
     "plot": (["plot", "result.pdf"], ["result.pdf"]),
-    "notebooks": (["notebooks", "theory", "--reduced", "n/theory.ipynb"], ["n"]),
     "archive": (["archive"], ["params.yaml", "LICENSE"]),
     "claims": (["claims", "--data", "data", "--readme", "README.md"], ["data/torque.nc", "README.md"]),
     "report": (["report", "--root", ".", "--notes", "notes.md"], ["notes.md", "data/torque.nc", "figures/claims.json"]),
@@ -49,14 +47,13 @@ def inputs(tmp_path_factory) -> Path:
     (folder / "scene.yaml").write_text(SCENE)
     (folder / "table.yaml").write_text(TABLE)
     (folder / "disks.nc").write_text("x,z,radius\n2,1,1\n4,1,1\n")
-    for name in ("data", "figures", "theory", "n"):
+    for name in ("data", "figures", "theory"):
         (folder / name).mkdir()
     store.write(folder / "data" / "torque.nc", xr.Dataset())
     for path in ("figures/claims.json", "README.md", "notes.md"):
         (folder / path).write_text("{}")
     for name in set(crate.ALSO) - {"README.md"}:
         shutil.copy(ROOT / name, folder)
-    shutil.copy(ROOT / "notebooks" / "reduced.yaml", folder / "n" / "theory.ipynb")
     for name in ("dvc.yaml", "dvc.lock"):
         (folder / name).write_text("stages: {}\n")
     succeeded("run", "scene.yaml", "-o", "result.nc", folder=folder)
@@ -87,13 +84,6 @@ def test_no_command_writes_over_its_inputs(inputs, tmp_path, command):
             refused(*arguments, "-o", output, folder=tmp_path)
         other.unlink()
         assert contents(tmp_path) == before
-
-
-def test_drawing_can_measure_too(inputs, tmp_path):
-    data = ["--data", str(inputs / "theory" / "fig01_predictions.png")]
-    succeeded("draw", "theory", *data, "--measure", folder=tmp_path)
-    succeeded("measure", "theory", *data, "-o", "alone.json", folder=tmp_path)
-    assert (tmp_path / "figures/metrics/theory.json").read_bytes() == (tmp_path / "alone.json").read_bytes()
 
 
 def test_a_result_is_animated(inputs, tmp_path):

@@ -25,7 +25,8 @@ from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.result import to_dataset
 from granular_response_paper import cli as paper
-from granular_response_paper.pipeline import GroupError, simulation
+from granular_response_paper.pipeline import simulation
+from granular_response_paper.registry import GroupError
 
 KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "20"))
 SCENE = {

@@ -57,7 +57,7 @@ def test_profiles(datasets) -> None:
     assert np.all(profiles["axis_magnitude"][1] > 2.0 * profiles["axis_magnitude"][0])
 
 
-def test_figures(datasets, looks_as_stored) -> None:
+def test_figures(datasets) -> None:
     drawn = figures.draw(datasets)
     assert list(drawn) == ["fig13_force_chains", "fig14_vertical_stress", "fig15_force_profiles"]
     lines = drawn["fig15_force_profiles"].axes[1].lines
@@ -65,4 +65,3 @@ def test_figures(datasets, looks_as_stored) -> None:
     stored = datasets["profiles"]["magnitude"].values[1, 0]
     np.testing.assert_array_equal(np.sort(sides), np.sort(stored[np.isfinite(stored)]))
     assert abs(len(lines[0].get_ydata()) - len(lines[1].get_ydata())) <= 1  # of the two orientations in turn
-    looks_as_stored(drawn)

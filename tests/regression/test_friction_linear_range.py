@@ -87,7 +87,7 @@ def test_stored_states_show_the_contact_changes(datasets):
     assert near[0] == 0 < near[1] <= int(opened[7])
 
 
-def test_datasets_are_drawn(datasets, looks_as_stored):
+def test_datasets_are_drawn(datasets):
     drawn = figures.draw(datasets)
     assert set(drawn) == {
         "fig06_linear_range",
@@ -101,4 +101,3 @@ def test_datasets_are_drawn(datasets, looks_as_stored):
     marks = [line.get_xdata()[0] for line in curves if len(line.get_xdata()) == 2]  # what the paper says
     assert [len(line.get_xdata()) for line in curves[: len(curves) - len(marks)]] == [7, 8, 6]
     assert marks == list(figures.PAPER_OPENINGS.values())
-    looks_as_stored(drawn)

@@ -83,10 +83,9 @@ def test_soft_slabs_open_later(datasets) -> None:
     assert np.all(np.diff(stiffness["teardrop_depth"].sel(force=1.0).values) >= -0.01)
 
 
-def test_figures(datasets, looks_as_stored) -> None:
+def test_figures(datasets) -> None:
     drawn = figures.draw(datasets)
     assert list(drawn) == STEMS
-    looks_as_stored(drawn)
     profiles, _ = drawn["fig03_frictionless_response"].axes
     response = datasets["response"]
     inside = response["interior"].values > 0

@@ -4,7 +4,6 @@ import numpy as np
 import reduced
 from PIL import Image
 
-from granular_response_paper.groups.overview.numbers import numbers
 from granular_response_paper.pipeline import drawing
 
 
@@ -22,12 +21,6 @@ def test_packings_are_those_of_the_experiment(datasets):
     assert [float(one["polydispersity"]) for one in (lattice, disordered)] == [0.0, 0.01]
     assert all(float(one["friction"]) == 0.94 and one["total_force"].item() == 5.0 for one in (lattice, disordered))
     assert np.ptp(lattice["radius"].values) == 0.0 < np.ptp(disordered["radius"].values)
-
-
-def test_numbers_are_those_of_the_last_states(datasets):
-    found = numbers(datasets)
-    assert found["max. unbalanced force"] < 1e-8
-    assert found["opened contacts, slab 0"] > 0
 
 
 def test_the_animation_stands_beside_its_picture(tmp_path, tmp_path_factory):

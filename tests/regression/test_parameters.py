@@ -6,17 +6,16 @@ import pytest
 import reduced
 
 from granular_response.scene import SceneError
-from granular_response_paper.pipeline import group_member
+from granular_response_paper.registry import group_member
 
 BETWEEN = {"friction": 0.2, "floor": "smooth", "gravity": "at-once", "disks_per_layer": 6, "layers": [4]}
 SERIES = {"name": "one", "friction": 0.0, "layers": [5, 7]}
-WIDTH = {"polydispersity": 0.1, "friction": 0.2, "layers": [4], "realizations": 2}
 LOOP = {"polydispersity": 0.1, "friction": 0.2, "forces": [0.3, 1.0], "increments": 2}
 WAY = {"name": "x", "changes": {}}
 PICTURE = {"polydispersity": 0.3, "friction": 0.2, "force": 5.0, "realization": 0}
 TAPS = {"number": 1, "amplitudes": [0.5], "durations": [3.0]}
 
-#: For each group: changes to its section of the notebooks' parameters (None: left out), and what is said.
+#: For each group: changes to its reduced section (None: left out), and what is said.
 MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     "crossover_scaling": [
         ({"series": [SERIES | {"layers": [6, 8]}]}, r"layers = \[6, 8\]: must be odd"),
@@ -61,11 +60,6 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
             {"lattice": reduced.parameters("moduli")["lattice"] | {"responding": [7, 8]}},
             r"responding = \[7, 8\]: must be odd",
         ),
-    ],
-    "peak_width": [
-        ({"cases": [WIDTH]}, "must be at least 3"),
-        ({"cases": [WIDTH | {"polydispersity": 0.0, "layers": [6, 4], "realizations": 1}]}, "must be growing numbers"),
-        ({"spacing": 0.5}, "must be below a tenth of reach"),
     ],
     "pile_dip": [({"dip_height": -1.0}, r"dip_height = -1\.0: must be a number greater than 0")],
     "polydisperse_averages": [

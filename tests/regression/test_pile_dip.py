@@ -37,11 +37,10 @@ def test_every_pile_bears_its_weight(datasets) -> None:
     assert np.all((line > 0.6 * disks) & (line < disks))
 
 
-def test_figures(datasets, looks_as_stored) -> None:
+def test_figures(datasets) -> None:
     drawn = figures.draw(datasets)
     assert list(drawn) == ["fig17_pile", "fig17_pile_profiles"]
     letters = [axes.get_title(loc="left")[:3] for axes in drawn["fig17_pile"].axes[:6]]
     assert sorted(letters) == ["(a)", "(b)", "(c)", "(d)", "(e)", "(f)"]
     line = drawn["fig17_pile_profiles"].axes[0].lines[2]
     np.testing.assert_array_equal(line.get_ydata(), datasets["stress"]["profile_zz"].sel(case="frictional"))
-    looks_as_stored(drawn)

@@ -16,8 +16,9 @@ from granular_response.store import files as store
 from granular_response_paper import captions
 from granular_response_paper.captions import Caption, of_scene
 from granular_response_paper.groups import NAMES
-from granular_response_paper.pipeline import GroupError, drawing, group_member
+from granular_response_paper.pipeline import drawing
 from granular_response_paper.pipeline import stored as stored_data
+from granular_response_paper.registry import GroupError, group_member
 
 GROUPS = ROOT / "src" / "granular_response_paper" / "groups"
 STORED = {group: ROOT / "figures" / group / captions.FILE for group in NAMES}

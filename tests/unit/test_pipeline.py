@@ -1,218 +1,84 @@
-"""The declared dependencies of every stage against what its modules really import."""
+"""The pipelines of the collections: made from folders and imports, and what their stages read is what they name."""
 
-import functools
-import json
+import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import reduced
 import yaml
-from imported import imported
-from places import ROOT, SOURCE
+from places import ROOT
 
 from granular_response.scene import SceneError
 from granular_response.store import files as store
-from granular_response_paper import groups, pipeline
-from granular_response_paper.groups import NAMES
-from granular_response_paper.pipeline import drawing, measuring, simulation
+from granular_response_paper.pipeline import drawing, imports, reproduce, simulation, stages
+from granular_response_paper.registry import PAPER, Collection, GroupError, collection_of, collections
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C, where PyYAML has it: every process reads these files
-
-PIPELINE = yaml.load((ROOT / "dvc.yaml").read_text(), LOADER)["stages"]
-GROUPS = json.loads((SOURCE / "granular_response_paper/groups/groups.json").read_text())["groups"]
-PARAMETERS = yaml.load((ROOT / "params.yaml").read_text(), LOADER)
-
-SIMULATION = [
-    "granular_response_paper.pipeline.simulation",
-    *(f"granular_response_paper.groups.{{}}.{module}" for module in ("parameters", "simulate")),
-]
-
-#: Modules at which a stage starts; {} is its figure group.
-STARTS = {
-    "simulate": SIMULATION,
-    "draw": [
-        "granular_response_paper.pipeline.drawing",
-        "granular_response_paper.pipeline.measuring",
-        *(f"granular_response_paper.groups.{{}}.{module}" for module in ("parameters", "draw", "claims", "numbers")),
-    ],
-    "claims": [
-        "granular_response_paper.claims.table",
-        *(f"granular_response_paper.groups.{name}.claims" for name in GROUPS),
-    ],
-    "report": ["granular_response_paper.report"],
-}
-
-
-#: Modules that a group has if it has something for them.
-OPTIONAL = ("claims", "numbers")
-
-
-def starts(kind, group):
-    """Modules at which a single stage starts."""
-    modules = [start.format(group) for start in STARTS[kind]]
-    return [name for name in modules if file_of(name) or name.rpartition(".")[2] not in OPTIONAL]
-
-
-def groups_of(kind):
-    """The groups that have a stage of this kind; None for a stage of all of them."""
-    assert PIPELINE[kind].get("foreach", "${groups}") == "${groups}"
-    return GROUPS if "foreach" in PIPELINE[kind] else [None]
-
-
-def stages():
-    """Every single stage: its name as DVC has it, its kind, its group and its definition."""
-    for kind, definition in PIPELINE.items():
-        for group in groups_of(kind):
-            template = definition["do"] if group else definition
-            yield pytest.param(kind, group, fill(template, group), id=f"{kind}@{group}" if group else kind)
-
-
-def fill(value, group):
-    if isinstance(value, dict):
-        return {fill(key, group): fill(entry, group) for key, entry in value.items()}
-    if isinstance(value, list):
-        return [fill(entry, group) for entry in value]
-    if group is None or not isinstance(value, str):
-        return value
-    return value.replace("${item}", group)
-
-
-STAGES = list(stages())
-
-
-def file_of(module: str) -> Path | None:
-    base = SOURCE.joinpath(*module.split("."))
-    for path in (base / "__init__.py", base.with_suffix(".py")):
-        if path.is_file():
-            return path
-    return None
-
-
-@functools.cache
-def imports(module: str) -> frozenset[str]:
-    """Modules of ours that running ``module`` may import."""
-    found = imported(file_of(module), for_types=False)
-    return frozenset(name for name in found if name.startswith("granular_response") and file_of(name))
-
-
-def closure(starts: list[str]) -> set[str]:
-    """Everything that is imported in the end, with the packages on the way."""
-    todo, seen = list(starts), set()
-    while todo:
-        module = todo.pop()
-        if module not in seen:
-            seen.add(module)
-            todo += imports(module)
-            if "." in module:
-                todo.append(module.rpartition(".")[0])
-    return seen
-
-
-def imported_files(kind: str, group: str | None) -> set[str]:
-    modules = closure(starts(kind, group))
-    return {str(file_of(module).relative_to(ROOT)) for module in modules}
-
-
-def covers(dependency: str, file: str) -> bool:
-    return file == dependency or file.startswith(dependency + "/")
-
-
-def declared_code(definition) -> list[str]:
-    return [dependency for dependency in definition["deps"] if dependency.startswith("src/")]
+COLLECTIONS = collections()
+KINDS = ("simulate", "draw")
 
 
 def test_the_walk_finds_imports_through_packages():
-    modules = closure(["granular_response.cli.main"])
+    modules = imports.closure(["granular_response.cli.main"])
     assert {"granular_response", "granular_response.store.files", "granular_response.store.atomic"} <= modules
     assert "granular_response.scene.errors" in modules  # imported by its package, inside a command
-    assert "granular_response.plot.style" not in closure(["granular_response.kernels"])
+    assert "granular_response.plot.style" not in imports.closure(["granular_response.kernels"])
 
 
-@pytest.mark.parametrize(("kind", "group", "definition"), STAGES)
-def test_every_imported_module_is_a_dependency(kind, group, definition):
-    for start in starts(kind, group):
-        assert file_of(start), f"{start} does not exist"
-    missing = {
-        file
-        for file in imported_files(kind, group)
-        if not any(covers(dependency, file) for dependency in declared_code(definition))
-    }
-    assert not missing
+def test_the_paper_imports_nothing_of_the_extensions():
+    modules = [one for group in PAPER.groups for kind in KINDS for one in stages.starts(PAPER, kind, group)]
+    found = imports.closure([*modules, *stages.judging(PAPER), "granular_response_paper.cli"])
+    assert {name.partition(".")[0] for name in found} == {"granular_response", "granular_response_paper"}
 
 
-@pytest.mark.parametrize("kind", PIPELINE)
-def test_every_dependency_is_imported_by_some_group(kind):
-    """One list serves all groups of a kind, so a module may be needed by one of them only."""
-    groups = groups_of(kind)
-    files = set().union(*(imported_files(kind, group) for group in groups if group_exists(kind, group)))
-    template = PIPELINE[kind].get("do", PIPELINE[kind])
-    needless = [
-        dependency
-        for group in groups
-        if group_exists(kind, group)
-        for dependency in declared_code(fill(template, group))
-        if not any(covers(dependency, file) for file in files)
-    ]
-    assert not needless
+@pytest.mark.parametrize("collection", COLLECTIONS, ids=lambda one: one.name)
+def test_the_pipeline_in_git_is_the_one_that_is_made(collection):
+    path = ROOT / collection.folder / stages.FILE
+    assert path.read_text() == stages.document(collection, ROOT), "granular-response-paper stages"
 
 
-def group_exists(kind: str, group: str | None) -> bool:
-    return all(file_of(start) for start in starts(kind, group))
+@pytest.mark.parametrize("collection", COLLECTIONS, ids=lambda one: one.name)
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_imported_module_is_a_dependency_of_its_stage(collection, kind):
+    base = (ROOT / collection.folder).resolve()
+    definition = yaml.load((base / stages.FILE).read_text(), LOADER)["stages"][kind]
+    assert definition["foreach"] == list(collection.groups)
+    for group in collection.groups:
+        declared = [(base / one.replace("${item}", group)).resolve() for one in definition["do"]["deps"]]
+        for module in imports.closure(stages.starts(collection, kind, group)):
+            file = imports.file_of(module).resolve()
+            assert any(one == file or one in file.parents for one in declared), f"{group}: {module}"
+        code = [one for one in declared if one.suffix == ".py" or one.is_dir()]
+        assert all(one.exists() for one in code)
 
 
-@pytest.mark.parametrize(("kind", "group", "definition"), STAGES)
-def test_dependencies_and_parameters_exist(kind, group, definition):
-    for dependency in declared_code(definition):
-        assert (ROOT / dependency).exists(), dependency
-    for key in definition.get("params", []):
-        assert isinstance(PARAMETERS.get(key), dict), f"params.yaml has no section {key}"
+@pytest.mark.parametrize("collection", COLLECTIONS, ids=lambda one: one.name)
+def test_folders_parameters_and_lock_have_the_same_groups(collection):
+    base = ROOT / collection.folder
+    given = yaml.load((base / "params.yaml").read_text(), LOADER)
+    assert set(given) == {"common", *collection.groups}
+    for group in collection.groups:
+        found, described = simulation.parameters(group, base / "params.yaml")
+        assert set(given[group]) <= set(found) <= set(type(described).model_fields)
+    # DVC keeps what it once wrote of a stage that is gone, and reads it around every other stage.
+    locked = set(re.findall(r"^  ([\w@]+):$", (base / "dvc.lock").read_text(), re.M))
+    assert locked == set(reproduce.stage_names(collection))
 
 
-@pytest.mark.parametrize(("kind", "group", "definition"), STAGES)
-def test_stages_have_the_agreed_form(kind, group, definition):
-    if kind == "simulate":
-        assert definition["cmd"] == f"granular-response-paper simulate {group}"
-        assert definition["outs"] == [f"data/{group}.nc"]
-        assert definition["params"] == ["common", group]
-    elif kind == "draw":
-        assert definition["cmd"] == f"granular-response-paper draw {group} --measure"
-        assert definition["outs"] == [{f"figures/{group}": {"cache": False}}]
-        assert "params" not in definition
-        assert definition["metrics"] == [{f"figures/metrics/{group}.json": {"cache": False}}]
-        assert f"data/{group}.nc" in definition["deps"]
-    else:  # nothing is written that is not declared: no file named beside the outputs
-        assert definition["cmd"] == f"granular-response-paper {kind}"
+@pytest.mark.parametrize("group", reduced.GROUPS)
+def test_a_reduced_run_is_of_its_own_group(group):
+    assert set(yaml.load(reduced.path(group).read_text(), LOADER)) == {"common", group}
 
 
-def test_plots_are_the_pictures_of_all_groups():
-    """Each declared file is stored, each stored picture declared: ``dvc plots diff`` shows every group."""
-    pictures = [path.relative_to(ROOT).as_posix() for path in sorted(ROOT.glob("figures/*/*.png"))]
-    declared = yaml.load((ROOT / "dvc.yaml").read_text(), LOADER)["plots"]
-    assert declared == pictures
-    assert {path.split("/")[1] for path in declared} == set(NAMES)
-
-
-def test_what_is_derived_comes_after_the_data_that_it_reads():
-    for section in PARAMETERS.values():
-        for key in {"survey", "survey_file"} & set(section):
-            assert any(covers(dependency, section[key]) for dependency in PIPELINE["simulate"]["do"]["deps"])
-
-
-def test_the_list_of_groups_is_that_of_the_folders_and_of_the_stages():
-    folders = {path.parent.name for path in SOURCE.glob("granular_response_paper/groups/*/__init__.py")}
-    assert len(NAMES) == len(set(NAMES)) and set(NAMES) == folders == set(PARAMETERS) - {"common"}
-    assert list(NAMES) == GROUPS
-    assert all(groups_of(kind) == list(NAMES) for kind in ("simulate", "draw"))
-    assert [f"figures/{group}" for group in sorted(NAMES)] == [
-        dependency for dependency in PIPELINE["report"]["deps"] if re.fullmatch(r"figures/\w+", dependency)
-    ]
-
-
-@pytest.mark.parametrize("group", NAMES)
-def test_every_group_describes_its_section(group):
-    given, described = simulation.parameters(group, ROOT / "params.yaml")
-    assert set(PARAMETERS[group]) <= set(given) <= set(type(described).model_fields)
+def test_a_misspelt_group_names_the_right_one_and_where_it_lives(tmp_path):
+    with pytest.raises(GroupError, match=r"^hystresis: no such figure group, did you mean hysteresis \(the ext"):
+        collection_of("hystresis")
+    (tmp_path / "params.yaml").write_text("common: {method: auto}\n")
+    with pytest.raises(GroupError, match=r"is a figure group of the extensions, run it in the folder extensions"):
+        simulation.parameters("hysteresis", tmp_path / "params.yaml")
 
 
 def test_an_experiment_changes_exactly_the_value_that_it_names(tmp_path):
@@ -256,45 +122,70 @@ def test_a_mistake_is_one_line_with_its_key(tmp_path, change, said):
     assert str(caught.value).startswith(f"{path}: {said}") and "\n" not in str(caught.value)
 
 
-def test_the_lock_file_knows_the_stages_and_no_others():
-    # DVC keeps what it once wrote of a stage that is gone, and reads it around every other stage.
-    locked = set(re.findall(r"^  ([\w@]+):$", (ROOT / "dvc.lock").read_text(), re.M))
-    assert locked == {stage.id for stage in STAGES}
+class Clock:
+    """Seconds that a test sets."""
+
+    now = 0.0
+
+    def __call__(self):
+        return self.now
 
 
-def test_dvc_reads_the_pipeline():
-    repo = pytest.importorskip("dvc.repo")
-    names = {stage.addressing for stage in repo.Repo(ROOT).index.stages}
-    assert {f"{kind}@{group}" for kind in ("simulate", "draw") for group in NAMES} <= names
+def test_progress_says_what_is_done_and_scales_the_rest_by_this_machine():
+    clock = Clock()
+    names = ["simulate@a", "simulate@b", "draw@a", "draw@b"]
+    watch = reproduce.Watch(names, {"simulate@a": 10.0, "simulate@b": 30.0, "draw@a": 2.0, "draw@b": 4.0}, clock)
+    assert watch.read("Running stage 'simulate@a':\n") == ""
+    clock.now = 20.0  # twice as slow as stored
+    said = watch.read("Running stage 'simulate@b':\n")
+    assert " ".join(said.split()) == "1 of 4 simulate@a 20.0 s 0:20 gone, at most 0:12 to come"
+    assert watch.read("> granular-response-paper simulate b\n") == ""
+    clock.now = 80.0
+    assert "2 of 4  simulate@b" in watch.read("Stage 'draw@a' didn't change, skipping\n")
+    assert watch.taken == {"simulate@a": 20.0, "simulate@b": 60.0, "draw@a": 0.0}
+    assert watch.rest() == "1:20 gone, at most 0:08 to come"
+
+
+def small_collection(folder: Path, monkeypatch) -> Collection:
+    """A package with one figure group, installed from ``folder``."""
+    package = folder / "src" / "small_collection"
+    for file, content in recipe().items():
+        (package / "example" / file).parent.mkdir(parents=True, exist_ok=True)
+        (package / "example" / file).write_text(content)
+    (package / "__init__.py").touch()
+    monkeypatch.syspath_prepend(folder / "src")
+    return Collection("small", "small_collection", ".", "a small collection")
+
+
+def recipe() -> dict[str, str]:
+    """The files of a figure group as docs/extending.md writes them."""
+    page = (ROOT / "docs" / "extending.md").read_text()
+    section = page.split("## A figure group")[1].split("\n## ")[0]
+    found = dict(re.findall(r"`([\w/]+\.(?:py|yaml))`(?:(?!```).)*?```(?:python|yaml)\n(.*?)```", section, re.S))
+    own = ("granular_response_paper.groups.example", "small_collection.example")
+    return {name: block.replace(*own) for name, block in found.items()}
 
 
 def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
-    """docs/extending.md, file by file."""
-    page = (ROOT / "docs" / "extending.md").read_text()
-    section = page.split("## A figure group")[1].split("\n## ")[0]
-    (yaml_block,) = re.findall(r"```yaml\n(.*?)```", section, re.S)
-    folder = tmp_path / "groups" / "example"
-    folder.mkdir(parents=True)
-    (folder / "simulate").mkdir()
-    for file, block in re.findall(r"`(\w+\.py)`(?:(?!```).)*?```python\n(.*?)```", section, re.S):
-        (folder / file.replace("__init__", "simulate/__init__")).write_text(block)
-    (folder / "__init__.py").touch()
-    assert {path.name for path in folder.iterdir()} >= {"parameters.py", "simulate", "draw.py"}
-    (tmp_path / "params.yaml").write_text("common: {method: auto}\n" + yaml_block)
+    """docs/extending.md, file by file: one folder and one section of params.yaml."""
+    small = small_collection(tmp_path, monkeypatch)
+    registry = sys.modules["granular_response_paper.registry"]
+    monkeypatch.setattr(registry, "collections", lambda: (*COLLECTIONS, small))
+    (tmp_path / "params.yaml").write_text(recipe()["reduced.yaml"])
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(groups, "__path__", [*groups.__path__, str(tmp_path / "groups")])
-    monkeypatch.setattr(pipeline, "NAMES", (*NAMES, "example"))
-    try:
-        assert simulation.simulate("example", workers=1) == Path("data/example.nc")
-        assert Path("figures/example/example.png") in drawing.draw("example")
-        said = json.loads(Path("figures/example/captions.json").read_text())["example"]
-        assert said["caption"].startswith("Floor response per applied force") and "k_T/k_N = 0.8" in said["caption"]
-        assert (said["figure"], said["panels"], said["parameters"]["friction"]) == (None, [], [0.0, 0.5])
-        measured = json.loads(measuring.measure("example").read_text())
-        assert set(measured) == {"largest response, friction 0", "largest response, friction 0.5"}
-        assert len(set(measured.values())) == 2 and min(measured.values()) > 0.0
-    finally:
-        for name in [name for name in sys.modules if name.startswith("granular_response_paper.groups.example")]:
-            del sys.modules[name]
+    assert small.groups == ("example",)
+    assert simulation.simulate("example", workers=1) == Path("data/example.nc")
+    assert Path("figures/example/example.png") in drawing.draw("example")
     response = store.read("data/example.nc")["response"]["floor_response"].values
     assert response.shape == (2, 13) and abs(response.sum(axis=1) - 1.0).max() < 0.2
+
+
+def test_a_stage_that_fails_is_shown_and_ends_the_run(tmp_path):
+    """A pipeline of two stages, run by the command that `make reproduce` runs."""
+    (tmp_path / "dvc.yaml").write_text("stages: {claims: {cmd: 'true'}, report: {cmd: 'echo the reason && false'}}\n")
+    environment = os.environ | {"GIT_CEILING_DIRECTORIES": str(tmp_path.parent)}
+    subprocess.run([sys.executable, "-m", "dvc", "init", "--no-scm", "-q"], cwd=tmp_path, env=environment, check=True)
+    said = []
+    empty = Collection("empty", "granular_response_paper.pipeline", ".", "nothing")
+    assert reproduce.reproduce(empty, tmp_path, say=said.append) != 0
+    assert any("claims" in line for line in said) and "the reason" in said[-1]

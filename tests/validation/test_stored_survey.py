@@ -1,6 +1,6 @@
 """The stored survey: a few of its realizations simulated again, and that it holds what its parameters and notes say."""
 
-from dataclasses import astuple, replace
+from dataclasses import replace
 from importlib.util import module_from_spec, spec_from_file_location
 
 import numpy as np
@@ -11,15 +11,11 @@ from places import ROOT
 from granular_response.observe.floor import smoothed_response
 from granular_response.store import files as store
 from granular_response_paper.ensembles import AT_REST, NOT_REACHED
-from granular_response_paper.pipeline import group_member, simulation
-from granular_response_paper.records import columns
-from granular_response_paper.survey import packings
 from granular_response_paper.survey import simulate as survey
 
 FOLDER = ROOT / "survey"
 PARAMETERS = survey.read_parameters(FOLDER / "params.yaml")
 BLOCKS = list(PARAMETERS.blocks)
-OF_GROUPS = {group: simulation.parameters(group, ROOT / "params.yaml")[1] for group in survey.GROUPS}
 
 #: Largest difference of a response, smoothed with w = 3, that other sources or another machine may make, per largest
 #: response: a rearrangement a little earlier or later.
@@ -76,57 +72,6 @@ def test_what_is_stored_is_what_the_parameters_name(stored, block):
     marks = store.read_attributes(FOLDER / "data" / f"{block}.nc")
     assert marks["block"] == block
     assert yaml.safe_load(marks["parameters"])["collapse_depth"] == PARAMETERS.collapse_depth
-
-
-def of_survey(group):
-    """The tasks that a group leaves to the survey, and what is stored of them, by what tells packings apart."""
-    tasks = survey.tasks_of(group, OF_GROUPS[group])
-    outcome = group_member(group, "simulate", "Outcome")
-    return tasks, packings.read(FOLDER / "data" / f"{group}.nc", type(next(iter(tasks))), outcome)
-
-
-@pytest.mark.parametrize(
-    ("group", "key"),
-    [
-        ("peak_width", (0.0, 1.0, "frictionless", 0.0, 60, 0)),
-        ("moduli", (0.1, 1.0, 16, 6)),
-        ("moduli", (0.25, 1.0, 16, 9)),
-        ("crossover_scaling", (21, 63, 0.0)),
-        ("hysteresis", (0.1, 0.0, 6)),
-    ],
-)
-def test_a_packing_of_a_figure_group_is_found_again(group, key):
-    """``key`` may be the beginning of one."""
-    tasks, stored = of_survey(group)
-    key = next(one for one in tasks if astuple(one)[: len(key)] == key)
-    kept, again = stored[key], tasks[key]()
-    sampled = hasattr(again, "force") and len(kept.force) != len(again.force)
-    for name, column in columns(type(again)).items():
-        values = getattr(again, name)
-        if column.later and np.isnan(getattr(kept, name)):
-            continue  # not recorded
-        if sampled and packings.RAGGED in column.dims:
-            continue  # at other forces
-        before, near = getattr(kept, name), SAME * np.nanmax(np.abs(values))
-        if name == "brackets":  # some wider than others: they overlap
-            assert np.array_equal(np.isnan(before), np.isnan(values))
-            low, high = np.maximum(before, values)[:, 0], np.minimum(before, values)[:, 1]
-            assert not (low > high + near).any()
-        else:
-            np.testing.assert_allclose(before, values, atol=near, err_msg=name)
-
-
-@pytest.mark.parametrize("group", survey.GROUPS)
-def test_the_packings_of_a_figure_group_are_those_that_its_parameters_leave_to_the_survey(group):
-    path = FOLDER / "data" / f"{group}.nc"
-    tasks, stored = of_survey(group)
-    assert (ROOT / OF_GROUPS[group].survey_file) == path
-    assert set(stored) == set(tasks)
-    marks = store.read_attributes(path)
-    assert marks["block"] == group
-    given = simulation.parameters(group, ROOT / "params.yaml")[0]
-    assert yaml.safe_load(marks["parameters"]).get("scene") == given.get("scene")
-    assert path.stat().st_size < 1e6
 
 
 def test_it_is_small(stored):

@@ -14,7 +14,7 @@ from typing import Any
 from granular_response.inputs import read_text
 from granular_response.scene import SceneError, text
 from granular_response_paper.archive import ArchiveError
-from granular_response_paper.groups import NAMES
+from granular_response_paper.registry import PAPER
 
 LOCK, PIPELINE, IGNORED = "dvc.lock", "dvc.yaml", ".dvcignore"
 
@@ -52,7 +52,7 @@ def stages(root: Path) -> list[Stage]:
     names = sorted(
         name
         for kind, definition in _section(root / PIPELINE).items()
-        for name in ([f"{kind}@{group}" for group in NAMES] if "foreach" in definition else [kind])
+        for name in ([f"{kind}@{group}" for group in PAPER.groups] if "foreach" in definition else [kind])
     )
     missing = [name for name in names if name not in locked]
     if missing:

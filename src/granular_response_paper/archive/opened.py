@@ -13,7 +13,6 @@ import tempfile
 import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +21,7 @@ import xarray as xr
 from granular_response.store import files as store
 from granular_response_paper.archive import ArchiveError, lock, restore
 from granular_response_paper.archive.lock import Item
-from granular_response_paper.groups import NAMES
+from granular_response_paper.registry import PAPER
 
 #: Datasets of the survey are in git; the lock has the hash of their folder.
 SURVEY = "survey/data"
@@ -92,8 +91,8 @@ def _entry(root: Path, path: str) -> Entry:
     datasets, stem = store.read(root / path), Path(path).stem
     dimensions = {name: {str(d): size for d, size in one.sizes.items()} for name, one in datasets.items()}
     about = "Ensembles of slabs"
-    if stem in NAMES:
-        study = resources.files(f"granular_response_paper.groups.{stem}") / "simulate" / "__init__.py"
+    if stem in PAPER.groups:
+        study = PAPER.path / stem / "simulate" / "__init__.py"
         source = study.read_text("utf-8")
         about = (ast.get_docstring(ast.parse(source)) or stem).split("\n\n")[0].replace("\n", " ")
     elif "ensembles" in datasets:

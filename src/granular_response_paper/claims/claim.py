@@ -11,7 +11,6 @@ import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib import resources
 from typing import Literal
 
 import numpy as np
@@ -20,7 +19,7 @@ import xarray as xr
 from granular_response.errors import GranularError
 from granular_response.scene import text as yaml
 
-from .. import PACKAGE
+from ..registry import group_path
 from .changes import CHANGES
 from .words import Bounds
 
@@ -265,7 +264,7 @@ class Claims(list[Claim]):
 
     def __init__(self, group: str) -> None:
         self.group = group
-        self._said = yaml.read(resources.files(f"{PACKAGE}.groups.{group}").joinpath(TEXTS).read_text("utf-8"))
+        self._said = yaml.read((group_path(group) / TEXTS).read_text("utf-8"))
 
     def measures(self, id: str) -> Callable[[Measure], Measure]:
         """Said above the function that measures a claim. Raises KeyError if its text is missing."""

@@ -10,8 +10,6 @@ import json
 import os
 import re
 from collections.abc import Sequence
-from importlib import import_module
-from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -19,7 +17,7 @@ from typing import Any
 from granular_response.store import atomic
 from granular_response.store import files as store
 
-from ..groups import NAMES
+from ..registry import PAPER, group_member
 from . import preparations, sentences
 from .changes import CHANGES
 from .claim import Claim, Data, Quantity, rounded
@@ -38,12 +36,11 @@ def _place(claim: Claim) -> tuple[int, int, str]:
 
 def _claims_of(group: str) -> Sequence[Claim]:
     """The claims of a group; none if it has no ``claims.py``."""
-    name = f"granular_response_paper.groups.{group}.claims"
-    return import_module(name).CLAIMS if find_spec(name) else ()
+    return group_member(group, "claims", "CLAIMS", optional=True) or ()
 
 
 #: All claims in the order of the table.
-CLAIMS: tuple[Claim, ...] = tuple(sorted((claim for group in NAMES for claim in _claims_of(group)), key=_place))
+CLAIMS: tuple[Claim, ...] = tuple(sorted((claim for group in PAPER.groups for claim in _claims_of(group)), key=_place))
 
 #: Figure groups whose datasets the claims read.
 GROUPS: tuple[str, ...] = tuple(

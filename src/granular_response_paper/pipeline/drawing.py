@@ -12,7 +12,8 @@ from granular_response.scene import SceneError, text
 from granular_response.store import atomic
 from granular_response.store import files as store
 from granular_response_paper import TOO_LITTLE, captions
-from granular_response_paper.pipeline import GroupError, figures_folder, group_member, stored
+from granular_response_paper.pipeline import figures_folder, stored
+from granular_response_paper.registry import GroupError, group_member
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,7 +45,9 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
     try:
         figures = function(datasets)
         panels = {stem: style.drawn_letters(figure) for stem, figure in figures.items()}
-        said = captions.document(group_member(group, "draw", "captions")(datasets, described), panels)
+        said = captions.document(
+            group_member(group, "draw", "captions")(datasets, described), panels, captions.question(group)
+        )
         for stem, figure in figures.items():
             saved = style.save(figure, stem, target, inputs=[path])
             paths += [*saved, *_vector(figure, saved[0], [path])]

@@ -20,7 +20,8 @@ from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.resources import Progress, using
 from granular_response_paper import PACKAGE, TOO_LITTLE
 from granular_response_paper.parameters import Common
-from granular_response_paper.pipeline import GroupError, data_path, group_member
+from granular_response_paper.pipeline import data_path
+from granular_response_paper.registry import GroupError, collection_of, group_member
 
 PARAMETERS = Path("params.yaml")
 
@@ -39,7 +40,9 @@ def parameters(group: str, path: Path = PARAMETERS) -> tuple[dict[str, Any], Des
     kind: type[Description] = group_member(group, "parameters", "Parameters")
     try:
         sections = deepcopy(_read(read_text(path)))
-        common, own = (_section(sections, name, path) for name in ("common", group))
+        of = collection_of(group)
+        hint = f"; {group} is a figure group of {of.title}, run it in the folder {of.folder}"
+        common, own = _section(sections, "common", path), _section(sections, group, path, hint)
         _describe(Common, common, "common")
         taken = {key: value for key, value in common.items() if key in kind.model_fields}
         return taken | own, _describe(kind, taken | own, group)
@@ -56,10 +59,10 @@ def _read(content: str) -> Any:
     return text.read(content)
 
 
-def _section(sections: Any, name: str, path: Path) -> dict[str, Any]:
+def _section(sections: Any, name: str, path: Path, hint: str = "") -> dict[str, Any]:
     section = sections.get(name) if isinstance(sections, dict) else None
     if not isinstance(section, dict):
-        raise GroupError(f"{path}: section {name} is missing, must be a mapping ({{}} for no parameters)")
+        raise GroupError(f"{path}: section {name} is missing, must be a mapping ({{}} for no parameters){hint}")
     return section
 
 
@@ -93,7 +96,8 @@ def simulate(
     store.check_writable(output, [parameter_file])
     kept = _checkpoint(output)
     folders = {"checkpoint": kept, "rest_states": output.parent.absolute() / REST_STATES}
-    resources = using(workers=workers, scheduler=scheduler, progress=progress, packages=(PACKAGE,), **folders)
+    packages = dict.fromkeys((PACKAGE, collection_of(group).package.partition(".")[0]))
+    resources = using(workers=workers, scheduler=scheduler, progress=progress, packages=(*packages,), **folders)
     with _alone(kept, output), resources:
         try:
             datasets = function(described)

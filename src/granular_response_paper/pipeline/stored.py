@@ -7,7 +7,8 @@ from pathlib import Path
 import xarray as xr
 
 from granular_response.store import files as store
-from granular_response_paper.pipeline import GroupError, data_path
+from granular_response_paper.pipeline import data_path
+from granular_response_paper.registry import GroupError
 
 
 def datasets(group: str, path: Path | None = None) -> tuple[Path, dict[str, xr.Dataset]]:

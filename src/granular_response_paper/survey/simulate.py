@@ -1,8 +1,7 @@
-"""Simulates a block of the survey and stores it: an ensemble, or packings that a figure group leaves to it.
+"""Simulates a block of the survey and stores it.
 
-An ensemble is a block of the survey's own parameter file. Packings of a group are those that the pipeline has no time
-for, higher ones and more realizations: the group says which in its section of ``params.yaml``, and ``packings`` and
-``task`` of its ``simulate`` make them as those of the pipeline.
+An ensemble is a block of the survey's own parameter file. Other packages add blocks of their own: packings of a figure
+group that a pipeline has no time for.
 
 Every finished task is kept, under a name made from the sources that its outcome depends on and from the task itself.
 So a run that was stopped goes on where it was, a block with more realizations computes the new ones alone, and a change
@@ -37,12 +36,7 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles.datasets import Place, ensembles_dataset, packings_dataset, places
 from granular_response_paper.ensembles.parameters import Case
 from granular_response_paper.ensembles.realizations import Realization, ensemble_task
-from granular_response_paper.pipeline import group_member, simulation
-from granular_response_paper.survey import packings
 from granular_response_paper.survey.parameters import Parameters
-
-#: Groups with packings that are left to the survey.
-GROUPS = ("peak_width", "moduli", "crossover_scaling", "hysteresis")
 
 #: The sources that every outcome depends on, and those of a realization of an ensemble.
 LIBRARY = ("contact", "kernels", "linalg", "machine", "observe", "scene", "solvers", "state")
@@ -81,6 +75,7 @@ class Block:
     scene: Scene  #: that those of the tasks are changes to
     given: Mapping[str, Any]  #: the parameters
     parts: tuple[str, ...]  #: the sources that an outcome depends on
+    packages: tuple[str, ...] = (PACKAGE,)  #: that hold the functions and classes of the tasks
 
 
 def read_parameters(path: Path) -> Parameters:
@@ -115,33 +110,6 @@ def ensemble(name: str, parameter_file: Path, realizations: int | None = None) -
     return Block(name, tasks, partial(block_datasets, cases), parameters.base, given, SOURCES)
 
 
-def packings_of(group: str, parameter_file: Path) -> Block:
-    """The packings that the section of a group leaves to the survey, the smallest first.
-
-    Raises what ``simulation.parameters`` raises.
-    """
-    given, parameters = simulation.parameters(group, parameter_file)
-    tasks = tasks_of(group, parameters)
-
-    def datasets(found: dict[Any, Any]) -> dict[str, xr.Dataset]:
-        return {packings.DATASET: packings.dataset({key: found[key] for key in tasks})}
-
-    # the first argument of each is its scene
-    ordered = dict(sorted(tasks.items(), key=lambda item: item[1].args[0].packing.disk_count))
-    return Block(group, ordered, datasets, parameters.base, given, sources_of(group))  # type: ignore[attr-defined]
-
-
-def tasks_of(group: str, parameters: Any) -> dict[Any, partial[Any]]:
-    """The tasks of the packings that a group leaves to the survey, by what tells these apart."""
-    packings, task = (group_member(group, "simulate", name) for name in ("packings", "task"))
-    return {key: task(parameters, key) for key in packings(parameters, surveyed=True).values()}
-
-
-def sources_of(group: str) -> tuple[str, ...]:
-    """The sources that an outcome of a group's task depends on."""
-    return (*MECHANICS, "theory", f"{PACKAGE}/groups/{group}/simulate")
-
-
 def run(block: Block, folder: Path, *, workers: int | None = None, progress: Progress | None = None) -> Path:
     """Simulate a block and store it below ``folder``, as ``data/NAME.nc``; returns the path.
 
@@ -149,7 +117,7 @@ def run(block: Block, folder: Path, *, workers: int | None = None, progress: Pro
     """
     output = folder / "data" / f"{block.name}.nc"
     store.check_writable(output)  # before the work
-    with using(packages=(PACKAGE,)):
+    with using(packages=block.packages):
         found = map_tasks(
             operator.call,
             block.tasks.values(),

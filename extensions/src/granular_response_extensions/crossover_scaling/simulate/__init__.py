@@ -1,0 +1,138 @@
+"""How the crossover from one peak to two depends on the size of a slab (Secs. IV.B and VIII), with friction too.
+
+The paper calls the crossover a finite-size effect: gravity presses contacts together, a force opens them, and the
+deeper a slab the more force it takes. What scales here is said apart. The *series* are slabs that differ in one
+quantity: the number of layers, the width over the depth, the stiffness, or the *confinement*, the force that horizontal
+contacts bear at rest. On a lattice with periodic sides gravity gives them none: all distances in a row are those of the
+period, so the confinement is chosen, by a lattice constant a little below two radii. In series of layers the stiffness
+grows with the layers, so that gravity makes the same overlaps at every depth, and the confinement is constant, as
+between the paper's walls, or grows with the weight as well.
+
+Forces grow by one factor until the response has two peaks and the region of open contacts has reached the floor; events
+are then those of the path, or narrowed between two of them. Without friction every state is a minimum of the energy,
+and what happens is narrowed by bisection.
+
+The deepest slabs are simulated by the survey (:mod:`granular_response_paper.survey.simulate`), as the others are.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from granular_response.scene import Scene
+from granular_response.state import FloatArray
+from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response_extensions.crossover_scaling.parameters import Parameters
+from granular_response_extensions.crossover_scaling.simulate.series import Slab, packings, power_table, slabs
+from granular_response_extensions.surveyed import measured
+from granular_response_paper import slab_response
+from granular_response_paper.datasets import labelled
+from granular_response_paper.records import axes, column, columns, record, table
+from granular_response_paper.slab_response import Happening, LoadPath, Measures, Scalars, by_motion
+
+#: Force over the confinement, from which the answers of contacts to small forces are taken.
+SMALL = 0.1
+
+EVENTS = {
+    "first_opening": slab_response.FIRST_OPENING,
+    "crossover": "the floor response at x = 0 is visibly below both maxima beside it",
+    "two_peaks": slab_response.TWO_PEAKS,
+    "reaches_floor": slab_response.REACHES_FLOOR,
+}
+
+
+@record
+class Outcome:
+    """What a task leaves behind; arrays along its forces."""
+
+    confinement: float = column(f"mean force of horizontal contacts in the central third at rest {WEIGHTS}")
+    linear_opening: float = column(
+        f"force {WEIGHTS} at which the first contact would open if contacts went on as under a small one"
+    )
+    #: nan above for what was not seen
+    brackets: FloatArray = column(f"forces {WEIGHTS} between which: {'; '.join(EVENTS.values())}", "event", "bracket")
+    by_motion: float = column(
+        "steps of the force in which the motion of the disks had a part; nan: not recorded", later=True
+    )
+    force: FloatArray = column(f"applied force {WEIGHTS}", "line")
+    dip: FloatArray = column(columns(Scalars)["central_dip"].long_name, "line")
+    depth: FloatArray = column(f"depth of the region of opened contacts below the loaded disk {RADII}", "line")
+    width: FloatArray = column(f"largest width of the region of opened contacts {RADII}", "line")
+    opened: FloatArray = column("contacts of the region", "line")
+
+
+def compute(
+    scene: Scene, visible: float, first_force: float, factor: float, most_forces: int, tolerance: float
+) -> Outcome:
+    """The path of one slab; the parameters are those of the group.
+
+    Raises what ``rest_state`` and load paths raise.
+    """
+    path = LoadPath.of(scene)
+    measures, rest = Measures(path), path.rest.pairs
+    confinement = measures.confinement
+    asked = [  # in the order of EVENTS
+        slab_response.first_opening(measures),
+        Happening(lambda state: measures.dip(state) > visible, EVENTS["crossover"]),
+        slab_response.two_peaks(measures),
+        slab_response.reaches_floor(measures),
+    ]
+    forces: list[float] = []
+    left = asked
+    while left and len(forces) < most_forces:
+        forces.append(confinement * first_force * factor ** len(forces))
+        state = path.at(forces[-1])
+        left = [what for what in left if not what.happened(state)]
+    states = path.through(forces)
+    width = slab_response.NARROW if scene.contact.friction else tolerance
+    brackets = np.array([path.first(forces, what, width) for what in asked])
+    regions = [measures.region(state) for state in states]
+    # exact without friction, where all contacts go on as they are, but for the overlaps' effect on directions
+    small = path.at(SMALL * confinement)
+    change = (small.pairs.normal_force - rest.normal_force) / abs(small.load_factor)
+    falling = measures.near & rest.touching & (change < 0.0)
+    return Outcome(
+        confinement,
+        float((rest.normal_force[falling] / -change[falling]).min()),
+        brackets,
+        float(sum(map(by_motion, states))),
+        np.array(forces),
+        np.array(list(map(measures.dip, states))),
+        *np.array([(one.depth, one.width, one.count) for one in regions], float).T,
+    )
+
+
+def task(asked: Parameters, slab: Slab) -> partial[Outcome]:
+    """One of these slabs."""
+    given = asked.visible, asked.first_force, asked.factor, asked.most_forces, asked.tolerance
+    return partial(compute, slab.scene(asked.base), *given)
+
+
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+    """Datasets ``slabs`` (slab), what each is, and its events; ``paths`` (slab, step); and ``powers`` (series).
+
+    Raises SweepError if a slab cannot be solved.
+    """
+    done = measured(parameters, "slabs", packings, task, Outcome, work=lambda slab: slab.work)
+    found, stored = slabs(parameters), packings(parameters, surveyed=True)
+    of, data = table([slab for _, slab in found], "slab"), table([done[slab] for _, slab in found], "slab")
+    brackets = {}
+    for k, (name, event) in enumerate(EVENTS.items()):
+        text = f"forces {WEIGHTS} between which: {event}; nan if not up to the first"
+        brackets[f"{name}_bracket"] = variable(("slab", "bracket"), data["brackets"].values[:, k], text)
+    kept = of[["layers", "disks_per_row", "friction", "normal_stiffness"]].variables
+    coordinates = {
+        "series": variable("slab", [series.name for series, _ in found], "series"),
+        "periodic": of["periodic"].variable.astype(int),
+        "surveyed": variable("slab", [int(slab in stored) for _, slab in found], "1 for slabs of the survey"),
+        **axes(bracket=(["low", "high"], "ends of a bracket")),
+    }
+    each = xr.Dataset(brackets).assign(data[["linear_opening", "confinement", "by_motion"]].variables)
+    each = each.assign_coords(kept).assign_coords(coordinates)
+    each = each.assign_attrs(visible=parameters.visible, tolerance=parameters.tolerance)
+    paths = data[["force", "dip", "depth", "width", "opened"]].rename_dims(line="step")
+    datasets = {"slabs": each, "paths": paths, "powers": power_table(each, parameters)}
+    return labelled(datasets, parameters.base)

@@ -1,0 +1,129 @@
+"""What rolling resistance changes (Secs. V.F and VIII): piles without support, a slab's response, couple stresses.
+
+``thresholds`` has the least friction that holds a pile on a flat floor, whose sides nothing supports, and that below
+which no forces balance whatever the preparation. ``piles`` are those of the paper's friction. ``slabs`` has the
+response of a slab and its couple stress, ``torques`` how couples and antisymmetric stress share a torque on the loaded
+disk, line by line between the rows.
+"""
+
+from __future__ import annotations
+
+from functools import cache, partial
+
+import numpy as np
+import xarray as xr
+
+from granular_response.observe.events import bisect_event
+from granular_response.observe.floor import floor_force
+from granular_response.observe.peaks import central_dip
+from granular_response.scene import Scene
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.settle import NotSettled
+from granular_response.state import FloatArray
+from granular_response.store.variables import RADII, WEIGHTS
+from granular_response.sweeps.rest import rest_state
+from granular_response_extensions.rolling_resistance.parameters import Parameters
+from granular_response_extensions.rolling_resistance.simulate.balance import balanced
+from granular_response_extensions.rolling_resistance.simulate.couples import respond
+from granular_response_paper.datasets import labelled
+from granular_response_paper.records import axes, column, parts, places, record, table, table_along
+from granular_response_paper.tasks import computed
+
+CASES = ("supported", "free", "resisting")
+
+
+@record
+class Pile:
+    """A pile that has come to rest."""
+
+    moved: float = column(f"largest displacement of a disk on the way to rest {RADII}")
+    floor_dip: float = column(
+        "how far the floor force under the apex is below the lower maximum beside it, per largest"
+    )
+    x: FloatArray = column(f"position of the lowest disks before gravity acts, from the axis {RADII}", "floor_disk")
+    floor_force: FloatArray = column(f"vertical floor force {WEIGHTS}", "floor_disk")
+
+
+@record
+class Threshold(Pile):
+    """The least friction that holds a pile, between two that were tried; and the pile that the larger one holds."""
+
+    low: float = column("largest coefficient of friction that was seen not to hold the pile; 0 for none")
+    high: float = column("least one that was seen to hold it; nan for none")
+
+
+def standing(scene: Scene, layers: int, friction: float, rolling: float | None, ramp: float = 0.0) -> Scene:
+    """The pile on a floor wider by a radius for each layer at each side; with ``rolling`` None between its walls."""
+    supported = scene.updated({"packing.layers": layers})
+    if rolling is None:
+        return supported
+    packing = supported.packing.build()
+    x, room = packing.position[:, 0] + layers, packing.width + 2.0 * layers
+    alone = Scene.from_arrays(x, packing.position[:, 1], packing.radius, width=room, scene=scene)
+    rough = {f"{at}.friction": friction for at in ("contact", "wall")}
+    rolls = {f"{at}.rolling_friction": rolling for at in ("contact", "wall")}
+    slow = {"preparation.gravity": "slow", "preparation.ramp_time": ramp} if ramp else {}
+    return alone.updated(rough | rolls | slow)
+
+
+def settle(scene: Scene) -> Pile:
+    """The pile at rest; raises what ``rest_state`` raises."""
+    problem = Problem.from_scene(scene)
+    rest, start = rest_state(problem), problem.packing.position
+    bottom = np.flatnonzero(start[:, 1] < start[:, 1].min() + 0.5)
+    force, x = floor_force(rest, bottom), start[bottom, 0] - 0.5 * problem.packing.width
+    return Pile(float(np.linalg.norm(rest.position - start, axis=1).max()), central_dip(x, force), x, force)
+
+
+def threshold(parameters: Parameters, layers: int, rolling: float, ramp: float) -> Threshold:
+    """Halves the range of friction. A pile that finds no stable equilibrium is not held."""
+
+    @cache
+    def held(friction: float) -> Pile | None:
+        try:
+            pile = settle(standing(parameters.pile, layers, friction, rolling, ramp))
+        except NotSettled:
+            return None
+        return pile if pile.moved <= parameters.moved else None
+
+    least, most = parameters.least_friction, parameters.most_friction
+    if held(most) is None:
+        return Threshold(float("nan"), float("nan"), np.empty(0), np.empty(0), most, float("nan"))
+    found = bisect_event(lambda mu: held(mu) is not None, least, most, parameters.tolerance, at_low=False, at_high=True)
+    return Threshold(**vars(held(found.high)), low=found.low if found.low > least else 0.0, high=found.high)
+
+
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+    """Datasets ``thresholds``, ``piles``, ``slabs`` and ``torques``."""
+    p, pile, rolling = parameters, parameters.pile, parameters.rolling_frictions
+    tries = {place: partial(threshold, p, *one) for place, one in places(p.layers, rolling, p.ramps)}
+    most, within = p.most_friction, 0.25 * p.tolerance
+    balances = {at: partial(balanced, size, mu, most, within) for at, (size, mu) in places(p.layers, rolling)}
+    own, kinds = pile.contact.friction, (None, min(rolling), max(rolling))
+    cases = {at: partial(settle, standing(pile, size, own, mu)) for at, (size, mu) in places(p.layers, kinds)}
+    slabs = {place: partial(respond, p, *one) for place, one in places(p.slabs, p.slab_rolling_frictions)}
+    held = table(computed(tries, "tries", work=lambda place: place[0]), "layers", "rolling_friction", "ramp")
+    least = table(computed(balances, "balances", work=lambda place: place[0]), "layers", "rolling_friction")
+    settled, found = computed(cases, "piles"), computed(slabs, "slabs")
+    sizes = {"layers": (p.layers, "number of layers")}
+    of_piles = sizes | {
+        "rolling_friction": (rolling, "coefficient of rolling friction"),
+        "ramp": (p.ramps, "time over which gravity grows, in sqrt(R/g); 0: at once"),
+    }
+    sides = "with side walls; without; without, and with the largest rolling friction"
+    of_slabs = {
+        "friction": ([slab.friction for slab in p.slabs], "coefficient of friction between disks"),
+        "rolling_friction": (p.slab_rolling_frictions, "coefficient of rolling friction between disks"),
+    }
+    torque = p.torques, "torque in mean disk weights times mean radius, counter-clockwise"
+    z = np.linspace(0.0, 1.0, p.heights), "height above the floor per that of the loaded disk"
+    loaded = axes(**of_slabs, load=(p.shown_forces, f"force {WEIGHTS}"), z=z)
+    of_pile = {
+        "thresholds": held.merge(least).assign_coords(axes(**of_piles)),
+        "piles": table_along(settled, **sizes, case=(CASES, sides)),
+    }
+    of_slab = {
+        "slabs": table(found, *of_slabs).merge(table(parts(found, "loaded"), *of_slabs, "load")).assign_coords(loaded),
+        "torques": table_along(parts(found, "turned"), **of_slabs, torque=torque),
+    }
+    return labelled(of_pile, pile) | labelled(of_slab, p.base)

@@ -1,0 +1,146 @@
+"""Crossovers of slabs of 5 to 9 layers, through a file to the lines of the document."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+import reduced
+
+from granular_response_extensions.crossover_scaling.claims import CLAIMS
+from granular_response_extensions.crossover_scaling.parameters import Parameters
+from granular_response_extensions.crossover_scaling.simulate import series as study
+from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.verdict import judge
+from granular_response_paper.groups.frictionless_crossover import simulate as frictionless
+from granular_response_paper.report import beyond
+
+
+@pytest.fixture(scope="module")
+def parameters():
+    return Parameters.model_validate(reduced.parameters("crossover_scaling"))
+
+
+def of(datasets, series):
+    slabs = datasets["slabs"]
+    return slabs.isel(slab=np.flatnonzero(slabs["series"].values == series))
+
+
+def opening_of_springs(layers, across, confinement):
+    """Force at which the first horizontal contact of a lattice of springs opens: its own matrix, and no solver of ours.
+
+    Springs of stiffness 1 between neighbours on the undeformed lattice, of 2 at the floor; periodic along x.
+    """
+    n = layers * across
+    row, column = np.divmod(np.arange(n), across)
+
+    def disk(r, c):
+        return r * across + c % across
+
+    right = [(k, disk(r, c + 1), 0.0) for k, (r, c) in enumerate(zip(row, column, strict=True))]
+    up = [
+        (k, disk(r + 1, c + shift + r % 2 - 1), np.pi / 3.0 * (2 - shift))
+        for k, (r, c) in enumerate(zip(row, column, strict=True))
+        if r < layers - 1
+        for shift in (0, 1)
+    ]
+    matrix = np.zeros((2 * n, 2 * n))
+    for i, j, angle in right + up:
+        d = np.zeros(2 * n)
+        d[[2 * i, 2 * i + 1]] = -np.cos(angle), -np.sin(angle)
+        d[[2 * j, 2 * j + 1]] = np.cos(angle), np.sin(angle)
+        matrix += np.outer(d, d)
+    floor = 2 * np.arange(across) + 1
+    matrix[floor, floor] += 2.0
+    force = np.zeros(2 * n)
+    force[2 * disk(layers - 1, across // 2) + 1] = -1.0
+    moved = np.linalg.lstsq(matrix, force, rcond=None)[0]  # the smallest: nothing holds the whole along x
+    stretch = np.array([moved[2 * j] - moved[2 * i] for i, j, _ in right])
+    return confinement / stretch.max()
+
+
+@pytest.mark.parametrize("at", [0, 1, 2])
+def test_the_first_opening_is_that_of_a_lattice_of_springs(datasets, at):
+    one = of(datasets, "constant confinement").isel(slab=at)
+    expected = opening_of_springs(int(one["layers"]), int(one["disks_per_row"]), float(one["confinement"]))
+    assert float(one["linear_opening"]) == pytest.approx(expected, rel=0.01)
+    low, high = one["first_opening_bracket"].values
+    assert 0.99 * low < expected < 1.01 * high
+
+
+def test_gravity_presses_no_horizontal_contact_of_a_periodic_lattice(datasets):
+    slabs = datasets["slabs"]
+    inside = slabs.isel(slab=np.flatnonzero(slabs["periodic"].values))
+    for name, asked in (("constant confinement", [0.15] * 3), ("friction", [0.15 * n / 15 for n in (5, 7, 9)])):
+        assert of(datasets, name)["confinement"].values == pytest.approx(asked, rel=1e-6)
+    assert (inside["by_motion"].values >= 0).all()
+
+
+def test_without_friction_forces_are_in_proportion_to_the_confinement(datasets):
+    one = of(datasets, "confinement")
+    per = one["crossover_bracket"].values / one["confinement"].values[:, None]
+    assert per[0] == pytest.approx(per[1], rel=1e-6)
+    exponent = datasets["powers"]["exponent"].sel(series="confinement", event="crossover").values
+    assert exponent[1] < 1.0 < exponent[2]
+
+
+def test_between_walls_two_peaks_come_where_the_older_study_finds_them(datasets, parameters):
+    one = of(datasets, "walls").isel(slab=0)
+    slab = frictionless.Slab(int(one["layers"]), int(one["disks_per_row"]), float(one["normal_stiffness"]))
+    scene = slab.scene(parameters.base.updated({"contact.friction": 0.0}))
+    forces = tuple(np.geomspace(0.2, 4.0, 12).tolist())
+    event = next(one for one in frictionless.solve(scene, forces, 0.1, (), False).events if one.name == "crossover")
+    low, high = one["two_peaks_bracket"].values
+    assert max(low, event.low) < min(high, event.high)
+
+
+def test_powers_and_their_intervals_are_those_of_every_corner():
+    at, middle = np.array([2.0, 4.0, 7.0, 9.0]), np.array([3.0, 13.0, 40.0, 70.0])
+    low, high = 0.97 * middle, 1.03 * middle
+    law = study.Power(at, low, high)
+
+    def corners(points, what):
+        ends = [list(pair) for pair in zip(low[points], high[points], strict=True)]
+        fits = [np.polyfit(np.log(at[points]), np.log(values), 1) for values in product(*ends)]
+        return [what(fit) for fit in fits]
+
+    for found, what in (
+        (law.exponent(), lambda fit: fit[0]),
+        (law.at_size(1000.0), lambda fit: np.exp(np.polyval(fit, np.log(1000.0)))),
+    ):
+        every = corners(slice(None), what) + corners(slice(1, None), what)
+        assert found[1:] == pytest.approx([min(every), max(every)])
+        assert found[1] < found[0] < found[2]
+    far = law.at_size(1000.0, 1.0)
+    assert far[1] == pytest.approx(low[-1] * 1000.0 / 9.0)  # far below the fits
+    assert far[2] == law.at_size(1000.0)[2]
+    assert np.isnan(study.Power(at[:1], low[:1], high[:1]).exponent()).all()
+    unseen = study.Power(at, low, np.array([*high[:3], np.nan]))
+    assert unseen.exponent() == pytest.approx(study.Power(at[:3], low[:3], high[:3]).exponent())
+
+
+def test_powers_of_the_continuum_are_known_where_there_is_one_scale(parameters):
+    series = {one.name: one for one in parameters.series}
+    known = {name: study.continuum(one) for name, one in series.items() if one.varied == "layers"}
+    assert known == {"constant confinement": 1.0, "walls": 1.0, "friction": 2.0}
+    assert study.continuum(series["friction"].model_copy(update={"confined": "constant"})) is None
+
+
+def test_the_document_gets_a_line_for_each_series_of_layers(datasets):
+    head, _, first, *others = beyond.crossovers(datasets).splitlines()
+    assert head.endswith("| two peaks at 100 layers, extrapolated |") and len(others) == 2
+    exponent = datasets["powers"]["exponent"].sel(series="constant confinement", event="crossover").values
+    assert first.startswith("| 0, constant | 5 to 9 | {:.2f} ({:.2f} to {:.2f}) |".format(*exponent))
+    surveyed = datasets["slabs"].assign_coords(surveyed=("slab", (datasets["slabs"]["layers"].values == 9).astype(int)))
+    assert "| 5 to 9, from 9 on the survey's |" in beyond.crossovers({**datasets, "slabs": surveyed}).splitlines()[2]
+
+
+def test_claims_are_judged(datasets):
+    data = Data({"crossover_scaling": datasets})
+    allowed = {"reproduced", "depends on the interpretation", "undecided"}
+    assert {judge(claim, data).verdict for claim in CLAIMS} <= allowed
+    grown = datasets["powers"].copy(deep=True)
+    grown["exponent"][:] = 2.0
+    assert [judge(claim, Data({"crossover_scaling": {"powers": grown}})).verdict for claim in CLAIMS] == [
+        "reproduced",
+        "reproduced",
+    ]

@@ -1,0 +1,197 @@
+"""Packings that figure groups leave to the survey: stored, read back, and a few simulated again."""
+
+from dataclasses import astuple
+
+import numpy as np
+import pytest
+import reduced
+import yaml
+from places import ROOT
+
+from granular_response.store import files as store
+from granular_response.sweeps.keys import sources
+from granular_response.sweeps.resources import using
+from granular_response_extensions import surveyed
+from granular_response_paper.datasets import labelled
+from granular_response_paper.pipeline import simulation
+from granular_response_paper.records import column, columns, record
+from granular_response_paper.registry import group_member
+from granular_response_paper.survey import simulate as survey
+
+FOLDER = ROOT / "survey"
+PARAMETERS = ROOT / "extensions" / "params.yaml"
+GROUPS = surveyed.surveyed_groups()
+OF_GROUPS = {group: simulation.parameters(group, PARAMETERS)[1] for group in GROUPS}
+
+#: Largest difference that other sources or another machine may make, per largest value: a rearrangement a little
+#: earlier or later.
+SAME = 0.02
+
+
+def test_the_pipeline_of_the_survey_names_a_stage_and_the_sources_of_every_group():
+    stage = yaml.safe_load((FOLDER / "dvc.yaml").read_text())["stages"]["packings"]
+    named = ("../src/", "../extensions/src/", "granular_response/")
+    declared = stage["do"]["deps"]
+    for start in named:
+        declared = [path.removeprefix(start) for path in declared]
+    assert {*surveyed.sources_of("${item}"), "granular_response_paper/survey"} <= set(declared)
+    assert stage["foreach"] == GROUPS
+
+
+@record
+class Slab:
+    """What tells a packing from others."""
+
+    friction: float = column("coefficient of friction")
+    layers: int = column("number of rows")
+
+
+@record
+class Measured:
+    """What a group might measure on a packing."""
+
+    height: float = column("height")
+    depth: np.ndarray = column("depth", "line")
+    profile: np.ndarray = column("profile", "line", "t")
+
+
+@record
+class More(Measured):
+    single: float = column("another")
+
+
+@record
+class Later(Measured):
+    single: float = column("another", later=True)
+
+
+def measured(lines):
+    return Measured(10.0 + lines, np.arange(float(lines)), np.linspace(0.0, 1.0, 3 * lines).reshape(lines, 3))
+
+
+def test_packings_are_read_as_they_were_stored(tmp_path):
+    """With different numbers of lines, in single precision; what filled them up is gone."""
+    given = {Slab(0.2, 20): measured(4), Slab(0.2, 40): measured(6)}
+    path = tmp_path / "group.nc"
+    store.write(path, labelled({surveyed.DATASET: surveyed.dataset(given)}))
+    found = surveyed.read(path, Slab, Measured)
+    assert list(found) == list(given)
+    for key, one in given.items():
+        assert found[key].height == one.height
+        np.testing.assert_allclose(found[key].depth, one.depth, rtol=1e-7)
+        np.testing.assert_allclose(found[key].profile, one.profile, rtol=1e-7)
+    (found,) = surveyed.chosen(str(path), Measured, {"deep": Slab(0.2, 40)}).items()
+    assert found[0] == "deep" and found[1].depth.size == 6
+    assert surveyed.chosen(None, Measured, {}) == {}
+    with pytest.raises(store.StoreError, match=r"has no packing of friction 0\.5, layers 20; make survey"):
+        surveyed.chosen(str(path), Measured, {"one": Slab(0.2, 20), "other": Slab(0.5, 20)})
+    with pytest.raises(store.StoreError, match=r"is no file of packings of the survey, lacks single"):
+        surveyed.read(path, Slab, More)
+
+
+def test_a_number_that_files_of_earlier_versions_lack_is_not_recorded(tmp_path):
+    path = tmp_path / "group.nc"
+    given = surveyed.dataset({Slab(0.2, 20): measured(4)})
+    store.write(path, labelled({surveyed.DATASET: given}))
+    (found,) = surveyed.read(path, Slab, Later).values()
+    assert np.isnan(found.single) and found.depth.size == 4
+
+
+#: The same case or series without and with a part left to the survey.
+MODULI = (
+    {"polydispersity": 0.1, "friction": 0.2, "layers": [5], "realizations": [3]},
+    {"polydispersity": 0.1, "friction": 0.2, "layers": [5], "realizations": [2], "surveyed": [1]},
+)
+SCALING = (
+    {"name": "one", "friction": 0.2, "confined": "as weight", "layers": [5, 7]},
+    {"name": "one", "friction": 0.2, "confined": "as weight", "layers": [5], "surveyed": [7]},
+)
+LOOPS = (
+    {"polydispersity": 0.1, "friction": 0.2, "forces": [0.3, 1.0], "increments": 2, "realizations": 2},
+    {"polydispersity": 0.1, "friction": 0.2, "forces": [0.3, 1.0], "increments": 2, "surveyed": 1},
+)
+PARTS = {
+    "moduli": ("cases", MODULI),
+    "crossover_scaling": ("series", SCALING),
+    "hysteresis": ("cases", LOOPS),
+}
+
+
+def simulate(group, section):
+    parameters = group_member(group, "parameters", "Parameters")(**section)
+    with using(workers=1):
+        return group_member(group, "simulate", "simulate")(parameters)
+
+
+@pytest.mark.parametrize("group", GROUPS)
+def test_packings_of_the_survey_are_those_that_the_group_would_make(group, tmp_path):
+    """The same datasets, within single precision, whoever simulates the last surveyed."""
+    section = reduced.parameters(group)
+    key, own = PARTS[group]
+    direct = simulate(group, section | {key: [own[0]]})
+    file = tmp_path / "params.yaml"
+    given = section | {key: [own[1]], "survey_file": str(tmp_path / "data" / f"{group}.nc")}
+    file.write_text(yaml.safe_dump({"common": {"method": "auto"}, group: given}))
+    path = survey.run(surveyed.block(group, file), tmp_path, workers=1)
+    assert str(path) == given["survey_file"]
+    stored = simulate(group, given)
+    for name, data in direct.items():
+        for key, values in data.data_vars.items():
+            if key == "surveyed":
+                assert not values.any() and stored[name][key].any()
+            elif values.dtype.kind == "U":
+                np.testing.assert_array_equal(stored[name][key], values)
+            else:
+                np.testing.assert_allclose(stored[name][key], values, rtol=1e-4, atol=1e-5, err_msg=key)
+    marks = store.read_attributes(path)
+    assert marks["block"] == group and marks["seed"] == "0" and sources(*surveyed.sources_of(group)) in marks["sources"]
+
+
+def of_survey(group):
+    """The tasks that a group leaves to the survey, and what is stored of them, by what tells packings apart."""
+    tasks = surveyed.tasks_of(group, OF_GROUPS[group])
+    outcome = group_member(group, "simulate", "Outcome")
+    return tasks, surveyed.read(FOLDER / "data" / f"{group}.nc", type(next(iter(tasks))), outcome)
+
+
+@pytest.mark.parametrize(
+    ("group", "key"),
+    [
+        ("moduli", (0.1, 1.0, 16, 6)),
+        ("moduli", (0.25, 1.0, 16, 9)),
+        ("crossover_scaling", (21, 63, 0.0)),
+        ("hysteresis", (0.1, 0.0, 6)),
+    ],
+)
+def test_a_packing_of_a_figure_group_is_found_again(group, key):
+    """``key`` may be the beginning of one."""
+    tasks, stored = of_survey(group)
+    key = next(one for one in tasks if astuple(one)[: len(key)] == key)
+    kept, again = stored[key], tasks[key]()
+    sampled = hasattr(again, "force") and len(kept.force) != len(again.force)
+    for name, said in columns(type(again)).items():
+        values = getattr(again, name)
+        if said.later and np.isnan(getattr(kept, name)):
+            continue  # not recorded
+        if sampled and surveyed.RAGGED in said.dims:
+            continue  # at other forces
+        before, near = getattr(kept, name), SAME * np.nanmax(np.abs(values))
+        if name == "brackets":  # some wider than others: they overlap
+            assert np.array_equal(np.isnan(before), np.isnan(values))
+            low, high = np.maximum(before, values)[:, 0], np.minimum(before, values)[:, 1]
+            assert not (low > high + near).any()
+        else:
+            np.testing.assert_allclose(before, values, atol=near, err_msg=name)
+
+
+@pytest.mark.parametrize("group", GROUPS)
+def test_the_packings_of_a_figure_group_are_those_that_its_parameters_leave_to_the_survey(group):
+    path = FOLDER / "data" / f"{group}.nc"
+    tasks, stored = of_survey(group)
+    assert (PARAMETERS.parent / OF_GROUPS[group].survey_file).resolve() == path
+    assert set(stored) == set(tasks)
+    marks = store.read_attributes(path)
+    assert marks["block"] == group
+    given = simulation.parameters(group, PARAMETERS)[0]
+    assert yaml.safe_load(marks["parameters"]).get("scene") == given.get("scene")
+    assert path.stat().st_size < 1e6

@@ -1,1 +1,0 @@
-"""Slabs that the page shows under a force that the reader moves: small k_T/k_N, and disorder."""

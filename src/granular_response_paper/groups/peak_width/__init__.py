@@ -1,1 +1,0 @@
-"""Figure group ``peak_width``."""

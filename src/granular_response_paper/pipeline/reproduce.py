@@ -1,0 +1,161 @@
+"""Runs the pipeline of a collection and says how far it is: stages done and to do, time gone and time to come.
+
+``dvc repro`` decides what is out of date and runs it. The stored times of all stages tell how long the rest takes,
+scaled by how this machine compares on the stages that have run. Within a stage its own tasks are shown on a terminal.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import re
+import subprocess
+import sys
+import time
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from granular_response.inputs import read_json
+from granular_response.store import atomic
+from granular_response_paper.registry import Collection
+
+#: Seconds of every stage from nothing, by collection, with the machine that they were measured on.
+TIMES = Path("benchmarks") / "pipeline.json"
+
+#: What DVC prints where a stage begins, and where it need not run.
+_BEGINS = re.compile(r"^Running stage '(?:.*:)?([\w@]+)':")
+_SKIPPED = re.compile(r"^Stage '(?:.*:)?([\w@]+)' (?:didn't change, skipping|is cached)")
+
+#: Lines of a stage that are shown if it fails.
+_KEPT = 40
+
+
+def stage_names(collection: Collection) -> list[str]:
+    """Every stage of a collection."""
+    return [f"{kind}@{group}" for kind in ("simulate", "draw") for group in collection.groups] + ["claims", "report"]
+
+
+def stored_times(collection: Collection, root: Path) -> tuple[dict[str, float], str]:
+    """Seconds by stage as they are stored, and the machine that they were measured on; none if there are none."""
+    rows = [row for row in _rows(root) if row["collection"] == collection.name]
+    return {row["stage"]: row["seconds"] for row in rows}, rows[0]["measured_on"] if rows else ""
+
+
+def _rows(root: Path) -> list[dict[str, Any]]:
+    """What is stored: a row for each stage of each collection."""
+    path = root / TIMES
+    return list(read_json(path)["runs"]) if path.exists() else []
+
+
+@dataclass
+class Watch:
+    """What has run and what is to come. ``expected`` are stored seconds by stage."""
+
+    names: Sequence[str]
+    expected: Mapping[str, float]
+    clock: Callable[[], float] = time.monotonic
+    taken: dict[str, float] = field(default_factory=dict)  #: seconds by stage that has run; 0 for a skipped one
+    current: str = ""
+    begun: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.start = self.clock()
+
+    def read(self, line: str) -> str:
+        """What to say after a line of DVC's output; empty if that tells nothing new."""
+        if match := _BEGINS.match(line):
+            said = self.ended()
+            self.current, self.begun = match[1], self.clock()
+            return said
+        if match := _SKIPPED.match(line):
+            said = self.ended()
+            self.taken[match[1]] = 0.0
+            return said
+        return ""
+
+    def ended(self) -> str:
+        """The current stage is over."""
+        if not self.current:
+            return ""
+        self.taken[self.current] = self.clock() - self.begun
+        name, self.current = self.current, ""
+        return f"{len(self.taken):3} of {len(self.names)}  {name:36} {self.taken[name]:6.1f} s   {self.rest()}"
+
+    def rest(self) -> str:
+        """Time gone and, where stage times are stored, time to come."""
+        gone = f"{clock_time(self.clock() - self.start)} gone"
+        left = [self.expected.get(name) for name in self.names if name not in self.taken and name != self.current]
+        if not left or None in left:
+            return gone
+        pairs = [(self.expected[name], one) for name, one in self.taken.items() if one and name in self.expected]
+        stored, here = (sum(one) for one in zip(*pairs, strict=True)) if pairs else (1.0, 1.0)
+        return f"{gone}, at most {clock_time(sum(filter(None, left)) * here / stored)} to come"
+
+
+def clock_time(seconds: float) -> str:
+    """Minutes and seconds."""
+    return f"{int(seconds) // 60}:{int(seconds) % 60:02}"
+
+
+def reproduce(
+    collection: Collection,
+    root: Path,
+    *,
+    arguments: Sequence[str] = (),
+    keep_times: bool = False,
+    say: Callable[[str], None] = print,
+) -> int:
+    """Bring a collection up to date; returns the exit status of DVC.
+
+    ``arguments`` go to ``dvc repro``. With ``keep_times`` the seconds of the stages are stored for the next run, if
+    every stage has run. ``root`` is the folder of the checkout.
+    """
+    expected, machine = stored_times(collection, root)
+    names = stage_names(collection)
+    if set(names) <= set(expected):
+        total = clock_time(sum(expected[name] for name in names))
+        say(f"{collection.title}: {len(names)} stages, {total} from nothing on {machine}; less if up to date")
+    watch, last = Watch(names, expected), deque[str](maxlen=_KEPT)
+    command = [sys.executable, "-m", "dvc", "repro", *arguments]
+    environment = os.environ | {"PYTHONUNBUFFERED": "1"}
+    folder = root / collection.folder
+    with subprocess.Popen(
+        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True
+    ) as run:
+        assert run.stdout is not None
+        for line in run.stdout:
+            last.append(line.rstrip("\n"))
+            if said := watch.read(line):
+                say(said)
+    if run.returncode:
+        say("\n".join(last))
+        return run.returncode
+    if said := watch.ended():
+        say(said)
+    if keep_times and all(watch.taken.get(name) for name in names):
+        _store(collection, root, watch.taken)
+    ran = sum(1 for one in watch.taken.values() if one)
+    say(f"{collection.title}: {ran} stages run, {len(names) - ran} were up to date, {watch.rest().partition(',')[0]}")
+    return 0
+
+
+def _store(collection: Collection, root: Path, taken: Mapping[str, float]) -> None:
+    common = {"collection": collection.name, "measured_on": f"{_processor()}, {os.cpu_count()} cores"}
+    own = [common | {"stage": name, "seconds": round(taken[name], 1)} for name in stage_names(collection)]
+    rows = [row for row in _rows(root) if row["collection"] != collection.name] + own
+    names = dict.fromkeys(row["collection"] for row in rows)
+    totals = {name: sum(row["seconds"] for row in rows if row["collection"] == name) for name in names}
+    found = {"runs": rows, "totals": [{"collection": name, "seconds": round(one, 1)} for name, one in totals.items()]}
+    atomic.write_bytes(root / TIMES, (json.dumps(found, indent=1) + "\n").encode())
+
+
+def _processor() -> str:
+    try:
+        names = re.findall(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M)
+    except OSError:
+        names = []
+    return names[0] if names else platform.processor() or platform.machine()

@@ -1,0 +1,141 @@
+"""Every figure group at reduced size: numbers and pictures are the stored ones, no parameters end in a traceback.
+
+The cases come from the folders of the groups. ``pytest --force-regen`` stores new numbers and pictures.
+"""
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+import reduced
+
+from granular_response.errors import SolveError
+from granular_response.plot import style
+from granular_response.scene import SceneError, text
+from granular_response.sweeps.errors import SweepError
+from granular_response_paper.pipeline import drawing, simulation
+from granular_response_paper.registry import GroupError, group_member
+
+#: What the command line tells in one line.
+LINES = (GroupError, SceneError, SolveError)
+
+#: Differences of stored numbers that rounding may make beyond a lost equilibrium, relative and absolute.
+SAME, NOTHING = 1e-4, 1e-6
+
+
+@pytest.fixture(params=reduced.GROUPS)
+def group(request):
+    return request.param
+
+
+@pytest.fixture
+def original_datadir(group):
+    return reduced.expected(group)
+
+
+def sizes(values: np.ndarray) -> tuple[float, float, float]:
+    """Mean, root mean square and largest size of finite values: a mirrored solution has the same last two."""
+    finite = np.abs(values[np.isfinite(values)].astype(float))
+    return (finite.mean(), np.sqrt((finite**2).mean()), finite.max()) if finite.size else (0.0, 0.0, 0.0)
+
+
+def test_numbers_are_the_stored_ones(group, num_regression, tmp_path_factory):
+    columns = {
+        f"{name}/{variable}": sizes(values.values)
+        for name, dataset in reduced.datasets(group, tmp_path_factory).items()
+        for variable, values in dataset.data_vars.items()
+        if values.dtype.kind == "f"
+    }
+    assert columns
+    num_regression.check(columns, basename="numbers", default_tolerance={"rtol": SAME, "atol": NOTHING})
+
+
+def test_figures_look_as_stored_and_have_captions(group, looks_as_stored, tmp_path_factory):
+    datasets = reduced.datasets(group, tmp_path_factory)
+    drawn = group_member(group, "draw", "draw")(datasets)
+    parameters = group_member(group, "parameters", "Parameters")(**reduced.parameters(group))
+    assert set(group_member(group, "draw", "captions")(datasets, parameters)) == set(drawn)
+    looks_as_stored(drawn)
+    assert {path.stem for path in reduced.expected(group).glob("*.png")} == set(drawn)
+
+
+def first_of_lists(section: dict[str, Any]) -> dict[str, Any]:
+    """One entry where there are several."""
+    return {
+        key: first_of_lists(value) if isinstance(value, dict) else first_entry(value) for key, value in section.items()
+    }
+
+
+def first_entry(value: Any) -> Any:
+    if not isinstance(value, list) or not value:
+        return value
+    return [first_of_lists(value[0]) if isinstance(value[0], dict) else first_entry(value[0])]
+
+
+def few_disks(section: dict[str, Any]) -> dict[str, Any]:
+    """The smallest packing that is one."""
+    return section | {"scene": section["scene"] | {"packing": {"layers": 2, "disks_per_row": 5}}}
+
+
+def scaled(section: Any, factor: float, inside: bool = False) -> Any:
+    """Forces that are far too weak, or far too strong; ``inside`` a key of forces."""
+    if isinstance(section, dict):
+        return {key: scaled(value, factor, inside or "force" in key) for key, value in section.items()}
+    if isinstance(section, list):
+        return [scaled(value, factor, inside) for value in section]
+    number = isinstance(section, float | int) and not isinstance(section, bool)
+    return section * factor if inside and number else section
+
+
+#: Allowed parameters, or nearly, that nobody would take: what is measured is then often nothing.
+ODD = {
+    "one of each": first_of_lists,
+    "few disks": few_disks,
+    "weak forces": partial(scaled, factor=1e-3),
+    "strong forces": partial(scaled, factor=30.0),
+}
+
+
+def odd_cases() -> Iterator[Any]:
+    for name in reduced.GROUPS:
+        section = reduced.parameters(name)
+        for kind in ODD:
+            if kind != "few disks" or "scene" in section:
+                yield pytest.param(name, kind, id=f"{name}-{kind.replace(' ', '-')}")
+
+
+@pytest.fixture
+def coarse_pictures(monkeypatch):
+    """All that is asked of a picture here is that it can be drawn, wherever its panels are."""
+    render = style.render
+
+    def coarse(drawn, file_format):
+        drawn.set_layout_engine("none")  # to lay out takes as long as to draw
+        return render(drawn, file_format, dpi=30)
+
+    monkeypatch.setattr(style, "render", coarse)
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.usefixtures("coarse_pictures")
+@pytest.mark.parametrize(("odd", "kind"), odd_cases())
+def test_an_experiment_never_ends_in_a_traceback(odd, kind, tmp_path):
+    section = ODD[kind](reduced.parameters(odd))
+    section.pop("method", None)
+    (tmp_path / "params.yaml").write_text(text.write({"common": {"method": "auto"}, odd: section}))
+    data = tmp_path / "data.nc"
+    for stage in (
+        lambda: simulation.simulate(odd, data, parameter_file=tmp_path / "params.yaml", workers=1),
+        lambda: drawing.draw(odd, data, tmp_path / "figures"),
+    ):
+        try:
+            stage()
+        except SweepError as error:  # a scene that is not solved is told by its own line
+            assert isinstance(error.__cause__, LINES), error
+            assert "\n" not in str(error)
+        except LINES as error:
+            assert "\n" not in str(error)
+        if not data.exists():
+            return
