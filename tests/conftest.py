@@ -25,7 +25,6 @@ IMPORTED = [
     "granular_response_paper.claims.table",
     "granular_response_paper.cli",
     "granular_response_paper.pipeline.drawing",
-    "granular_response_paper.pipeline.measuring",
     "granular_response_paper.pipeline.simulation",
     "granular_response_paper.report",
     "hypothesis",

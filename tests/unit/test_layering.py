@@ -1,4 +1,4 @@
-"""Who imports what: the table of docs/architecture.md, and rules that import-linter does not know."""
+"""Who imports what, where import-linter has no word for it."""
 
 import ast
 import functools
@@ -7,7 +7,6 @@ import sys
 import tomllib
 from pathlib import Path
 
-import pytest
 from imported import imported
 from places import ROOT, SOURCE
 
@@ -31,44 +30,6 @@ def outside_imports(part: Path) -> set[str]:
 def test_the_library_imports_its_own_by_relative_names():
     absolute = re.compile(r"^\s*(from|import) granular_response", re.MULTILINE)
     assert [path for path in sorted(PACKAGE.rglob("*.py")) if absolute.search(path.read_text("utf-8"))] == []
-
-
-PARTS = sorted(
-    p for p in PACKAGE.iterdir() if (p.suffix == ".py" or (p / "__init__.py").exists()) and p.stem[:2] != "__"
-)
-#: Parts of the library, and the reproduction as a whole.
-PLACES = [*PARTS, PAPER]
-
-
-def table_of_imports() -> dict[str, set[str]]:
-    """What docs/architecture.md allows each part to import; "any part" means all of them."""
-    rows = re.findall(r"^\| (`.*?) \| .*? \| (.*?) \|$", (ROOT / "docs" / "architecture.md").read_text(), re.MULTILINE)
-    parts = {name: set() for names, _ in rows for name in re.findall(r"`(\w+)/?`", names)}
-    for names, allowed in rows:
-        for name in re.findall(r"`(\w+)/?`", names):
-            parts[name] = set(re.findall(r"\w+", allowed)) | (
-                set(parts) - {PAPER.name} if "any part" in allowed else set()
-            )
-    return parts
-
-
-def inside_imports(part: Path) -> set[str]:
-    """Other parts of the package that a part imports."""
-    ours = {name.split(".")[1] for name in imported_by(part) if name.startswith(f"{PACKAGE.name}.")}
-    return ours & {path.stem for path in PARTS} - {part.stem}
-
-
-def test_every_part_is_in_the_table_of_imports():
-    assert set(table_of_imports()) == {part.stem for part in PLACES}
-    store = next(part for part in PARTS if part.stem == "store")
-    assert {"observe", "solvers"} <= inside_imports(store)
-
-
-@pytest.mark.parametrize("part", PLACES, ids=lambda part: part.stem)
-def test_the_table_of_imports_agrees_with_the_code(part):
-    names = {"PIL": "pillow", "pydantic_core": "pydantic"}
-    imported = {names.get(name, name) for name in outside_imports(part)} | inside_imports(part)
-    assert imported <= table_of_imports()[part.stem]
 
 
 def test_every_import_is_a_declared_dependency():

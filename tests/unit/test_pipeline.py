@@ -138,7 +138,7 @@ def test_progress_says_what_is_done_and_scales_the_rest_by_this_machine():
     assert watch.read("Running stage 'simulate@a':\n") == ""
     clock.now = 20.0  # twice as slow as stored
     said = watch.read("Running stage 'simulate@b':\n")
-    assert " ".join(said.split()) == "1 of 4 simulate@a 20.0 s 0:20 gone, at most 0:12 to come"
+    assert " ".join(said.split()) == "1 of 4 simulate@a 20.0 s 0:20 gone, at most 1:12 to come"
     assert watch.read("> granular-response-paper simulate b\n") == ""
     clock.now = 80.0
     assert "2 of 4  simulate@b" in watch.read("Stage 'draw@a' didn't change, skipping\n")
@@ -161,7 +161,8 @@ def recipe() -> dict[str, str]:
     """The files of a figure group as docs/extending.md writes them."""
     page = (ROOT / "docs" / "extending.md").read_text()
     section = page.split("## A figure group")[1].split("\n## ")[0]
-    found = dict(re.findall(r"`([\w/]+\.(?:py|yaml))`(?:(?!```).)*?```(?:python|yaml)\n(.*?)```", section, re.S))
+    file = r"^`([\w/]+\.(?:py|yaml))`(?:(?!```).)*?```(?:python|yaml)\n(.*?)```"
+    found = dict(re.findall(file, section, re.S | re.M))
     own = ("granular_response_paper.groups.example", "small_collection.example")
     return {name: block.replace(*own) for name, block in found.items()}
 
