@@ -11,9 +11,9 @@ from pathlib import Path
 
 import counts
 import numpy as np
+from stress.random_scenes import Trial, log_uniform, run, thrown
 
 from granular_response.sweeps.tasks import map_tasks
-from granular_response_paper.trials.random_scenes import Trial, log_uniform, run, thrown
 
 #: Ratios of masses and of radii.
 MASS_RATIO, RADIUS_RATIO = 1e9, 100.0

@@ -8,9 +8,9 @@ import counts
 import pytest
 import unlike_scenes
 from places import ROOT
+from stress import random_scenes
 
 from granular_response.inputs import read_json
-from granular_response_paper.trials import random_scenes
 
 
 @pytest.mark.parametrize("seed", range(2))

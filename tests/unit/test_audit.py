@@ -5,6 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from small_scenes import scene
+from stress.random_scenes import (
+    anachronism,
+    check,
+    contradiction,
+    draw,
+    rounding_of,
+    write_table,
+)
 from unlike_scenes import MASS_RATIO, RADIUS_RATIO, unlike_heap
 
 from granular_response.observe.audit import ContactRule, audit
@@ -13,14 +21,6 @@ from granular_response.solvers.path import PathError
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import Solution, solve_scene
 from granular_response.state import OPEN, SLIDING, Contacts, Reached
-from granular_response_paper.trials.random_scenes import (
-    anachronism,
-    check,
-    contradiction,
-    draw,
-    rounding_of,
-    write_table,
-)
 
 
 @pytest.fixture(scope="module")

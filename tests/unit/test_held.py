@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from small_scenes import free_disks, scene
+from stress.random_scenes import check, contradiction, rounding_of, write_table
 from test_events import shown
 
 import granular_response as gr
@@ -17,7 +18,6 @@ from granular_response.solvers.path import PathRecord, follow
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state, solve_scene
 from granular_response.solvers.work import slid, stored, work
-from granular_response_paper.trials.random_scenes import check, contradiction, rounding_of, write_table
 
 DISK = {"kind": "pile", "layers": 1}
 

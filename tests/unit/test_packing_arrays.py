@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 import xarray as xr
+from stress.random_scenes import write_table
 
 import granular_response as gr
 from granular_response.scene import FilePacking
-from granular_response_paper.trials.random_scenes import write_table
 
 PYRAMID = {"x": [1.0, 3.0, 5.0, 2.0, 4.0], "z": [1.0, 1.0, 1.0, 2.75, 2.75], "radius": 1.0}
 QUIET = {"loads": [], "contact": {"friction": 0.0}}

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from stress.random_scenes import write_table
 
 from granular_response.scene import FilePacking, Scene, SceneError, SlabPacking
-from granular_response_paper.trials.random_scenes import write_table
 
 
 @pytest.fixture

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from small_scenes import scene
 from solved import FLOOR_DISKS, response, slab
+from stress.random_scenes import check, contradiction, rounding_of
 
 from granular_response.observe.floor import floor_force
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL
-from granular_response_paper.trials.random_scenes import check, contradiction, rounding_of
 
 SLABS = [(0.0, 4.0, "auto"), (0.2, 4.0, "path"), (0.2, 4.0, "dynamics"), (1.0, 4.0, "path"), (1.0, 4.0, "dynamics")]
 #: Polydispersity, friction and lattice constant of packings at rest.

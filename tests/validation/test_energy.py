@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from small_scenes import scene
+from stress.closed_forms import collision, mechanical_energy
 
 from granular_response.contact import LAWS
 from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import NotSettled
 from granular_response.solvers.solution import solve_scene
-from granular_response_paper.trials.closed_forms import collision, mechanical_energy
 
 
 @pytest.mark.parametrize("law", LAWS)

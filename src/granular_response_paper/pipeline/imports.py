@@ -38,7 +38,8 @@ def imported(path: Path, package: tuple[str, ...], *, for_types: bool = False) -
 
     What stands there for the type checker alone is never run, and counts only ``for_types``.
     """
-    tree, found = ast.parse(path.read_text(encoding="utf-8")), set()
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    found: set[str] = set()
     for node in () if for_types else ast.walk(tree):
         if isinstance(node, ast.If) and ast.unparse(node.test) in ("TYPE_CHECKING", "typing.TYPE_CHECKING"):
             node.body = []

@@ -37,6 +37,7 @@ READINGS: Mapping[str, Reading] = {
     "unloading_friction": Reading(
         "Coulomb limit under load", "force cut, spring follows", "spring frozen, free to unload"
     ),
+    "hertz": Reading("normal force", "linear in the overlap", "power 3/2, matched at the mean contact force"),
     "time_step_halved": Reading("time step", "5e-4 sqrt(R/g)", "2.5e-4 sqrt(R/g)"),
     "verlet": Reading("integrator", "Beeman", "velocity Verlet"),
     "gear": Reading("integrator", "Beeman", "Gear, step 2.4e-4 sqrt(R/g)"),

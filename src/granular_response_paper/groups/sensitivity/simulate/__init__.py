@@ -21,7 +21,7 @@ from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
 from granular_response.solvers.timestep import resolve_time_step
-from granular_response.state import FloatArray
+from granular_response.state import FloatArray, State
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.groups.sensitivity.parameters import Parameters
 from granular_response_paper.records import axes, column, labels, record, table, variables
@@ -36,6 +36,7 @@ class Variant:
     both: Mapping[str, Any] = field(default_factory=dict)  #: to both stages
     load: Mapping[str, Any] = field(default_factory=dict)  #: to the load alone
     law: Mapping[str, Any] = field(default_factory=dict)  #: a friction law under load that statics does not have
+    matched: str = ""  #: a contact law that gives the mean contact force at rest at the same overlap
 
 
 #: By name, the reference first.
@@ -57,6 +58,7 @@ VARIANTS = {
     "path": Variant("quasi-static path in place of dynamics", load={"protocol.method": "path"}),
     "literal_friction": Variant("the paper's equation for the spring taken literally",
                                 law={"protocol.friction_law": "literal"}),
+    "hertz": Variant("normal force with the power 3/2 of the overlap", matched="hertz"),
     "unloading_friction": Variant("the spring frozen at the limit, free to unload",
                                   law={"protocol.friction_law": "unloading"}),
 }  # fmt: skip
@@ -76,6 +78,9 @@ def compute(scene: Scene, variant: Variant, steps: int) -> Outcome:
     """The floor response of one variant; after ``steps`` by a friction law of its own, which need not have a rest."""
     scene = scene.updated({"protocol.method": "dynamics", **variant.both})
     rest = rest_state(Problem.from_scene(scene))
+    if variant.matched:
+        scene = matched(scene, variant.matched, rest)
+        rest = rest_state(Problem.from_scene(scene))
     problem = Problem.from_scene(scene.updated({**variant.load, **variant.law})).with_loads(rest.position)
     if variant.law:
         dynamics = Dynamics(problem, rest, scene.protocol.integrator, resolve_time_step(problem))
@@ -94,6 +99,19 @@ def compute(scene: Scene, variant: Variant, steps: int) -> Outcome:
         kinetic_energy=float(energy),
         force_residual=certificate.force_residual if certificate else np.nan,
     )
+
+
+def matched(scene: Scene, law: str, rest: State) -> Scene:
+    """The scene with a law that is as stiff as the linear one at the mean contact force of its initial equilibrium.
+
+    With ``f = C xi^(3/2)`` the overlap ``f / k`` at the force ``f`` asks for ``C = k^(3/2) / sqrt(f)``, and
+    ``contact.normal_stiffness``, the tangent stiffness at a force of one weight, is ``3/2 C^(2/3) = 3/2 k / f^(1/3)``.
+    Contacts are stiffer under more force, for which the paper's time step is too long. One weight where none touch.
+    """
+    force = rest.pairs.normal_force[rest.pairs.touching]
+    stiffness = 1.5 * scene.contact.normal_stiffness / (float(force.mean()) if force.size else 1.0) ** (1.0 / 3.0)
+    changes = {"contact.law": law, "contact.normal_stiffness": stiffness, "protocol.time_step": "auto"}
+    return scene.updated(changes)
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:

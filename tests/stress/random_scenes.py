@@ -11,20 +11,17 @@ import csv
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from granular_response.errors import SolveError
 from granular_response.observe.audit import Audit, ContactRule, audit
 from granular_response.observe.floor import floor_force
 from granular_response.scene import Load, Scene, SceneError
-from granular_response.scene.protocol import Integrator
 from granular_response.solvers.solution import Solution, solve_scene
 from granular_response.state import State
-from granular_response.store.variables import variable
-from granular_response_paper.records import column, record, table
+from granular_response_paper.records import column, record
 from granular_response_paper.slab_response import lost
 
 #: Certified: in balance and stable. Uncertified: the scene asked for no static finish, and the certificate says what
@@ -210,28 +207,6 @@ def run(maximum_steps: int, entropy: int, index: int, *, heap: Heap | None = Non
         if table is not None:
             write_table(Path(folder, "packing.csv"), table)
         return attempt(description, folder, twin=index % TWIN_EVERY == 0)
-
-
-def several(maximum_steps: int, entropy: int, indices: range) -> list[Trial]:
-    """What :func:`run` gives for each of the ``indices``."""
-    return [run(maximum_steps, entropy, index) for index in indices]
-
-
-def dataset(trials: list[Trial]) -> xr.Dataset:
-    """Trials along ``scene``; the attribute ``wrong`` says what a wrong result was, for whoever has to look at it."""
-    found = table(trials, "scene")
-    words: dict[str, tuple[tuple[str, ...], str]] = {
-        "outcome": (OUTCOMES, "what became of the scene"),
-        "kind": (("slab", "pile", "file"), "packing"),
-        "method": (METHODS, "method asked for"),
-        "integrator": (get_args(Integrator), "integrator"),
-    }
-    for name, (values, text) in words.items():
-        codes = np.array([values.index(getattr(trial, name)) for trial in trials], np.int8)
-        legend = ", ".join(f"{code} {value}" for code, value in enumerate(values))
-        found[name] = variable("scene", codes, f"{text}: {legend}")
-    wrong = [f"{k}: {trial.message}" for k, trial in enumerate(trials) if trial.outcome == "wrong"]
-    return found.assign_attrs(wrong="; ".join(wrong))
 
 
 def write_table(path: Path, table: np.ndarray) -> None:

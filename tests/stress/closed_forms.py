@@ -15,8 +15,8 @@ from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.timestep import stability_limit
 from granular_response.state import FloatArray, State
+from granular_response_paper.groups.stability.simulate import time_steps
 from granular_response_paper.records import column, record
-from granular_response_paper.trials import time_steps
 
 #: Distance of the side walls from what happens.
 FAR = 500.0
@@ -141,32 +141,3 @@ def drift(scene: Scene, system: str, integrator: str, part: float, time: float, 
     step = part * stability_limit(problem, "verlet")
     times, change = energy_change(problem, state, integrator, step, time)
     return Drifted(times, change / energy)
-
-
-@record
-class Collided:
-    energy_ratio: FloatArray = column("kinetic energy after a collision over that before", "angle", "spin")
-
-
-def collide(scene: Scene, angles: tuple[float, ...], spins: tuple[float, ...], step: float, body: str) -> Collided:
-    """Collisions with the floor or a disk at all angles and spins under one contact law."""
-    pair = body == "disk"
-    ratios = [[collision(scene, angle, spin, step, pair=pair) for spin in spins] for angle in angles]
-    return Collided(np.array(ratios))
-
-
-@record
-class Rolled:
-    time: FloatArray = column("time in sqrt(radius/g)", "reading")
-    velocity: FloatArray = column("velocity of the disk, x", "reading")
-    rim_speed: FloatArray = column("rim speed, positive for rolling along x", "reading")
-    exact_velocity: FloatArray = column("velocity in closed form", "reading")
-    exact_rim_speed: FloatArray = column("rim speed in closed form", "reading")
-
-
-def roll(friction: float, speed: float, spin: float, step: float) -> Rolled:
-    """A disk thrown along the floor, until it has rolled for a while."""
-    scene = Scene().updated({"wall.friction": friction, "loads": []})
-    time = 1.5 * abs(speed + spin) / (3.0 * friction)
-    times, velocity, rim_speed = sliding_to_rolling(scene, speed, spin, step, time)
-    return Rolled(times, velocity, rim_speed, *rolling_speed(times, friction, speed, spin))
