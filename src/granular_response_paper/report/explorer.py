@@ -1,7 +1,6 @@
 """What the page's explorer shows: slabs under a force that the reader moves, with Figs. 6 and 22 beside them.
 
-Everything comes from three datasets: ordered slabs and Fig. 6 from ``friction_linear_range``, slabs with small k_T/k_N
-and disordered ones from ``explorer``, Fig. 22 from ``phase_diagram``.
+Slabs and Fig. 6 come from the datasets of ``friction_linear_range``, Fig. 22 from those of ``phase_diagram``.
 """
 
 from __future__ import annotations
@@ -65,12 +64,10 @@ class Slab:
     states: tuple[xr.Dataset, ...]  #: with one list of contacts; rest is the first state of each
     chosen: list[tuple[int, int]]  #: for each force, which of ``states``, and which state of it
     rows: list[xr.Dataset]  #: for each force, what is measured
-    polydispersity: float
     friction: float
     wall_friction: float
     stiffness_ratio: float
     normal_stiffness: float
-    width: float = 0.0  #: of the Gaussian that smooths a disordered slab
     motion: float | None = None  #: smallest force whose state dynamics from rest reached; below it lies the load path
 
     def measured(self, name: str) -> NDArray[Any]:
@@ -84,16 +81,16 @@ class Slab:
 
     @property
     def response(self) -> FloatArray:
-        """(k, floor_disk) floor force per applied force; of a disordered slab stress times R, as in Fig. 20."""
-        return self.measured("floor_response") / (float(np.diff(self.x).mean()) if self.width else 1.0)
+        """(k, floor_disk) floor force per applied force."""
+        return self.measured("floor_response")
 
 
-def payload(friction: Datasets, more: Datasets | None = None, phase: Datasets | None = None) -> dict[str, Any] | None:
+def payload(friction: Datasets, phase: Datasets | None = None) -> dict[str, Any] | None:
     """What the page embeds, and ``packed``, the contacts of all slabs; None without the states of any friction.
 
-    The datasets are those of ``friction_linear_range``, ``explorer`` and ``phase_diagram``.
+    The datasets are those of ``friction_linear_range`` and ``phase_diagram``.
     """
-    slabs = [*_ordered(friction), *map(_added, (more or {}).values())]
+    slabs = list(_slabs(friction))
     if not slabs:
         return None
     contacts = [_Contacts.of(slab) for slab in slabs]
@@ -114,11 +111,8 @@ def payload(friction: Datasets, more: Datasets | None = None, phase: Datasets | 
 def _described(slab: Slab, contacts: _Contacts, study: Datasets) -> dict[str, Any]:
     """A slab as the page has it; ``study`` has the stored events."""
     shown = np.abs(slab.x) <= REACH + 0.5
-    ordered = slab.polydispersity == 0.0  # noise gives a disordered slab many peaks
     return {
-        "polydispersity": slab.polydispersity,
         "friction": slab.friction,
-        "ratio": slab.stiffness_ratio,
         "about": _about(slab),
         "about_set": typeset(_about(slab)),
         "contacts": len(contacts.lines),
@@ -126,17 +120,15 @@ def _described(slab: Slab, contacts: _Contacts, study: Datasets) -> dict[str, An
         "height": round(contacts.height, 2),
         "x": _rounded(slab.x[shown], 2),
         "response": [_rounded(row, 4) for row in slab.response[:, shown]],
-        "smoothed": [_rounded(r, 4) for r in slab.measured("smoothed_response")[:, shown]] if slab.width else None,
         "centre": _rounded(slab.measured("response_at_centre"), 6),
-        "peaks": slab.measured("peak_count").astype(int).tolist() if ordered else None,
-        "symmetric": [asymmetry(slab.x, row) <= ASYMMETRY for row in slab.response] if ordered else None,
+        "peaks": slab.measured("peak_count").astype(int).tolist(),
+        "symmetric": [asymmetry(slab.x, row) <= ASYMMETRY for row in slab.response],
         "walls": slab.wall_friction,
-        "width": slab.width,
         "motion": slab.motion,
         "paper": [
             {"force": force, "what": what, "place": place, "here": _here(study, mu, events)}
             for mu, force, what, place, events in PAPER
-            if (slab.polydispersity, slab.stiffness_ratio, mu) == (0.0, 0.8, slab.friction)
+            if (slab.stiffness_ratio, mu) == (0.8, slab.friction)
         ],
     }
 
@@ -147,10 +139,9 @@ def _rounded(values: FloatArray, digits: int) -> list[float]:
 
 def _about(slab: Slab) -> str:
     """The parameters in words."""
-    kind = f"one packing with δ = {slab.polydispersity:g}" if slab.polydispersity else "ordered packing"
     ratio = f", k_T/k_N = {slab.stiffness_ratio:g}" if slab.friction or slab.wall_friction else ""
     walls = f"µ_wall = {slab.wall_friction:g}"
-    return f"{kind}, µ = {slab.friction:g}, {walls}{ratio}, k_N = {slab.normal_stiffness:g} mg/R"
+    return f"ordered packing, µ = {slab.friction:g}, {walls}{ratio}, k_N = {slab.normal_stiffness:g} mg/R"
 
 
 def _here(datasets: Datasets, friction: float, names: Sequence[str]) -> str:
@@ -168,7 +159,7 @@ def _here(datasets: Datasets, friction: float, names: Sequence[str]) -> str:
     return f"{', '.join(said)} mg" if said else ""
 
 
-def _ordered(datasets: Datasets) -> Iterator[Slab]:
+def _slabs(datasets: Datasets) -> Iterator[Slab]:
     """The slabs of Figs. 6 to 9 and 16: the load path, then dynamics from rest from its first force on."""
     for friction in FRICTIONS:
         name = f"states_mu_{friction:g}"
@@ -195,26 +186,12 @@ def _ordered(datasets: Datasets) -> Iterator[Slab]:
             states=tuple(states for states, _ in sources),
             chosen=chosen,
             rows=rows,
-            polydispersity=0.0,
             friction=friction,
             wall_friction=float(scene.resolved_wall.friction),
             stiffness_ratio=float(scene.contact.stiffness_ratio),
             normal_stiffness=float(scene.contact.normal_stiffness),
             motion=motion,
         )
-
-
-def _added(data: xr.Dataset) -> Slab:
-    """A slab of the group ``explorer``."""
-    loaded = range(1, data.sizes["state"])
-    names = ("polydispersity", "friction", "wall_friction", "stiffness_ratio", "normal_stiffness")
-    return Slab(
-        states=(data,),
-        chosen=[(0, k) for k in loaded],
-        rows=[data.isel(state=k) for k in loaded],
-        width=float(data["smoothing_width"]),
-        **{name: float(data[name]) for name in names},
-    )
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,14 @@
-"""The drawn figures as pictures inside a page, by the question that they answer."""
+"""The drawn figures as a page shows them: those of the paper by number, the others by the question that they answer."""
 
 from __future__ import annotations
 
 import base64
 import io
+import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +18,13 @@ from PIL import Image, ImageSequence
 from granular_response.inputs import read_json
 from granular_response.machine import threads
 from granular_response_paper import captions
+from granular_response_paper.registry import collection_of, group_path
 
 #: Pixels of the page per pixel of a drawn picture, which has 200 to an inch: letters as large as the text.
 SHOWN = 0.62
 
 #: Largest size of a small picture, in its own pixels, and how hard it is compressed, from 0 to 100.
 SMALL, SMALL_QUALITY = (256, 144), 45
-
-#: Largest width of a raster picture that only stands in for a vector one, in its own pixels, and its colours.
-STAND_IN, STAND_IN_COLOURS = 868, 32
 
 #: How hard smooth maps are compressed, from 0 to 100.
 MAP_QUALITY = 85
@@ -34,35 +34,6 @@ PAPER = 160.0
 
 #: The pictures of this group stand in the summary, the one of its name first.
 OVERVIEW = "overview"
-
-#: The questions that the figures answer, and the figure groups of each. What is in none stands behind them.
-QUESTIONS: Mapping[str, tuple[str, ...]] = {
-    "What do continuum theories predict?": ("theory", "slab_comparison", "moduli"),
-    "When does one peak become two?": (
-        "frictionless_crossover",
-        "stiffness_ratio_crossover",
-        "crossover_scaling",
-        "peak_width",
-    ),
-    "What does friction change?": (
-        "friction_linear_range",
-        "friction_fields",
-        "preparation",
-        "symmetry_breaking",
-        "tangent_moduli",
-    ),
-    "What does disorder change?": ("polydisperse_averages", "phase_diagram", "explorer", "network", "experiments"),
-    "What do piles, torques and several forces do?": (
-        "pile_dip",
-        "torque",
-        "superposition",
-        "influence",
-        "hysteresis",
-        "rolling_resistance",
-    ),
-    "How certain are the numbers?": ("sensitivity", "numerics", "contact_law", "stability"),
-}
-FURTHER = "Further figures"
 
 #: The end of a first sentence, which the next one follows.
 _SENTENCE = re.compile(r"(?<!Fig.)(?<!Figs.)(?<!Sec.)(?<!Secs.)(?<!Eq.)(?<!eq.)(?<=[.?!])\s+(?=[A-Z(])")
@@ -74,26 +45,26 @@ class Picture:
 
     stem: str
     group: str
-    source: str  #: data URI
-    small: str  #: data URI of the picture in small, not as drawn
+    source: str  #: address of the picture, or a data URI with it
+    small: str  #: data URI of the picture in small
     width: int
     height: int
     shown: int  #: width on a wide screen in pixels of the page
     plot: bool  #: whether it is drawn on white paper
-    vector: str = ""  #: compressed SVG in base64, if there is one: the page's script shows it in place of the raster
     caption: str = ""  #: with all its parameters, in plain text
     alternative: str = ""  #: what stands for it where it cannot be seen
+    question: str = ""  #: that it answers
 
     @property
-    def files(self) -> tuple[tuple[str, str], ...]:
-        """What belongs to it, in words, and the path from the root of the project."""
-        folder = f"src/granular_response_paper/groups/{self.group}"
+    def files(self) -> tuple[tuple[str, Path], ...]:
+        """What belongs to it, in words, and where it is."""
+        collection, folder = collection_of(self.group), group_path(self.group)
+        base = Path(collection.folder)
         return (
-            ("PDF", f"figures/{self.group}/{self.stem}.pdf"),
-            ("GIF", f"figures/{self.group}/{self.stem}.gif"),
-            ("data", f"data/{self.group}.nc"),
-            ("drawing", f"{folder}/draw.py"),
-            ("folder of the group", folder),
+            ("picture", base / "figures" / self.group / f"{self.stem}.png"),
+            ("data", base / "data" / f"{self.group}.nc"),
+            ("drawing", folder / "draw.py"),
+            ("simulation", folder / "simulate" / "__init__.py"),
         )
 
     @property
@@ -126,13 +97,14 @@ class Picture:
 
 @dataclass(frozen=True)
 class Pictures:
-    """All drawn pictures."""
+    """All drawn pictures of a collection."""
 
     overview: tuple[Picture, ...]
-    questions: Mapping[str, tuple[Picture, ...]]  #: the pictures by question, first those of the paper's figures
+    figures: tuple[Picture, ...]  #: of the paper's figures, by number
+    questions: Mapping[str, tuple[Picture, ...]]  #: the others, by question
 
     def all(self) -> Iterator[Picture]:
-        yield from self.overview
+        yield from (*self.overview, *self.figures)
         for found in self.questions.values():
             yield from found
 
@@ -140,71 +112,71 @@ class Pictures:
     def first(self) -> dict[int, str]:
         """The stem of the first picture of each figure of the paper that is drawn."""
         found: dict[int, str] = {}
-        for picture in self.all():
-            if picture.number:
-                found.setdefault(picture.number, picture.stem)
-        return dict(sorted(found.items()))
+        for picture in self.figures:
+            found.setdefault(picture.number or 0, picture.stem)
+        return found
 
 
-def collect(folder: Path) -> Pictures:
+def collect(folder: Path, page: Path, *, embedded: bool = False) -> Pictures:
     """All pictures ``folder/GROUP/STEM.png`` with their captions; one that begins with ``figNN`` is of that figure.
 
-    Raises ValueError if a file of captions is none.
+    The page in the folder ``page`` shows the files, or holds them if they are ``embedded``. Raises ValueError if a file
+    of captions is none.
     """
     said = _said(folder)
     paths = sorted(folder.glob("*/*.png"), key=lambda path: (path.stem, path.parent.name))
-    with threads.using(threads.cores()), threads.mapping() as several:  # encoding is most of the time of a page
-        embedded = several(embed, paths)
-    shown = [replace(plain, **said.get((plain.group, plain.stem), {})) for plain in embedded]
-    shown.sort(key=lambda picture: picture.number or captions.NUMBER_OF_FIGURES + 1)  # the others as they are
-    overview = sorted((p for p in shown if p.group == OVERVIEW), key=lambda picture: picture.stem != OVERVIEW)
-    known = {group: question for question, groups in QUESTIONS.items() for group in groups}
-    by_question = {
-        question: tuple(p for p in shown if p.group != OVERVIEW and known.get(p.group, FURTHER) == question)
-        for question in (*QUESTIONS, FURTHER)
-    }
-    return Pictures(tuple(overview), {question: found for question, found in by_question.items() if found})
+    with (
+        threads.using(threads.cores()),
+        threads.mapping() as several,
+    ):  # making them small is most of the time of a page
+        found = several(partial(shown, page=page, embedded=embedded), paths)
+    every = [replace(plain, **said.get((plain.group, plain.stem), {})) for plain in found]
+    overview = sorted((p for p in every if p.group == OVERVIEW), key=lambda picture: picture.stem != OVERVIEW)
+    figures = sorted((p for p in every if p.number), key=lambda picture: (picture.number or 0, picture.stem))
+    others = [p for p in every if p.group != OVERVIEW and not p.number]
+    asked = dict.fromkeys(picture.question for picture in others)
+    by_question = {question: tuple(p for p in others if p.question == question) for question in asked}
+    return Pictures(tuple(overview), tuple(figures), by_question)
 
 
 def _said(folder: Path) -> dict[tuple[str, str], dict[str, Any]]:
-    """Caption and alternative text of each picture, by group and stem."""
+    """Caption, alternative text and question of each picture, by group and stem."""
     found = {}
     for path in folder.glob(f"*/{captions.FILE}"):
         try:
             for stem, entry in read_json(path).items():
-                found[path.parent.name, stem] = {name: str(entry[name]) for name in ("caption", "alternative")}
+                texts = {name: str(entry[name]) for name in ("caption", "alternative", "question")}
+                found[path.parent.name, stem] = texts
         except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
             raise ValueError(f"{path}: holds no captions: {type(error).__name__} {error}") from None
     return found
 
 
-def embed(path: Path) -> Picture:
-    """A drawn picture as a data URI: as many pixels as drawn in 256 colours, a third as large as the PNG.
+def shown(path: Path, page: Path, *, embedded: bool = False) -> Picture:
+    """A drawn picture as the page in a folder shows it; an animation beside it stands in its place.
 
-    A smooth map is in all colours, with little loss, which is smaller. Where a vector picture is beside it, the raster
-    one is smaller, for readers without scripts; where an animation is, that stands in its place.
+    Embedded it has as many pixels as drawn in 256 colours, a third as large as the PNG; a smooth map is in all colours,
+    with little loss, which is smaller.
     """
     with Image.open(path) as image:
         plain = image.convert("RGB")
     small = plain.copy()
     small.thumbnail(SMALL)
-    moving, beside = path.with_suffix(".gif"), path.with_suffix(captions.VECTOR)
-    vector = base64.b64encode(beside.read_bytes()).decode() if beside.exists() and not moving.exists() else ""
-    few = plain.copy()
-    if vector:
-        few.thumbnail((STAND_IN, plain.height))
-    few = few.quantize(STAND_IN_COLOURS if vector else 256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-    still = _webp(few.convert("RGB"), lossless=True, quality=76)
+    moving = path.with_suffix(".gif")
+    source = Path(os.path.relpath(moving if moving.exists() else path, page)).as_posix()
+    if embedded:
+        few = plain.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).convert("RGB")
+        still = (_webp(few, lossless=True, quality=76), _webp(plain, quality=MAP_QUALITY))
+        source = _moving(moving) if moving.exists() else min(still, key=len)
     return Picture(
         path.stem,
         path.parent.name,
-        _moving(moving) if moving.exists() else min(still, _webp(plain, quality=MAP_QUALITY), key=len),
+        source,
         _webp(small, quality=SMALL_QUALITY),
         plain.width,
         plain.height,
         round(SHOWN * plain.width),
         bool(np.asarray(small).mean() > PAPER),
-        vector,
     )
 
 
