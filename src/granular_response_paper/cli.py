@@ -71,7 +71,7 @@ def simulate(
     typer.echo(str(path))
 
 
-@commands.command("draw pile_dip", "draw pile_dip --measure", "draw pile_dip --data other.nc -o other-figures")
+@commands.command("draw pile_dip", "draw pile_dip --formats pdf,svg", "draw pile_dip --data other.nc -o other-figures")
 def draw(
     group: Group,
     data: GroupData = None,
@@ -79,13 +79,15 @@ def draw(
     measured: Annotated[
         bool, typer.Option("--measure", help="Write its numbers too, to figures/metrics/GROUP.json.")
     ] = False,
+    formats: Annotated[str, typer.Option(help="Further formats beside PNG, separated by commas: pdf, svg.")] = "",
 ) -> None:
     """Draw the figures of a group."""
     from .pipeline import drawing, measuring
 
     loaded()
     numbers = [measuring.measure(group, data)] if measured else []  # first: they do not wait for pictures
-    for path in (*drawing.draw(group, data, output), *numbers):
+    others = [name.strip() for name in formats.split(",") if name.strip()]
+    for path in (*drawing.draw(group, data, output, others), *numbers):
         typer.echo(str(path))
 
 
