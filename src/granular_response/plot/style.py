@@ -48,6 +48,12 @@ LINE_STYLES: tuple[Any, ...] = (
 )
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
+#: What colours mean in every picture of a packing, of the library, the paper and its page alike: contacts that a load
+#: opened or closed, contacts that slide, contact forces that it made larger or smaller, the load itself, disks.
+OPENED, CLOSED, SLIDING = VERMILION, GREEN, BLUE
+INCREASED, DECREASED = "#12233F", "#8FA3BF"
+LOAD, DISKS = "#9B2D7B", "#EFEDE8"
+
 #: Colour map of magnitudes.
 SEQUENTIAL = "viridis"
 #: The ends of the ramps of :func:`ordered_colours`, dark to light, one for each quantity that curves are told apart by.
@@ -77,10 +83,10 @@ DEPTH = rf"depth$\,/\,{RADIUS}$"
 WIDTH = rf"width$\,/\,{RADIUS}$"
 SCALED_POSITION = "$x/h$"
 FORCE = rf"${F_EXT}/{WEIGHT}$"
-RESPONSE = rf"floor response$\,/\,{F_EXT}$"
-RESPONSE_AT_CENTRE = rf"floor response at $x=0\,/\,{F_EXT}$"
+RESPONSE = "normalized floor response"
+RESPONSE_AT_CENTRE = f"{RESPONSE} at $x=0$"
 FLOOR_FORCE = rf"floor force$\,/\,{WEIGHT}$"
-ADDED_FLOOR_FORCE = rf"added {FLOOR_FORCE}"
+INCREMENTAL_FLOOR_FORCE = f"incremental {FLOOR_FORCE}"
 #: Where the response is smoothed, it is a stress.
 FLOOR_STRESS = rf"floor stress $\sigma_{{zz}}{RADIUS}/{F_EXT}$"
 PRESSURE = rf"floor pressure $p\,h/{F_EXT}$"
