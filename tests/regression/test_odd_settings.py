@@ -65,10 +65,10 @@ def test_an_experiment_never_ends_in_a_traceback(group, number, tmp_path):
 
 
 def test_a_slab_narrower_than_its_rings_has_figure_and_metrics(tmp_path):
-    """Rings beyond the slab hold nothing, and limits of an axis were not a number."""
+    """Rings beyond the slab hold nothing."""
     small = {**reduced.parameters("torque"), "distances": [60.0, 80.0, 100.0]}
     (tmp_path / "params.yaml").write_text(text.write({"common": {"method": "auto"}, "torque": small}))
     data = simulation.simulate("torque", tmp_path / "data.nc", parameter_file=tmp_path / "params.yaml", workers=1)
-    assert tmp_path / "fig18_torque_reach.png" in drawing.draw("torque", data, tmp_path)
+    assert tmp_path / "fig18_torque.png" in drawing.draw("torque", data, tmp_path)
     numbers = json.loads(measuring.measure("torque", data, tmp_path / "torque.json").read_text())
     assert numbers == {"not measured": "T1a T1b"}

@@ -277,9 +277,8 @@ def test_the_study_and_its_figures(tmp_path_factory):
     assert datasets["random_scenes"].sizes["scene"] == 5
     assert datasets["random_scenes"].attrs["wrong"] == ""
     drawn = figures.draw(datasets)
-    assert set(drawn) == {"stability_steps", "stability_motion", "stability_scenes"}
+    assert set(drawn) == {"stability_scenes"}
     assert figures.RANDOM == random_scenes.OUTCOMES
-    assert figures.OUTCOMES == time_steps.OUTCOMES
 
 
 def test_a_random_scene_is_the_same_whenever_it_is_drawn():

@@ -61,9 +61,9 @@ SEQUENTIAL = "viridis"
 RAMPS: dict[str, tuple[str, ...]] = {
     "force": ("#440154", "#31688E", "#2A9D76"),
     "friction": ("#000000", "#004A7F", "#2E9BD6"),
-    "polydispersity": ("#3D1300", "#A84300", "#E0792B"),
+    "polydispersity": ("#1A1A1A", "#A3122A", "#E0792B"),
     "length": ("#2D004B", "#8B3A8F", "#CC79A7"),
-    "other": ("#1F1F00", "#6E6A00", "#A09A20"),
+    "other": ("#2B1A00", "#7A6A00", "#5F9E2A"),
 }
 
 #: Symbols of the paper, for :func:`equals` and for labels: set them between dollar signs.

@@ -19,8 +19,9 @@ from .parameters import Parameters
 
 #: Half of the width of the stress maps and of the profiles, in mean radii.
 MAP_HALF_WIDTH, PROFILE_HALF_WIDTH = 30.0, 20.0
-#: Lengths of the largest forces of Fig. 13 in mean radii, above and below; force times depth per load that has it below.
-LONGEST, LONGEST_DEEP, DEEP = 8.0, 4.0, 2.0
+#: Lengths of the largest forces of Fig. 13 in mean radii, above and below, and what has it below: force times depth per
+#: load.
+LONGEST, LONGEST_DEEP, DEEP = 6.0, 4.0, 2.0
 #: Contours of the stress maps, per largest stress.
 LEVELS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7)
 #: Contours of the differences, of both signs, per largest difference.
@@ -87,7 +88,7 @@ def _force_chains(data: xr.Dataset) -> Figure:
             network.draw_load(axes, (x, z + 1.0))
             network.draw_box(axes, Box(width), z, between=(width / 3.0, 2.0 * width / 3.0))
             style.no_axes(axes)
-            axes.set(xlim=(width / 3.0, 2.0 * width / 3.0), ylim=(-0.8, z + 5.2))
+            axes.set(xlim=(width / 3.0, 2.0 * width / 3.0), ylim=(-2.4, z + 5.2))
     names = list(map(_friction, frictions))
     titles(panels.flat, [*names, *(rf"{name}, $|\mathbf{{f}}|\,z/{style.F_EXT}$" for name in names)])
     return figure

@@ -17,11 +17,11 @@ from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
 from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.ensembles import OUTCOMES
 from granular_response_paper.panels import (
-    chain_key,
-    chains,
-    contact_ends,
+    Contacts,
     different,
     family,
+    force_key,
+    forces,
     grey_limit,
     label_ends,
     material,
@@ -36,8 +36,8 @@ from .parameters import Parameters
 #: Fig. 21 is smoothed with this width, and shows at most so many forces of a case.
 FIG21_WIDTH, MOST_FORCES = 6.0, 4
 
-#: Forces of the keys of Fig. 2 in mean disk weights, at rest and added; added force times depth per load that has the
-#: full width.
+#: Forces of the keys of Fig. 2 in mean disk weights, under gravity and incremental; incremental force times depth per
+#: load that has the full width.
 KEYS, DEEP = (20.0, 1.0), 4.0
 
 #: Of the keys over the panels of Fig. 21.
@@ -120,39 +120,44 @@ def _shown(data: xr.Dataset) -> NDArray[np.intp]:
 
 
 def _forces(data: xr.Dataset) -> Figure:
-    """Fig. 2: the whole slab under gravity; what the load adds in the middle third, and that times the depth."""
+    """Fig. 2: the slab under gravity, and in the middle third the incremental forces, and these times the depth."""
     figure, panels = style.figure(2, 2, width="double", height=4.4, height_ratios=(1.0, 1.6))
     grid = panels[0, 0].get_gridspec()
     for axes in panels[0]:
         axes.remove()
     resting, loaded = _contact_forces(data)
-    at_rest, added = np.linalg.norm(resting, axis=1), np.linalg.norm(loaded - resting, axis=1)
     width, disk, load = float(data["width"]), int(data["loaded_disk"]), float(data["force"][1])
     radius, position = data["radius"].values, data["position"].values
     top = float((position[..., 1] + radius).max())
     x, z = position[1, disk]
-    points, (first, second) = contact_ends(data, position[1])
-    depth = z - 0.5 * (points[first, 1] + points[second, 1])
+    under_gravity, contacts = (Contacts.of(data, one) for one in position)
+    added = loaded - resting
     force = style.equals(style.F_EXT, load, style.WEIGHT)
     wide = figure.add_subplot(grid[0, :])
+    strongest = float(np.linalg.norm(resting, axis=1).max())
+    middle = x - width / 6.0, x + width / 6.0
     drawn = (
-        (wide, 0, at_rest, float(at_rest.max()), KEYS[0], style.WEIGHT, (-1.5, width + 1.5)),
-        (panels[1, 0], 1, added, 0.5 * load, KEYS[1], style.WEIGHT, (x - width / 6.0, x + width / 6.0)),
-        (panels[1, 1], 1, added * depth / load, DEEP, 1.0, style.RADIUS, (x - width / 6.0, x + width / 6.0)),
+        (wide, under_gravity, resting, strongest, KEYS[0], style.WEIGHT, (-1.5, width + 1.5)),
+        (panels[1, 0], contacts, added, 0.5 * load, KEYS[1], style.WEIGHT, middle),
+        (panels[1, 1], contacts, added * (z - contacts.point[:, 1:]) / load, DEEP, 1.0, style.RADIUS, middle),
     )
-    for axes, state, size, largest, key, unit, limits in drawn:
-        network.draw_disks(axes, position[state], radius)
-        network.draw_rotations(axes, position[state], radius, data["angle"].values[state], color="#A8C8DC")
+    for axes, where, vector, largest, key, unit, limits in drawn:
+        state = 0 if axes is wide else 1
+        look = {"facecolor": style.DISKS, "edgecolor": "none"}
+        network.draw_disks(axes, position[state], radius, **look)
+        marks = {"color": "white", "linewidth": 0.4 if axes is wide else 0.9, "zorder": 1.5}
+        network.draw_rotations(axes, position[state], radius, data["angle"].values[state], **marks)
         network.draw_box(axes, Box(width), top)
-        chains(axes, *contact_ends(data, position[state]), size, largest)
-        chain_key(axes, (limits[1] - 0.09 * width, top + 2.8), key, largest, unit)
+        forces(axes, where, vector, largest)
+        force_key(axes, (limits[1] - 0.08 * width, top + 2.8), key, largest, unit)
         style.no_axes(axes)
-        axes.set(xlim=limits, ylim=(-1.5, top + 4.0))
+        axes.set(xlim=limits, ylim=(-2.4, top + 4.0))
         if state:
             network.draw_loaded_disk(axes, (x, z), float(radius[disk]))
             network.draw_load(axes, (x, z + radius[disk]), length=3.6)
             axes.set(xlim=limits)
-    titles((wide, *panels[1]), ("under gravity", f"added by {force}, middle third", "the same, times depth"))
+    times_depth = rf"incremental, $|\mathbf{{f}}|\,z/{style.F_EXT}$"
+    titles((wide, *panels[1]), ("under gravity", f"incremental, {force}, middle third", times_depth))
     return figure
 
 
