@@ -53,6 +53,14 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 OPENED, CLOSED, SLIDING = VERMILION, GREEN, BLUE
 INCREASED, DECREASED = "#12233F", "#8FA3BF"
 LOAD, DISKS = "#9B2D7B", "#EFEDE8"
+#: Those of the page's explorer by name: on white, and on a dark screen.
+MEANINGS: dict[str, tuple[str, str]] = {
+    "opened": (OPENED, "#F0893A"),
+    "sliding": (SLIDING, SKY),
+    "increased": (INCREASED, "#C9D6EA"),
+    "decreased": (DECREASED, "#63779A"),
+    "load": (LOAD, "#D987BE"),
+}
 
 #: Colour map of magnitudes.
 SEQUENTIAL = "viridis"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -80,7 +81,7 @@ def _force_chains(data: xr.Dataset) -> Figure:
             (panels[0, index], added[index], strongest, _round(load / 5.0), style.WEIGHT, LONGEST),
             (panels[1, index], deep, DEEP, 0.5, style.RADIUS, LONGEST_DEEP),
         ):
-            look = {"facecolor": style.DISKS, "edgecolor": "none"}
+            look: dict[str, Any] = {"facecolor": style.DISKS, "edgecolor": "none"}
             network.draw_disks(axes, position[inside], radius[inside], **look)
             forces(axes, contacts, vector, largest, shown=near, longest=longest)
             force_key(axes, (2.0 * width / 3.0 - 8.0, z + 3.0), key, largest, unit, longest=longest)
