@@ -40,10 +40,9 @@ WEIGHT, RADIUS = "m\u0304g", "R\u0304"
 FIRST_LETTERS: Mapping[str, str] = {
     "fig01b_slab_comparison": "c",
     "fig05b_stiffness": "e",
-    "fig05c_depth_and_width": "h",
+    "fig05c_depth": "h",
     "fig16s_symmetry_breaking": "c",
     "fig17_pile_profiles": "g",
-    "fig18_torque_reach": "g",
     "fig24b_superposition_error": "e",
 }
 

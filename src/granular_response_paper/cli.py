@@ -83,17 +83,19 @@ def simulate(
     typer.echo(str(path))
 
 
-@commands.command("draw pile_dip", "draw pile_dip --data other.nc -o other-figures")
+@commands.command("draw pile_dip", "draw pile_dip --formats pdf,svg", "draw pile_dip --data other.nc -o other-figures")
 def draw(
     group: Group,
     data: GroupData = None,
     output: Annotated[Path | None, output_option(help="Folder of the figures; figures/GROUP if not given.")] = None,
+    formats: Annotated[str, typer.Option(help="Further formats beside PNG, separated by commas: pdf, svg.")] = "",
 ) -> None:
     """Draw the figures of a group."""
     from .pipeline import drawing
 
     loaded()
-    for path in drawing.draw(group, data, output):
+    others = [name.strip() for name in formats.split(",") if name.strip()]
+    for path in drawing.draw(group, data, output, others):
         typer.echo(str(path))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import repeat
 from typing import Any, Literal
 
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from granular_response.plot import network, style
 from granular_response.plot.photoelastic import photoelastic
-from granular_response.state import FloatArray
+from granular_response.state import WALL_NORMAL, FloatArray
 
 from .captions import letters
 
@@ -85,45 +86,54 @@ def zero(*panels: Axes) -> None:
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
 
 
-#: Width of the largest force of :func:`chains`, in points, and the part of it below which nothing is drawn.
-WIDEST, LEAST = 5.0, 0.01
+#: Width of the largest force of :func:`forces` in points, its length in mean radii, and the part of it below which
+#: nothing is drawn.
+WIDEST, LONGEST, LEAST = 4.5, 4.0, 0.01
 
 
-def contact_ends(data: xr.Dataset, position: FloatArray) -> tuple[FloatArray, tuple[np.ndarray, np.ndarray]]:
-    """Points and the two ends of each contact, as :func:`chains` takes them: centres first, then points on walls.
+@dataclass(frozen=True)
+class Contacts:
+    """Contacts of a state as :func:`forces` draws them: those of pairs of disks, then those with walls."""
 
-    ``data`` has the contacts and walls of a state's dataset; contacts between disks come before those with walls.
+    point: FloatArray  #: (m, 2)
+    normal: FloatArray  #: (m, 2), towards the first disk
+
+    @classmethod
+    def of(cls, data: xr.Dataset, position: FloatArray) -> Contacts:
+        """From the contacts and walls of a state's dataset."""
+        radius, disk, wall = (data[name].values for name in ("radius", "wall_disk", "wall_index"))
+        first, second = data["contact_disk"].values, data["contact_partner"].values
+        pairs = network.pair_points(position, radius, first, second)
+        return cls(
+            np.concatenate([pairs, network.wall_points(position, radius, disk, wall)]),
+            np.concatenate([position[first] - position[second], WALL_NORMAL[wall.astype(int)]]),
+        )
+
+
+def forces(
+    axes: Axes, contacts: Contacts, vector: FloatArray, largest: float, *, shown: np.ndarray | None = None,
+    longest: float = LONGEST,
+) -> None:  # fmt: skip
+    """Forces as lines along them, as long and as wide as they are large, as in Figs. 2, 13 and 17 of the paper.
+
+    ``vector`` (m, 2) is in units of choice; ``largest`` has the full width, and the length ``longest`` in mean radii.
+    Of the contacts those ``shown`` (m,) are drawn. Lines are dark where the force presses together, pale where it
+    takes compression away.
     """
-    radius, walls = data["radius"].values, data["wall_disk"].values
-    points = np.concatenate([position, network.wall_points(position, radius, walls, data["wall_index"].values)])
-    second = np.concatenate([data["contact_partner"].values, len(radius) + np.arange(len(walls))])
-    return points, (np.concatenate([data["contact_disk"].values, walls]), second)
+    here = slice(None) if shown is None else shown
+    scale = {"length_per_force": longest / largest, "width_per_force": WIDEST / largest, "smallest": LEAST * largest}
+    network.draw_signed_forces(axes, contacts.point[here], vector[here], contacts.normal[here], **scale)
 
 
-def chains(
-    axes: Axes, position: FloatArray, ends: tuple[ArrayLike, ArrayLike], size: FloatArray, largest: float
+def force_key(
+    axes: Axes, at: tuple[float, float], size: float, largest: float, unit: str, *, longest: float = LONGEST
 ) -> None:
-    """Contact forces as lines from centre to centre, so that chains are unbroken; width and colour by their size.
-
-    ``position`` (n, 2) are centres and points on walls, ``ends`` the two indices (m,) of each contact, ``size`` (m,)
-    is in units of choice; ``largest`` has the full width.
-    """
-    part = np.minimum(size / largest, 1.0)
-    order = np.argsort(part)[np.count_nonzero(part <= LEAST) :]
-    first, second = (np.asarray(one, dtype=int)[order] for one in ends)
-    drawn = network.draw_contacts(
-        axes, position, first, second, linewidth=np.maximum(WIDEST * part[order], 0.3), capstyle="round", zorder=2
-    )
-    ramp = np.array(style.ordered_colours(256)[::-1])
-    drawn.set_color(list(ramp[(255 * np.sqrt(part[order])).astype(int)]))
-
-
-def chain_key(axes: Axes, at: tuple[float, float], size: float, largest: float, unit: str) -> None:
-    """A line that stands for a force of ``size`` in :func:`chains`, from ``at`` (data), and its value."""
-    ends = np.array([at, (at[0] + 2.0, at[1])])
-    chains(axes, ends, ([0], [1]), np.array([size]), largest)
+    """A line that stands for a force of ``size`` in :func:`forces`, its middle at ``at`` (data), and its value."""
+    along = np.array([[1.0, 0.0]])
+    forces(axes, Contacts(np.array([at]), along), size * along, largest, longest=longest)
+    end = at[0] + 0.5 * longest * size / largest, at[1]
     note = f"${size:g}\\,{unit}$" if unit else f"${size:g}$"
-    axes.annotate(note, ends[1], (5.0, 0.0), textcoords="offset points", va="center", fontsize=8)
+    axes.annotate(note, end, (5.0, 0.0), textcoords="offset points", va="center", fontsize=8)
 
 
 def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap: float = 9.0, **text: Any) -> None:

@@ -9,7 +9,7 @@ STEMS = [
     "fig04_frictionless_contacts",
     "fig05_teardrop",
     "fig05b_stiffness",
-    "fig05c_depth_and_width",
+    "fig05c_depth",
 ]
 
 

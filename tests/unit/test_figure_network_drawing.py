@@ -5,6 +5,7 @@ import io
 import matplotlib.image
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 
 from granular_response.plot import network as nd
 from granular_response.plot import style
@@ -84,6 +85,20 @@ def test_force_lines_are_centred_and_scaled_by_magnitude(axes) -> None:
     magnitude = np.linalg.norm(force[:3], axis=1)
     np.testing.assert_allclose(vector, 2.0 * force[:3] / 5.0)
     np.testing.assert_allclose(lines.get_linewidth(), 3.0 * magnitude / 5.0)
+
+
+def test_forces_that_press_together_and_apart_are_told_apart(axes) -> None:
+    """Each has the colour of its kind, whatever its direction is."""
+    point, normal = np.zeros((4, 2)), np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+    force = np.array([[2.0, 1.0], [0.0, -1.0], [-1.0, 3.0], [0.0, 2.0]])
+    drawn = nd.draw_signed_forces(axes, point, force, normal, length_per_force=1.0, width_per_force=1.0)
+    vectors = {name: np.diff(np.array(one.get_segments()), axis=1)[:, 0] for name, one in drawn.items()}
+    np.testing.assert_allclose(vectors["force increased"], force[[0, 2]])
+    np.testing.assert_allclose(vectors["force decreased"], force[[1, 3]])
+    colours = {name: to_hex(one.get_colors()[0]).upper() for name, one in drawn.items()}
+    assert colours == {"force increased": style.INCREASED, "force decreased": style.DECREASED}
+    only = nd.draw_signed_forces(axes, point[:1], force[:1], normal[:1], length_per_force=1.0, width_per_force=1.0)
+    assert list(only) == ["force increased"]
 
 
 def test_rotation_marks_start_vertical_and_turn_counter_clockwise(axes) -> None:

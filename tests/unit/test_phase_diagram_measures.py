@@ -407,11 +407,13 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
     assert np.all(np.diff(side["contacts_interval"], axis=1) >= 0.0)
     store.write(tmp_path / "phase_diagram.nc", found)
     drawn = figures.draw(store.read(tmp_path / "phase_diagram.nc"))
-    assert {"fig22_phase_diagram", "five_realizations"} <= drawn.keys()
-    lattice, disordered = drawn["crossover_intervals"].axes[2:]  # the row of the larger width
+    assert list(drawn) == ["fig22_phase_diagram", "crossover_certainty", "starts"]
+    lattice, disordered = drawn["crossover_certainty"].axes[:2]
     for axes, expected in ((lattice, force[:1]), (disordered, force[1:])):
-        marks = [line for line in axes.get_lines() if line.get_marker() in "o^v" and line.get_zorder() < 6]
-        assert sorted(y for line in marks for y in line.get_ydata()) == pytest.approx(sorted(expected))
+        marks = [line for line in axes.get_lines() if line.get_marker() in figures.MARKERS]
+        found = [y for line in marks for y in line.get_ydata()]
+        found += [float(text.get_text()[2:]) for text in axes.texts if text.get_text()[0] in "≤>"]
+        assert sorted(found) == pytest.approx(sorted(expected), rel=1e-3)
     for figure in drawn.values():
         assert style.render(figure, "png", dpi=40).startswith(b"\x89PNG")
 

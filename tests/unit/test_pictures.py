@@ -49,25 +49,25 @@ def test_forces_are_those_that_the_load_adds(result, ax):
     rest, loaded = (pictures.Shown.of(data, k) for k in (0, 2))
     added = np.concatenate([loaded.values(f) - rest.values(f) for f in ("contact_force", "wall_force")])
     size = np.linalg.norm(added, axis=1)
-    black, red = lines(ax, style.BLACK), lines(ax, style.VERMILION)
-    drawn = np.concatenate([np.array(c.get_segments()) for c in (black, red)])
+    dark, pale = lines(ax, style.INCREASED), lines(ax, style.DECREASED)
+    drawn = np.concatenate([np.array(c.get_segments()) for c in (dark, pale)])
     length = np.linalg.norm(drawn[:, 1] - drawn[:, 0], axis=1)
     np.testing.assert_allclose(np.sort(length), np.sort(4.0 * size[size > 0.02 * size.max()] / size.max()), rtol=1e-9)
-    width = np.concatenate([c.get_linewidth() for c in (black, red)])
+    width = np.concatenate([c.get_linewidth() for c in (dark, pale)])
     # still seen in print
     np.testing.assert_allclose(width, np.maximum(width.max() * length / length.max(), network.THINNEST))
     ends = np.sum(np.linalg.norm(added[size > 0.02 * size.max()], axis=1))
-    assert ends > 0 and len(black.get_segments()) > len(red.get_segments())
+    assert ends > 0 and len(dark.get_segments()) > len(pale.get_segments())
 
 
 def test_what_the_load_takes_away_is_told_apart(result, ax):
-    """Red lines are contacts whose normal force the load makes smaller."""
+    """Pale lines are contacts whose normal force the load makes smaller."""
     gr.plot.forces(result, ax=ax, scale="linear")
     contacts = result.contacts
     lost = (contacts["contact_normal_force"][2] - contacts["contact_normal_force"][0]).values < 0.0
     shown = pictures.Shown.of(result, 2)
     point = network.pair_points(shown.position, shown.radius, *shown.pairs)
-    middle = np.array(lines(ax, style.VERMILION).get_segments()).mean(axis=1)
+    middle = np.array(lines(ax, style.DECREASED).get_segments()).mean(axis=1)
     nearest = np.linalg.norm(point[None] - middle[:, None], axis=2).min(axis=1)
     inside = nearest < 1e-9
     index = np.linalg.norm(point[None] - middle[:, None], axis=2).argmin(axis=1)[inside]
@@ -80,7 +80,7 @@ def test_small_forces_grow_on_other_scales(result, ax, scale):
     gr.plot.forces(result, ax=ax, scale=scale)
     other = style.figure()[1][0, 0]
     gr.plot.forces(result, ax=other, scale="linear")
-    assert len(lines(ax, style.BLACK).get_segments()) > len(lines(other, style.BLACK).get_segments())
+    assert len(lines(ax, style.INCREASED).get_segments()) > len(lines(other, style.INCREASED).get_segments())
 
 
 def test_scales_keep_the_order_and_the_direction():
@@ -143,6 +143,16 @@ def test_every_picture_of_a_packing_shows_floor_walls_and_loads(result, name):
     assert not at_rest.texts
 
 
+@pytest.mark.parametrize("name", ["forces", "contacts", "stress"])
+def test_a_picture_near_the_loads_ends_beside_them(result, name):
+    ax = getattr(gr.plot, name)(result, ax=style.figure()[1][0, 0], half_width=4.0)
+    disks = result.to_dataset()["loaded_disk"].values
+    x = result.loaded[-1].position[disks, 0] - (result.origin if name == "stress" else 0.0)
+    np.testing.assert_allclose(ax.get_xlim(), [x.min() - 4.0, x.max() + 4.0])
+    with pytest.raises(pictures.PictureError, match=r"half_width = 0: must be a number greater than 0"):
+        getattr(gr.plot, name)(result, half_width=0)
+
+
 def test_pictures_make_figures_of_their_own(result):
     axes = gr.plot.contacts(result)
     assert axes.figure.number  # one of pyplot's, so notebooks show it
@@ -161,7 +171,7 @@ def test_stored_and_solved_results_look_the_same(result, tmp_path):
 def test_a_page_has_what_was_asked_for(result):
     figure = gr.plot.page(result)
     titles = [axes.get_title(loc="left") for axes in figure.axes if axes.get_title(loc="left")]
-    assert [title[:5] for title in titles] == ["(a) f", "(b) f", "(c) c", "(d) s"]
+    assert [title[:5] for title in titles] == ["(a) n", "(b) i", "(c) c", "(d) s"]
     with pytest.raises(pictures.PictureError, match="what = 'chains': must be among response, floor, forces"):
         gr.plot.page(result, ["chains"])
 
@@ -220,7 +230,7 @@ def test_floor_forces_are_of_the_state_asked_for(result, ax):
     assert ax.get_ylabel() == style.FLOOR_FORCE
     other = gr.plot.floor(result, ax=style.figure()[1][0, 0])
     np.testing.assert_array_equal(curve(other), data["floor_force"][1] - data["floor_force_rest"])
-    assert other.get_ylabel() == style.ADDED_FLOOR_FORCE
+    assert other.get_ylabel() == style.INCREMENTAL_FLOOR_FORCE
 
 
 def test_why_there_is_no_response_is_said(loadless, turned, ax):

@@ -1,11 +1,9 @@
 """Stages of a figure group that is made up for it: simulated, drawn, interrupted; progress on a terminal."""
 
 import fcntl
-import gzip
 import io
 import json
 import os
-import re
 import time
 from pathlib import Path
 
@@ -78,16 +76,14 @@ def test_a_group_has_the_common_parameters_and_its_own(group):
         simulation.parameters("cubes")
 
 
-def test_a_vector_picture_is_stored_where_it_is_the_smaller_one(group, monkeypatch):
+def test_further_formats_are_written_on_request(group, tmp_path):
     simulation.simulate(group, workers=1)
-    drawing.draw(group)
-    stored = Path("figures/squares/fig99_squares.svgz")
-    drawn = gzip.decompress(stored.read_bytes()).decode()
-    assert drawn.startswith("<?xml") and drawn.rstrip().endswith("</svg>") and "<text" not in drawn
-    coordinates = re.findall(r' d="([^"]*)"', drawn)
-    assert coordinates and not any(re.search(r"\.\d{3}", path) for path in coordinates)
-    monkeypatch.setattr(drawing, "LARGEST", 10)
-    assert stored not in drawing.draw(group) and not stored.exists()
+    (svg,) = [path for path in drawing.draw(group, None, tmp_path / "all", ["svg", "pdf"]) if path.suffix == ".svg"]
+    assert svg.read_text().startswith("<?xml")
+    assert svg.with_suffix(".pdf").read_bytes().startswith(b"%PDF") and svg.with_suffix(".png").exists()
+    with pytest.raises(pipeline.GroupError, match="formats: bmp is unknown, must be among png, pdf, svg"):
+        drawing.draw(group, None, tmp_path / "other", ["bmp"])
+    assert not (tmp_path / "other").exists()
 
 
 def test_simulate_and_draw(group, tmp_path):
@@ -96,10 +92,7 @@ def test_simulate_and_draw(group, tmp_path):
     attributes = store.read_attributes("data/squares.nc")
     assert yaml.safe_load(attributes["parameters"])["count"] == 4
     paths = drawing.draw(group)
-    assert sorted(map(str, paths)) == [
-        f"figures/squares/{name}"
-        for name in ("captions.json", "fig99_squares.pdf", "fig99_squares.png", "fig99_squares.svgz")
-    ]
+    assert sorted(map(str, paths)) == [f"figures/squares/{name}" for name in ("captions.json", "fig99_squares.png")]
     assert json.loads(Path("figures/squares/captions.json").read_text()) == {
         "fig99_squares": {
             "figure": None,

@@ -1,4 +1,4 @@
-"""A growing load as an animation: the force chains that it adds, the contacts that it opens, the floor response."""
+"""A growing load as an animation: incremental forces, the contacts that it opens, the floor response."""
 
 from __future__ import annotations
 

@@ -13,14 +13,12 @@ from ..state import OPEN, FloatArray
 from . import network, style
 from .pictures import Shown
 
-#: Colours of disks, of the forces that press them together, and of those that the load takes away.
-DISKS, CHAINS, LOST = "#EFEDE8", "#12233F", "#8FA3BF"
 #: Points: the widest line, and what a line is left out below.
 WIDEST, THINNEST = 3.0, 0.3
 
 
 def draw_chains(axes: Axes, shown: Shown, *, largest: float, half_width: float) -> None:
-    """What the load adds at each contact as a line from centre to centre, the contacts that it opens, the load.
+    """The incremental force of each contact as a line from centre to centre, the contacts that it opens, the load.
 
     Widths go as the square root of the force and reach :data:`WIDEST` points at ``largest`` (mean disk weights); larger
     forces have that width. Dark lines press disks together, pale ones take compression away. What is within
@@ -32,7 +30,8 @@ def draw_chains(axes: Axes, shown: Shown, *, largest: float, half_width: float) 
     kept = near[first] & near[second]
     at_wall, index = shown.values("wall_disk"), shown.values("wall_index")
     pair, wall = shown.forces(added=True)
-    network.draw_disks(axes, shown.position[near], shown.radius[near], facecolor=DISKS, edgecolor="none", zorder=0)
+    look: dict[str, Any] = {"facecolor": style.DISKS, "edgecolor": "none", "zorder": 0}
+    network.draw_disks(axes, shown.position[near], shown.radius[near], **look)
     along = np.sum(pair * shown.box.separation(shown.position[first], shown.position[second]), axis=1)
     foot = shown.box.on_wall(shown.position[at_wall], index)
     inward = np.sum(wall * (shown.position[at_wall] - foot), axis=1)
@@ -40,8 +39,8 @@ def draw_chains(axes: Axes, shown: Shown, *, largest: float, half_width: float) 
         WIDEST * np.sqrt(np.minimum(np.linalg.norm(force, axis=1) / (largest if largest > 0.0 else np.inf), 1.0))
         for force in (pair, wall)
     )
-    for sign, colour, order in ((-1.0, LOST, 2), (1.0, CHAINS, 3)):
-        look: dict[str, Any] = {"color": colour, "capstyle": "round", "zorder": order}
+    for sign, colour, order in ((-1.0, style.DECREASED, 2), (1.0, style.INCREASED, 3)):
+        look = {"color": colour, "capstyle": "round", "zorder": order}
         drawn = kept & (sign * along > 0.0) & (width > THINNEST)
         lines = (first[drawn], second[drawn])
         network.draw_contacts(axes, shown.position, *lines, box=shown.box, linewidth=width[drawn], **look)
@@ -49,7 +48,7 @@ def draw_chains(axes: Axes, shown: Shown, *, largest: float, half_width: float) 
         ends = np.stack([shown.position[at_wall][drawn], foot[drawn]], axis=1)
         axes.add_collection(LineCollection(list(ends), linewidths=wall_width[drawn], **look), autolim=False)
     opened = kept & (shown.values("contact_status", 0) != OPEN) & (shown.values("contact_status") == OPEN)
-    look = {"color": style.VERMILION, "linewidth": 0.5 * WIDEST, "capstyle": "butt", "zorder": 4}
+    look = {"color": style.OPENED, "linewidth": 0.5 * WIDEST, "capstyle": "butt", "zorder": 4}
     network.draw_contacts(axes, shown.position, first[opened], second[opened], box=shown.box, **look)
     axes.axhline(0.0, color=style.MUTED, linewidth=1.0, linestyle="-", zorder=5)
     for disk, force, _ in shown.loads:
@@ -76,7 +75,7 @@ def draw_response(
 ) -> None:
     """The floor response at ``x`` over a grey ``reference``, below chains of this ``half_width``."""
     axes.fill_between(x, reference, color=style.FAINT, linewidth=0.0)
-    axes.plot(x, response, color=CHAINS, linewidth=1.8, linestyle="-")
+    axes.plot(x, response, color=style.INCREASED, linewidth=1.8, linestyle="-")
     axes.set(xlim=(-half_width, half_width), ylim=limits)
     axes.xaxis.set_major_locator(MaxNLocator(5, prune="both"))
     axes.tick_params(top=False, right=False)
@@ -85,6 +84,6 @@ def draw_response(
 
 def draw_key(axes: Axes, reference: str) -> None:
     """In the upper right corner of a response: what is thick in the chains above it, and the name of what is grey."""
-    for k, (text, colour) in enumerate((("opened contacts", style.VERMILION), (reference, style.MUTED))):
+    for k, (text, colour) in enumerate((("opened contacts", style.OPENED), (reference, style.MUTED))):
         axes.annotate(text, (1.0, 1.0), (-1.0, -2.0 - 10.0 * k), xycoords="axes fraction", textcoords="offset points",
                       ha="right", va="top", fontsize=8, color=colour)  # fmt: skip

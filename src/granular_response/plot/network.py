@@ -88,10 +88,11 @@ def draw_contacts(
 
 #: How each kind of contact of :func:`draw_contact_changes` is drawn, and its name in a legend.
 CONTACT_LINES: dict[str, dict[str, Any]] = {
-    "unchanged": {"color": style.BLACK, "linewidth": 0.45, "zorder": 2},
-    "sliding": {"color": style.BLUE, "linewidth": 1.2, "zorder": 3},
-    "closed": {"color": style.GREEN, "linewidth": 1.8, "zorder": 4},
-    "opened": {"color": style.VERMILION, "linewidth": 2.8, "zorder": 5},
+    # a thinner line falls between two rows of pixels of a PNG file and is grey there
+    "unchanged": {"color": style.BLACK, "linewidth": 0.9, "zorder": 2},
+    "sliding": {"color": style.SLIDING, "linewidth": 2.0, "zorder": 3},
+    "closed": {"color": style.CLOSED, "linewidth": 2.4, "zorder": 4},
+    "opened": {"color": style.OPENED, "linewidth": 3.8, "zorder": 5},
 }
 
 
@@ -221,6 +222,29 @@ def draw_force_chains(
     return _segments(axes, centre[shown] - half, centre[shown] + half, keywords)
 
 
+#: How forces are drawn that press what touches together more (or at all), and less: colour and order.
+FORCE_LINES: dict[str, dict[str, Any]] = {
+    "force increased": {"color": style.INCREASED, "zorder": 4},
+    "force decreased": {"color": style.DECREASED, "zorder": 3},
+}
+
+
+def draw_signed_forces(
+    axes: Axes, point: ArrayLike, force: ArrayLike, normal: ArrayLike, **chains: Any
+) -> dict[str, LineCollection]:
+    """:func:`draw_force_chains` in the colours of :data:`FORCE_LINES`; ``normal`` (m, 2) is along the contacts.
+
+    A force along its normal presses together. Kinds without a line are left out of the returned collections.
+    """
+    pushes = np.sum(np.asarray(force) * np.asarray(normal), axis=1) >= 0.0
+    drawn = {}
+    for (name, look), mask in zip(FORCE_LINES.items(), (pushes, ~pushes), strict=True):
+        lines = draw_force_chains(axes, np.asarray(point)[mask], np.asarray(force)[mask], **{**look, **chains})
+        if lines.get_segments():
+            drawn[name] = lines
+    return drawn
+
+
 #: How a magnitude, per largest one, becomes a length and a width.
 SCALES: dict[str, Callable[[FloatArray], FloatArray]] = {
     "linear": lambda part: part,
@@ -253,7 +277,7 @@ def draw_load(axes: Axes, at: ArrayLike, direction: ArrayLike = (0.0, -1.0), *, 
         "",
         xy=tuple(tip.tolist()),
         xytext=tuple(tail.tolist()),
-        arrowprops={"arrowstyle": "-|>", "color": style.VERMILION, "linewidth": 1.2, "shrinkA": 0.0, "shrinkB": 0.0},
+        arrowprops={"arrowstyle": "-|>", "color": style.LOAD, "linewidth": 1.2, "shrinkA": 0.0, "shrinkB": 0.0},
         annotation_clip=False,
         zorder=10,
     )
@@ -262,7 +286,7 @@ def draw_load(axes: Axes, at: ArrayLike, direction: ArrayLike = (0.0, -1.0), *, 
 
 def draw_loaded_disk(axes: Axes, at: ArrayLike, radius: float) -> None:
     """Outline a disk that carries a load."""
-    draw_disks(axes, np.reshape(at, (1, 2)), radius, edgecolor=style.VERMILION, linewidth=0.9, zorder=6)
+    draw_disks(axes, np.reshape(at, (1, 2)), radius, edgecolor=style.LOAD, linewidth=0.9, zorder=6)
 
 
 def draw_torque(axes: Axes, at: ArrayLike, torque: float, *, radius: float = 1.7) -> None:
@@ -282,7 +306,7 @@ def draw_torque(axes: Axes, at: ArrayLike, torque: float, *, radius: float = 1.7
             connectionstyle=f"arc3,rad={-2.0 * np.tan((start - end) / 4.0) * 0.5:.4f}",
             arrowstyle="-|>",
             mutation_scale=8.0,
-            color=style.BLUE,
+            color=style.LOAD,
             linewidth=1.2,
             shrinkA=0.0,
             shrinkB=0.0,

@@ -39,7 +39,7 @@ def photoelastic(
 
     Parameters
     ----------
-    added : draw the stress of what the load adds to each force; by default so for states under load.
+    added : draw the stress of the incremental forces; by default so for states under load.
     fringe : principal stress difference of one fringe, in mean disk weights per mean radius. By default a disk of mean
         radius that two of the largest contact forces press together has two fringes at its centre.
     half_width : draw what is within this distance of the loaded disk, in mean radii; all of it by default.

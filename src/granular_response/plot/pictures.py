@@ -110,8 +110,19 @@ class Shown:
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
         return self.values("contact_disk"), self.values("contact_partner")
 
+    def across(self, half_width: float | None) -> tuple[float, float]:
+        """From where to where a picture goes: ``half_width`` to both sides of the loaded disks, the packing at most.
+
+        Of a periodic packing all is shown, as what is near a load may be at both ends of it.
+        """
+        ends = -1.5, self.box.width + 1.5
+        if half_width is None or not self.loads or self.box.periodic:
+            return ends
+        x = self.position[[disk for disk, *_ in self.loads], 0]
+        return max(ends[0], float(x.min()) - half_width), min(ends[1], float(x.max()) + half_width)
+
     def forces(self, added: bool) -> tuple[FloatArray, FloatArray]:
-        """Of contacts of disks and at walls, ``added``: what the load adds to them."""
+        """Of contacts of disks and at walls, whole or ``added``: the incremental forces."""
         pair, wall = (
             self.values(name) - (self.values(name, 0) if added else 0.0) for name in ("contact_force", "wall_force")
         )
@@ -169,13 +180,13 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
 def floor(
     result: HasDataset | xr.Dataset, *, ax: Axes | None = None, state: int = -1, added: bool | None = None, **line: Any
 ) -> Axes:
-    """The vertical force on each floor disk in mean disk weights, by default the part that the load adds.
+    """The vertical force on each floor disk in mean disk weights, by default the incremental force.
 
     For what has no response: an initial equilibrium, and loads that are torques alone.
 
     Parameters
     ----------
-    added : draw what the load adds rather than the whole; by default so for states under load.
+    added : draw incremental forces (those under gravity subtracted); by default so for states under load.
     line : goes to ``Axes.plot``.
 
     Examples
@@ -191,7 +202,7 @@ def floor(
         look = {**style.marked_line(0, colour=style.ordered_colours(1)[0]), "markersize": 2.6, **line}
         axes.plot(shown.data["x"].values, force - rest if added else force, **look)
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
-        axes.set(xlabel=style.POSITION, ylabel=style.ADDED_FLOOR_FORCE if added else style.FLOOR_FORCE)
+        axes.set(xlabel=style.POSITION, ylabel=style.INCREMENTAL_FLOOR_FORCE if added else style.FLOOR_FORCE)
         axes.margins(x=0.02)
     return axes
 
@@ -204,18 +215,20 @@ def forces(
     added: bool | None = None,
     scale: Scale = "sqrt",
     vmax: float | None = None,
+    half_width: float | None = None,
     **lines: Any,
 ) -> Axes:
     """Force chains: each contact force is a line along it, as long and as wide as it is large (Figs. 2, 13).
 
     Parameters
     ----------
-    added : draw the force that the load adds at each contact, gravity subtracted as a vector (Sec. III.C): black where
-        it presses the disks together, red where it takes compression away. By default so for states under load.
+    added : draw the incremental force of each contact, gravity subtracted as a vector (Sec. III.C): dark where it
+        presses the disks together, pale where it takes compression away. By default so for states under load.
     scale : of lengths and widths: linear in the force as in the paper, by its square root, which shows the
         chains of a point load beyond its first rows, or by the percentile of the force among all.
     vmax : magnitude that has full length, in mean disk weights; by default that of the largest force. Give several
         pictures the same one to compare them (not for percentiles).
+    half_width : draw what is within this distance of the loaded disks, in mean radii; by default all.
     lines : go to ``LineCollection``, such as ``color="tab:blue"`` or ``alpha``.
 
     Examples
@@ -228,6 +241,7 @@ def forces(
         raise PictureError(f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}")
     if vmax is not None and not vmax > 0.0:
         raise PictureError(f"vmax = {vmax}: must be positive")
+    check_positive(half_width=half_width)
     pair, wall = shown.forces(added)
     normal = shown.box.separation(*(shown.position[disks] for disks in shown.pairs))
     inward = wall_normals(shown.values("wall_index"))
@@ -235,50 +249,53 @@ def forces(
     feet = network.wall_points(shown.position, shown.radius, shown.values("wall_disk"), shown.values("wall_index"))
     point = np.concatenate([between, feet])
     force, direction = np.concatenate([pair, wall]), np.concatenate([normal, inward])
-    pushes = np.sum(force * direction, axis=1) >= 0.0
     reference = float(np.linalg.norm(force, axis=1).max(initial=0.0)) if vmax is None else vmax
     drawn = network.rescaled(force, scale, largest=reference)
     with style.context():
-        axes = _axes(ax, _aspect(shown))
-        _packing(axes, shown)
+        axes = _axes(ax, _aspect(shown, half_width))
+        _packing(axes, shown, half_width, edgecolor="none", facecolor=style.DISKS)
         # by percentile, half of all forces are large: shorter and thinner lines keep them apart
         crowded = 0.5 if scale == "percentile" else 1.0
         # the largest force is as wide as the radius of a disk across the page, in points
         inches = axes.figure.get_figure(root=True).get_size_inches()[0] * axes.get_position().width
-        widest = crowded * float(np.clip(72.0 * inches / shown.box.width, 0.8, 5.0))
-        factors = {"length_per_force": 4.0 * crowded, "width_per_force": widest}
-        kinds = {"force increased": (pushes, style.BLACK, 3), "force decreased": (~pushes, style.VERMILION, 4)}
-        for mask, colour, order in kinds.values():
-            look = {"color": colour, "zorder": order, **factors, **lines}
-            network.draw_force_chains(axes, point[mask], drawn[mask], smallest=0.02, **look)
+        widest = crowded * float(np.clip(72.0 * inches / np.ptp(axes.get_xlim()), 0.8, 5.0))
+        look = {"length_per_force": 4.0 * crowded, "width_per_force": widest, "smallest": 0.02, **lines}
+        kinds = network.draw_signed_forces(axes, point, drawn, direction, **look)
         handles = [
-            Line2D([], [], color=lines.get("color", colour), linewidth=1.6, label=name)
-            for name, (mask, colour, _) in kinds.items()
-            if added and (np.linalg.norm(drawn[mask], axis=1) > 0.02).any()
+            Line2D([], [], color=lines.get("color", network.FORCE_LINES[name]["color"]), linewidth=1.6, label=name)
+            for name in (kinds if added else ())
         ]
         if reference > 0.0 and scale != "percentile":
             for size in (reference, 0.1 * reference):
                 part = float(network.SCALES[scale](np.array([size / reference]))[0])
                 name = f"${size:.2g}\\,\\bar m g$"
-                handles.append(Line2D([], [], color=style.BLACK, linewidth=widest * part, label=name))
-        _legend(axes, handles, shown)
+                handles.append(Line2D([], [], color=style.INCREASED, linewidth=widest * part, label=name))
+        _legend(axes, handles, shown, half_width)
     return axes
 
 
-def contacts(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, state: int = -1, **lines: Any) -> Axes:
+def contacts(
+    result: HasDataset | xr.Dataset,
+    *,
+    ax: Axes | None = None,
+    state: int = -1,
+    half_width: float | None = None,
+    **lines: Any,
+) -> Axes:
     """What a load changes in the contact network: opened, closed and sliding contacts (Figs. 4, 8, 9).
 
-    ``lines`` go to ``LineCollection``.
+    ``half_width`` is that of :func:`forces`; ``lines`` go to ``LineCollection``.
 
     Examples
     --------
     >>> gr.plot.contacts(result).figure.savefig("contacts.png")
     """
     shown = Shown.of(result, state)
+    check_positive(half_width=half_width)
     before, now = shown.values("contact_status", 0), shown.values("contact_status")
     with style.context():
-        axes = _axes(ax, _aspect(shown))
-        _packing(axes, shown)
+        axes = _axes(ax, _aspect(shown, half_width))
+        _packing(axes, shown, half_width)
         drawn = network.draw_contact_changes(
             axes,
             shown.position,
@@ -289,7 +306,7 @@ def contacts(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, state: 
             box=shown.box,
             **lines,
         )
-        _legend(axes, list(drawn.values())[::-1], shown)
+        _legend(axes, list(drawn.values())[::-1], shown, half_width)
     return axes
 
 
@@ -302,20 +319,22 @@ def stress(
     component: Literal["xx", "xz", "zx", "zz"] = "zz",
     width: float = 2.0,
     vmax: float | None = None,
+    half_width: float | None = None,
     cmap: str = style.SIGNED,
     **mesh: Any,
 ) -> Axes:
-    """A component of the coarse-grained stress, by default the part that the load adds (Fig. 14).
+    """A component of the coarse-grained stress, by default the incremental stress (Fig. 14).
 
     Compression is blue, its loss red, in steps of the square root. Within ``width`` of the floor and of side walls
     (dotted) part of the Gaussian lies outside the packing, so the stress falls there.
 
     Parameters
     ----------
-    added : draw what the load adds rather than the whole; by default so for states under load.
+    added : draw the incremental stress (that under gravity subtracted); by default so for states under load.
     component : indices of the tensor, the force's first.
     width : of the Gaussian in mean radii (Sec. V.C).
     vmax : end of the colour scale, in mean disk weights per mean radius; by default the largest magnitude.
+    half_width : draw what is within this distance of the loaded disks, in mean radii; by default all.
     cmap : colour map of matplotlib; zero is in its middle.
     mesh : goes to ``Axes.pcolormesh``.
 
@@ -327,7 +346,7 @@ def stress(
     added = shown.index > 0 if added is None else added
     if component not in ("xx", "xz", "zx", "zz"):
         raise PictureError(f"component = {component!r}: must be one of xx, xz, zx, zz")
-    check_positive(vmax=vmax)
+    check_positive(vmax=vmax, half_width=half_width)
     first, second = shown.pairs
     at_wall, wall = shown.position[shown.values("wall_disk")], shown.values("wall_index")
     separation = shown.box.separation(shown.position[first], shown.position[second])
@@ -345,7 +364,7 @@ def stress(
     field = tensor[..., "xz".index(component[0]), "xz".index(component[1])]
     end = float(np.abs(field).max()) if vmax is None else vmax
     with style.context():
-        axes = _axes(ax, _aspect(shown))
+        axes = _axes(ax, _aspect(shown, half_width))
         norm = root_norm(end if end > 0.0 else 1.0, signed=True)
         image = draw_field(axes, x, z, field, norm=norm, cmap=cmap, **mesh)
         near: dict[str, Any] = {"color": style.MUTED, "linewidth": 0.5, "linestyle": ":"}
@@ -355,9 +374,12 @@ def stress(
         network.draw_box(axes, shown.box, shown.top, shift=left)
         _loads(axes, shown, origin=shown.origin)
         axes.set(ylim=(-0.03 * shown.top, None), xlabel=style.POSITION, ylabel=style.HEIGHT)
+        if not shown.box.periodic:
+            left, right = shown.across(half_width)
+            axes.set_xlim(left - shown.origin, right - shown.origin)
         axes.tick_params(top=False, right=False)
         bar = axes.figure.colorbar(image, ax=axes, shrink=0.9, aspect=14, pad=0.02)
-        bar.set_label(f"{'added ' if added else ''}$\\sigma_{{{component}}}\\bar R/\\bar m g$")
+        bar.set_label(f"{'incremental ' if added else ''}$\\sigma_{{{component}}}\\bar R/\\bar m g$")
         ticks = [end * part for part in (-1.0, -0.25, 0.0, 0.25, 1.0)]
         bar.set_ticks(ticks, labels=[f"${tick:.2g}$" for tick in ticks])
         bar.ax.minorticks_off()
@@ -423,6 +445,8 @@ PICTURES: Mapping[str, Callable[..., Axes]] = {
 }
 #: Those that are curves over the floor, not maps of the packing.
 _GRAPHS = ("response", "floor")
+#: Those that a page shows near the loaded disks, and how near, per height of the packing.
+_CUT, NEAR = ("forces", "contacts", "stress"), 1.5
 
 
 def page(
@@ -438,6 +462,7 @@ def page(
     ``what`` are names of the functions of this module or ``photoelastic``, as a list or as text with commas.
 
     By default ``response``, ``forces``, ``contacts`` and ``stress``, with ``floor`` where there is no response.
+    Forces, contacts and stress of a wide packing are shown within :data:`NEAR` times its height of the loaded disks.
     ``scale`` is that of :func:`forces`; ``figure`` is drawn into, or a new one of pyplot's.
 
     Raises PictureError for another name, and what the pictures raise.
@@ -455,11 +480,13 @@ def page(
     shown = Shown.of(result, state)
     if what is None:
         what = ("response" if _has_response(shown) else "floor", "forces", "contacts", "stress")
+    half_width = NEAR * shown.top
     with style.context():
-        columns = 1 if len(what) == 1 or _aspect(shown) < 0.6 else 2
+        columns = 1 if len(what) == 1 or _aspect(shown, half_width) < 0.6 else 2
         rows = -(-len(what) // columns)
         wide = style.DOUBLE / columns
-        heights = [0.36 * wide if name in _GRAPHS else _aspect(shown) * wide + 0.25 for name in what]
+        shape = {name: _aspect(shown, half_width if name in _CUT else None) for name in what}
+        heights = [0.36 * wide if name in _GRAPHS else shape[name] * wide + 0.25 for name in what]
         in_row = [max(heights[k * columns : (k + 1) * columns]) + 0.12 for k in range(rows)]
         figure = _new_figure(sum(in_row)) if figure is None else figure
         figure.set_size_inches(style.DOUBLE, sum(in_row))
@@ -469,8 +496,10 @@ def page(
             if k >= len(what):
                 axes.set_axis_off()
                 continue
-            options = {} if what[k] == "response" else {"state": state}
-            PICTURES[what[k]](shown.data, ax=axes, **options, **({"scale": scale} if what[k] == "forces" else {}))
+            options: dict[str, Any] = {} if what[k] == "response" else {"state": state}
+            options |= {"half_width": half_width} if what[k] in _CUT else {}
+            options |= {"scale": scale} if what[k] == "forces" else {}
+            PICTURES[what[k]](shown.data, ax=axes, **options)
             if what[k] in _GRAPHS and columns > 1:
                 axes.set_box_aspect(0.75)
             style.letter(axes, chr(ord("a") + k), place="above", text=_title(what[k], shown))
@@ -512,7 +541,8 @@ def _title(what: str, shown: Shown) -> str:
     load = f"$F_{{\\mathrm{{ext}}}} = {total:.4g}\\,\\bar m g$" if shown.index else "at rest"
     if turning and not total:
         load = f"torque ${turning:.4g}\\,{style.TORQUE_UNIT}$"
-    return "floor response" if what == "response" else f"{'floor forces' if what == 'floor' else what}, {load}"
+    names = {"floor": "floor forces", "forces": "incremental forces" if shown.index else "forces"}
+    return style.RESPONSE if what == "response" else f"{names.get(what, what)}, {load}"
 
 
 def _has_response(shown: Shown) -> bool:
@@ -544,19 +574,19 @@ def _new_figure(height: float) -> Figure:
     return plt.figure(figsize=(style.DOUBLE, height), layout="constrained")
 
 
-def _aspect(shown: Shown) -> float:
+def _aspect(shown: Shown, half_width: float | None = None) -> float:
     """Height over width of a picture of the packing, with room for the arrow of a load."""
-    return 1.2 * shown.top / (shown.box.width + 2.0)
+    return float(1.2 * shown.top / np.ptp(shown.across(half_width)))
 
 
-def _packing(axes: Axes, shown: Shown, **disks: Any) -> Any:
+def _packing(axes: Axes, shown: Shown, half_width: float | None = None, **disks: Any) -> Any:
     """Disks, box and loads, without axes."""
     look = {"edgecolor": "#DCDCDC", "linewidth": 0.4, **disks}
     drawn = network.draw_disks(axes, shown.position, shown.radius, zorder=1, **look)
     network.draw_box(axes, shown.box, shown.top)
     _loads(axes, shown)
     style.no_axes(axes)
-    axes.set(xlim=(-1.5, shown.box.width + 1.5), ylim=(-1.2, max(axes.dataLim.ymax, shown.top) + 0.5))
+    axes.set(xlim=shown.across(half_width), ylim=(-1.2, max(axes.dataLim.ymax, shown.top) + 0.5))
     return drawn
 
 
@@ -580,9 +610,9 @@ def _loads(axes: Axes, shown: Shown, *, origin: float | None = None) -> None:
             axes.autoscale_view()
 
 
-def _legend(axes: Axes, handles: Sequence[Any], shown: Shown) -> None:
+def _legend(axes: Axes, handles: Sequence[Any], shown: Shown, half_width: float | None) -> None:
     """Below the picture, in two columns where that is narrow."""
     if handles:
-        columns = len(handles) if _aspect(shown) < 0.6 else 2
+        columns = len(handles) if _aspect(shown, half_width) < 0.6 else 2
         below: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "borderaxespad": 0.2}
         axes.legend(handles=handles, ncols=columns, columnspacing=1.4, **below)

@@ -18,6 +18,7 @@ import xarray as xr
 
 from granular_response import __version__
 from granular_response.errors import GranularError
+from granular_response.plot import style
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
@@ -130,7 +131,7 @@ def page(root: Path, folder: Path | None = None) -> str:
         "goals": benchmarks.goals(root / "benchmarks"),
         "groups": groups,
         "versions": _versions(root / "requirements.lock"),
-        "style": _resource("style.css"),
+        "style": _colours() + _resource("style.css"),
         "script": _resource("explorer.js"),
         "behaviour": _resource("page.js"),
     }
@@ -139,6 +140,12 @@ def page(root: Path, folder: Path | None = None) -> str:
     except jinja2.UndefinedError as error:
         raise ReportError(f"{root / stored.OUTPUT}: is not a whole table of claims: {error}") from None
     return text.replace(_SIZE, f"{len(text.encode()) / 1e6:.1f} MB")
+
+
+def _colours() -> str:
+    """What colours mean in pictures of packings, as properties of the page."""
+    light, dark = (" ".join(f"--{name}: {pair[k].lower()};" for name, pair in style.MEANINGS.items()) for k in range(2))
+    return f":root {{ {light} }}\n@media screen and (prefers-color-scheme: dark) {{ :root {{ {dark} }} }}\n"
 
 
 def _claims_of(

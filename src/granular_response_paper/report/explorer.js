@@ -29,7 +29,7 @@
   const colour = {};
   function readColours() {
     const style = window.getComputedStyle(document.documentElement);
-    ["curve", "lost", "opened", "grid", "ink", "soft", "paper"].forEach(function (name) {
+    ["increased", "decreased", "opened", "sliding", "load", "grid", "ink", "soft", "paper"].forEach(function (name) {
       colour[name] = style.getPropertyValue("--" + name).trim();
     });
   }
@@ -162,42 +162,37 @@
       const middle = [(ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2];
       if (level === data.opened) {
         counts.opened += 1;
-        const arm = Math.max(2.2, 0.45 * scale), x = middle[0], z = middle[1];
-        spots.network.push([x, z, "opened"]);
-        line(pen, [[x - arm, z - arm], [x + arm, z + arm]], colour.opened, 1.6);
-        line(pen, [[x - arm, z + arm], [x + arm, z - arm]], colour.opened, 1.6);
+        spots.network.push([middle[0], middle[1], "opened"]);
+        pen.lineCap = "butt";
+        line(pen, ends, colour.opened, Math.max(2.2, 0.45 * scale));
       } else {
         const part = data.strongest * (level / data.full) * (level / data.full), width = widest * part;
         spots.network.push([middle[0], middle[1], (level < 0 ? "\u2212" : "+") + short(part) + " F" + (sliding ? ", at the Coulomb limit" : "")]);
         if (level > 0) { counts.most = Math.max(counts.most, part); } else { counts.least = Math.max(counts.least, part); }
         if (part >= 0.008) {
-          pen.lineCap = level > 0 ? "round" : "butt";
-          if (level > 0) {  // the thinnest are paler, as a printer would make them wider
-            pen.globalAlpha = Math.min(1, width / 0.6);
-            line(pen, ends, colour.curve, Math.max(width, 0.6));
-            pen.globalAlpha = 1;
-          } else {  // hollow
-            line(pen, ends, colour.lost, Math.max(width, 2.4));
-            line(pen, ends, colour.paper, Math.max(width, 2.4) - 1.6);
-          }
+          pen.lineCap = "round";
+          pen.globalAlpha = Math.min(1, width / 0.6);  // the thinnest are paler, as a printer would make them wider
+          line(pen, ends, level > 0 ? colour.increased : colour.decreased, Math.max(width, 0.6));
+          pen.globalAlpha = 1;
         }
       }
       if (sliding) {
         counts.sliding += 1;
-        dot(pen, middle[0], middle[1], Math.max(1.5, 0.28 * scale), colour.ink, true);
+        pen.lineCap = "butt";
+        line(pen, ends, colour.sliding, Math.max(1.2, 0.16 * scale));
       }
     });
     line(pen, [[LEFT, Z(0)], [paper.width, Z(0)]], colour.ink, 1.4);
-    line(pen, [[X(0), Z(slab.height + 4.6)], [X(0), Z(slab.height + 1.4)]], colour.ink, 1.6);
-    pen.fillStyle = colour.ink;
+    line(pen, [[X(0), Z(slab.height + 4.6)], [X(0), Z(slab.height + 1.4)]], colour.load, 1.6);
+    pen.fillStyle = colour.load;
     pen.beginPath();
     pen.moveTo(X(0), Z(slab.height + 0.1));
     pen.lineTo(X(-0.9), Z(slab.height + 1.8));
     pen.lineTo(X(0.9), Z(slab.height + 1.8));
     pen.fill();
-    text(pen, "F", X(1.4), Z(slab.height + 3.6), "left", colour.ink);
+    text(pen, "F", X(1.4), Z(slab.height + 3.6), "left", colour.load);
     const bar = LEFT + 4, high = 12;  // a bar as wide as half of the applied force
-    line(pen, [[bar, high], [bar + 3 * scale, high]], colour.curve, 0.5 * widest);
+    line(pen, [[bar, high], [bar + 3 * scale, high]], colour.increased, 0.5 * widest);
     text(pen, "0.5 F", bar + 3 * scale + 5, high, "left");
     [0, 10, 20].forEach(function (z) { text(pen, String(z), LEFT - 4, Z(z), "right"); });
     upright(pen, "z/R\u0304", Z(10));
@@ -236,9 +231,9 @@
     const Y = linear(pen, slab.smoothed ? slab.smoothed.concat([floor]) : slab.response, paper.height - 28, paper.width);
     const rows = slab.smoothed || slab.response, values = rows[index];
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(rows[0][k])]; }), colour.soft, 3);
-    line(pen, slab.x.map(function (x, k) { return [X(x), Y(values[k])]; }), colour.curve, 1.8);
+    line(pen, slab.x.map(function (x, k) { return [X(x), Y(values[k])]; }), colour.increased, 1.8);
     slab.x.forEach(function (x, k) {
-      dot(pen, X(x), Y(floor[k]), 2.1, colour.curve, Boolean(slab.smoothed));
+      dot(pen, X(x), Y(floor[k]), 2.1, colour.increased, Boolean(slab.smoothed));
       spots.floor.push([X(x), Y(floor[k]), "x = " + typed(x) + " R\u0304: " + mean(floor[k])]);
     });
     xTicks(pen, X, paper.height - 10, paper.width);
@@ -272,8 +267,8 @@
       });
     const own = slab.forces.map(function (f, k) { return [X(f), Y(slab.centre[k]), "F = " + f + " mg: " + mean(slab.centre[k])]; });
     spots.range = own;
-    line(pen, own.slice(0, motion), colour.curve, 2);
-    own.slice(motion).forEach(function (point) { dot(pen, point[0], point[1], 2.6, colour.curve, true); });
+    line(pen, own.slice(0, motion), colour.increased, 2);
+    own.slice(motion).forEach(function (point) { dot(pen, point[0], point[1], 2.6, colour.increased, true); });
     const force = slab.forces[index];
     line(pen, [[X(force), 8], [X(force), paper.height - 36]], colour.ink, 1);
     dot(pen, X(force), Y(slab.centre[index]), 4.5, colour.ink);
@@ -315,7 +310,7 @@
     data.crossovers.map(function (one, k) { return [one, SHAPES[k % 4]]; }).sort(function (a, b) {
       return (a[0].polydispersity === slab.polydispersity) - (b[0].polydispersity === slab.polydispersity);
     }).forEach(function (pair) {
-      const one = pair[0], mine = one.polydispersity === slab.polydispersity, ink = mine ? colour.curve : colour.soft;
+      const one = pair[0], mine = one.polydispersity === slab.polydispersity, ink = mine ? colour.increased : colour.soft;
       const points = one.friction.map(function (friction, k) { return [X(friction), Y(one.force[k])]; });
       line(pen, points.filter(function (_, k) { return !one.kind[k]; }), ink, mine ? 2 : 1, mine ? [] : [4, 3]);
       points.forEach(function (point, k) {

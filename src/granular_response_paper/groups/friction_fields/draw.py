@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,14 +14,15 @@ from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box, FloatArray
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
-from granular_response_paper.panels import chain_key, chains, contact_ends, outer, titles
+from granular_response_paper.panels import Contacts, family, force_key, forces, titles
 
 from .parameters import Parameters
 
 #: Half of the width of the stress maps and of the profiles, in mean radii.
 MAP_HALF_WIDTH, PROFILE_HALF_WIDTH = 30.0, 20.0
-#: Force times depth per load that has the full width in the lower row of Fig. 13.
-DEEP = 2.0
+#: Lengths of the largest forces of Fig. 13 in mean radii, above and below, and what has it below: force times depth per
+#: load.
+LONGEST, LONGEST_DEEP, DEEP = 6.0, 4.0, 2.0
 #: Contours of the stress maps, per largest stress.
 LEVELS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7)
 #: Contours of the differences, of both signs, per largest difference.
@@ -62,33 +64,34 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 
 def _force_chains(data: xr.Dataset) -> Figure:
-    """The central third of the slab: the forces, and below them the forces by how they fall with the depth."""
+    """The central third of the slab: the forces, and below them the forces times depth, which undoes their decay."""
     frictions = data["friction"].values
     figure, panels = style.figure(2, len(frictions), width="double", height=4.2)
     width, disk, load = float(data["width"]), int(data["loaded_disk"]), float(data["force"])
     radius = data["radius"].values
-    forces = np.concatenate([data["contact_added_force"].values, data["wall_added_force"].values], axis=1)
-    size = np.linalg.norm(forces, axis=-1)
+    added = np.concatenate([data["contact_added_force"].values, data["wall_added_force"].values], axis=1)
+    strongest = float(np.linalg.norm(added, axis=-1).max())
     for index, position in enumerate(data["position"].values):
-        points, (first, second) = contact_ends(data, position)
+        contacts = Contacts.of(data, position)
         x, z = position[disk]
         inside = np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0
-        near = np.abs(points[first, 0] - 0.5 * width) <= width / 6.0 + 2.0
-        depth = z - 0.5 * (points[first, 1] + points[second, 1])
-        for axes, values, largest, key, unit in (
-            (panels[0, index], size[index], float(size.max()), _round(load / 5.0), style.WEIGHT),
-            (panels[1, index], size[index] * depth / load, DEEP, 0.5, style.RADIUS),
+        near = np.abs(contacts.point[:, 0] - 0.5 * width) <= width / 6.0 + 1.0
+        deep = added[index] * (z - contacts.point[:, 1:]) / load
+        for axes, vector, largest, key, unit, longest in (
+            (panels[0, index], added[index], strongest, _round(load / 5.0), style.WEIGHT, LONGEST),
+            (panels[1, index], deep, DEEP, 0.5, style.RADIUS, LONGEST_DEEP),
         ):
-            network.draw_disks(axes, position[inside], radius[inside], edgecolor=style.FAINT, linewidth=0.3)
-            chains(axes, points, (first[near], second[near]), values[near], largest)
-            chain_key(axes, (2.0 * width / 3.0 - 10.0, z + 3.0), key, largest, unit)
+            look: dict[str, Any] = {"facecolor": style.DISKS, "edgecolor": "none"}
+            network.draw_disks(axes, position[inside], radius[inside], **look)
+            forces(axes, contacts, vector, largest, shown=near, longest=longest)
+            force_key(axes, (2.0 * width / 3.0 - 8.0, z + 3.0), key, largest, unit, longest=longest)
             network.draw_loaded_disk(axes, (x, z), float(radius[disk]))
             network.draw_load(axes, (x, z + 1.0))
             network.draw_box(axes, Box(width), z, between=(width / 3.0, 2.0 * width / 3.0))
             style.no_axes(axes)
-            axes.set(xlim=(width / 3.0, 2.0 * width / 3.0), ylim=(-0.8, z + 5.2))
+            axes.set(xlim=(width / 3.0, 2.0 * width / 3.0), ylim=(-2.4, z + 5.2))
     names = list(map(_friction, frictions))
-    titles(panels.flat, [*names, *(f"{name}, times depth" for name in names)])
+    titles(panels.flat, [*names, *(rf"{name}, $|\mathbf{{f}}|\,z/{style.F_EXT}$" for name in names)])
     return figure
 
 
@@ -147,26 +150,18 @@ def to_floor(stress: FloatArray, z: FloatArray, width: float) -> FloatArray:
 
 
 def _force_profiles(data: xr.Dataset) -> Figure:
-    """A row for each depth on a scale of its own; a line for each of the two orientations of contacts."""
+    """Fig. 15: a panel for each friction with a curve for each depth, over all contacts between two rows."""
     frictions, depths = data["friction"].values, data["depth"].values
-    figure, panels = style.figure(len(depths), len(frictions), width="double", height=4.8, sharex=True, sharey="row")
-    half = PROFILE_HALF_WIDTH
-    for (row, column), axes in np.ndenumerate(panels):
-        x, magnitude = (data[name].values[column, row] for name in ("contact_x", "magnitude"))
-        known = np.isfinite(x) & np.isfinite(magnitude)
-        x, magnitude = x[known], magnitude[known]
-        # on the lattice the middles of the contacts down to the right are half a radius to the right of disks
-        right = np.round(x - 0.5 - np.floor(data["row"].values[row])) % 2 == 0
-        for side, name, look in ((right, "right", style.line(0)), (~right, "left", style.line(1))):
-            order = np.flatnonzero(side)[np.argsort(x[side])]
-            axes.fill_between(x[order], magnitude[order], color=look["color"], alpha=0.15, linewidth=0.0)
-            axes.plot(x[order], magnitude[order], **look, linewidth=1.0, label=f"down to the {name}")
-        axes.set(xlim=(-half, half), ylim=(0.0, None))
-        name = f"depth ${depths[row]:.1f}\\,{style.RADIUS}$"
-        axes.text(0.98, 0.9, name, transform=axes.transAxes, ha="right", va="top")
-    outer(panels, style.POSITION, "")
-    figure.supylabel(style.CONTACT_FORCE, fontsize=9)
-    panels[0, -1].legend(loc="upper left", fontsize=7)
+    figure, panels = style.figure(1, len(frictions), width="double", height=3.0, sharex=True)
+    for column, axes in enumerate(panels[0]):
+        for row, look in family(range(len(depths)), of="length", dashed=True):
+            x, magnitude = (data[name].values[column, row] for name in ("contact_x", "magnitude"))
+            known = np.flatnonzero(np.isfinite(x) & np.isfinite(magnitude))
+            order = known[np.argsort(x[known])]
+            axes.plot(x[order], magnitude[order], **look | {"markersize": 2.6}, label=f"{depths[row]:.1f}")
+        axes.set(xlim=(-PROFILE_HALF_WIDTH, PROFILE_HALF_WIDTH), ylim=(0.0, None), xlabel=style.POSITION)
+    panels[0, 0].set_ylabel(style.CONTACT_FORCE)
+    panels[0, -1].legend(title=style.DEPTH, loc="upper right", handlelength=3.0)
     titles(panels[0], map(_friction, frictions))
     return figure
 

@@ -31,6 +31,11 @@ AXIS_FRICTIONS = (0.0, 0.1, 0.15, 0.2, 0.5, 1.0)
 #: Part of the slab that profiles show, to both sides of the load (radii): beyond it the walls matter.
 REACH = 40.0
 
+#: A response is not symmetric from this difference of mirror images on, per largest response.
+ASYMMETRIC = 0.2
+#: Change of the response that ends the linear range.
+LINEAR = 0.01
+
 #: Symbols of a profile stand at every so many disks.
 SPREAD = 3
 
@@ -100,6 +105,9 @@ def _linear_range(response: xr.Dataset) -> Figure:
     """Fig. 6."""
     figure, ((panel,),) = style.figure(width="double", height=3.2)
     ends = []
+    elastic = float(response["response_at_centre"].isel(friction=-1).dropna("force")[0])
+    band = elastic * (1.0 - LINEAR), elastic * (1.0 + LINEAR)
+    panel.axhspan(*band, color=style.FAINT, alpha=0.6, linewidth=0.0, zorder=0)
     for friction, look in family(response["friction"].values, of="friction"):
         curve = response["response_at_centre"].sel(friction=friction).dropna("force")
         panel.plot(curve["force"], curve, **look | {"markersize": 3.0})
@@ -109,6 +117,10 @@ def _linear_range(response: xr.Dataset) -> Figure:
     panel.xaxis.set_major_formatter("{x:g}")
     panel.set(xlabel=style.FORCE, ylabel=style.RESPONSE_AT_CENTRE, ylim=(0.0, None))
     panel.set_xlim(right=2.0 * max(x for _, x, *_ in ends))
+    panel.annotate(
+        rf"$\pm${LINEAR:.0%}".replace("%", r" %"), (panel.get_xlim()[0], band[1]), (4.0, 3.0),
+        textcoords="offset points", va="bottom", fontsize=8, color=style.MUTED,
+    )  # fmt: skip
     label_ends(panel, ends)
     for friction, force in PAPER_OPENINGS.items():
         last = force == max(PAPER_OPENINGS.values())
@@ -152,6 +164,12 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     peaks = f"{mu}; paper: two peaks from {PAPER_CROSSOVER:g}, third from {PAPER_THIRD_PEAK:g}"
     titles(axes[0], (peaks, f"{other}; paper: symmetric at {PAPER_SYMMETRIC:g}"))
     zero(right)
+    lost = dynamic["force"].values[dynamic["asymmetry"].values > ASYMMETRIC]
+    kept = dynamic["force"].values[dynamic["force"].values < lost.min(initial=np.inf)]
+    if lost.size and kept.size:
+        right.text(
+            0.03, 0.06, f"here symmetric at {kept.max():g},\nlost from {lost.min():g} on", transform=right.transAxes
+        )
     left.set_ylim(bottom=0.0)
     for panel in (left, right):
         panel.set_ylabel(style.RESPONSE)

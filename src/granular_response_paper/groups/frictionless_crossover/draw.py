@@ -7,7 +7,7 @@ region of opened contacts reaches the floor (open marker). The band of ``fig05b_
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator
 
 from granular_response.plot import style
@@ -27,11 +28,14 @@ from .parameters import Parameters
 
 #: Forces of the profiles and of the contact networks; the nearest stored ones are drawn.
 PROFILE_FORCES = (0.25, 2.0, 3.0, 3.5, 5.0, 15.0, 50.0)
-NETWORK_FORCES = (1.0, 2.0, 3.0, 3.75, 5.0, 15.0)
+NETWORK_FORCES = (2.0, 3.0, 5.0)
 #: Forces in the panels about stiffness and about the depth of the slab.
 STIFFNESS_FORCES = (0.25, 1.0, 2.0, 3.0, 15.0)
 TEARDROP_FORCES = (2.0, 3.0)
 COMPARED_FORCE = 5.0
+
+#: The marker of a region that reaches the floor.
+AT_FLOOR: dict[str, Any] = {"linestyle": "none", "markersize": 5.0, "markerfacecolor": "white"}
 
 EVENTS = {
     "first_opening": "first opening",
@@ -51,7 +55,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
         "fig04_frictionless_contacts": _contacts(datasets["rest"], datasets["states"]),
         "fig05_teardrop": _teardrop(datasets["sizes"]),
         "fig05b_stiffness": _stiffness(datasets["stiffness"]),
-        "fig05c_depth_and_width": _slabs(datasets["sizes"], datasets["widths"]),
+        "fig05c_depth": _slabs(datasets["sizes"]),
     }
 
 
@@ -73,7 +77,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "fig04_frictionless_contacts": {**slab, "force": shown},
             "fig05_teardrop": deep,
             "fig05b_stiffness": slab | of_stiffness,
-            "fig05c_depth_and_width": {**deep, "force": parameters.size_forces},
+            "fig05c_depth": {**deep, "force": parameters.size_forces},
         },
         panels=panels(shown),
         stiffnesses=stiffnesses,
@@ -155,9 +159,11 @@ def _teardrop(sizes: xr.Dataset) -> Figure:
     figure, panels = style.figure(len(each), 2, width="double", height=0.3 + 2.2 * len(each), sharex=True)
     for (deep, wide), slabs in zip(panels, each.values(), strict=True):
         for axes, name, label in ((deep, "teardrop_depth", style.DEPTH), (wide, "teardrop_width", style.WIDTH)):
-            _growth(axes, slabs, name, lambda one: f"{int(one['layers'])}")
+            _growth(axes, slabs, name)
             axes.set_ylabel(label)
-    panels[0, 0].legend(title="layers", loc="upper left")
+    handles, names = panels[0, 0].get_legend_handles_labels()
+    handles.append(Line2D([], [], color=style.MUTED, **AT_FLOOR, marker="o"))
+    panels[0, 0].legend(handles, [*names, "open: at the floor"], title="layers", loc="upper left")
     for axes in panels[-1]:
         axes.set(xscale="log", xlabel=style.FORCE)
         axes.xaxis.set_major_formatter("{x:g}")
@@ -165,23 +171,16 @@ def _teardrop(sizes: xr.Dataset) -> Figure:
     return figure
 
 
-def _growth(axes: Axes, slabs: xr.Dataset, name: str, label: Callable[[xr.Dataset], str]) -> None:
-    """A measure of the teardrop against the force, up to where it reaches the floor (open marker).
-
-    Colours and markers tell the layers, dashes the widths of slabs of as many layers.
-    """
-    layers = slabs["layers"].values.tolist()
-    looks = dict(family(sorted(set(layers)), of="length"))
-    for at, count in enumerate(layers):
+def _growth(axes: Axes, slabs: xr.Dataset, name: str) -> None:
+    """A measure of the teardrop against the force, up to where it reaches the floor (open marker)."""
+    for at, look in family(range(slabs.sizes["slab"]), of="length"):
         one = slabs.isel(slab=at)
-        look = looks[count] | {"linestyle": style.LINE_STYLES[layers[:at].count(count)]}
         reached = np.flatnonzero(one["reaches_floor"].values > 0)
         end = int(reached[0]) + 1 if len(reached) else one.sizes["force"]
         force, values = one["force"].values[:end], one[name].values[:end]
-        axes.plot(force, values, **look, label=label(one))
+        axes.plot(force, values, **look, label=f"{int(one['layers'])}")
         if len(reached):
-            hollow = {"linestyle": "none", "marker": look["marker"], "markersize": 5.0, "zorder": 4}
-            axes.plot(force[-1:], values[-1:], **hollow, markerfacecolor="white", markeredgecolor=look["color"])
+            axes.plot(force[-1:], values[-1:], **AT_FLOOR, marker=look["marker"], color=look["color"], zorder=4)
 
 
 def _stiffness(data: xr.Dataset) -> Figure:
@@ -232,16 +231,10 @@ def _stiffness(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
-    figure, ((box, profiles, events),) = style.figure(1, 3, width="double", height=3.2)
+def _slabs(sizes: xr.Dataset) -> Figure:
+    figure, ((profiles, events),) = style.figure(1, 2, width="double", height=2.9)
     each = _by_stiffness(sizes)
-    (softest, slabs), stiffest = next(iter(each.items())), max(each)
-    in_box = _by_stiffness(widths)[stiffest]
-    _growth(box, in_box, "teardrop_depth", lambda one: f"{int(one['layers'])} $\\times$ {int(one['disks_per_row'])}")
-    box.set(xlabel=style.FORCE, ylabel=style.DEPTH)
-    below: dict[str, Any] = {"loc": "outside lower center", "ncols": 5, "handlelength": 3.0}
-    figure.legend(*box.get_legend_handles_labels(), title="(h) layers $\\times$ disks in a row", **below)
-
+    softest, slabs = next(iter(each.items()))
     at_force = slabs.isel(force=nearest(slabs["force"].values, [COMPARED_FORCE])[0])
     for at, look in family(range(slabs.sizes["slab"]), of="length", marked=False, dashed=True):
         one = at_force.isel(slab=at)
@@ -251,7 +244,7 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
         profiles.plot(x, response, **look, label=f"{int(one['layers'])}")
     label = f"{style.RESPONSE}$\\,\\times\\,h/{style.RADIUS}$"
     profiles.set(xlabel=style.SCALED_POSITION, ylabel=label, xlim=(-1.5, 1.5))
-    profiles.legend(title="layers", loc="upper right", handlelength=1.6, fontsize=7)
+    profiles.legend(title="layers", loc="upper right")
 
     hollow = {"markeredgewidth": 0.8, "markerfacecolor": "white"}
     for (stiffness, slabs), face in zip(each.items(), (hollow, {}), strict=False):  # colours as in (g)
@@ -262,8 +255,8 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
             middle = bracket[known].mean(axis=1)
             events.plot(slabs["layers"].values[known], middle, label=label, **style.marked_line(at) | face)
     events.set(xlabel="layers", ylabel=f"onset force, {style.FORCE}")
-    events.set_ylim(0.0, 1.5 * events.get_ylim()[1])
-    events.legend(fontsize=7, loc="upper left")
+    events.set_ylim(0.0, 1.4 * events.get_ylim()[1])
+    events.legend(loc="upper left")
     load = f"{style.equals(style.F_EXT, float(at_force['force']), style.WEIGHT)}, {_stiffness_is(softest)}"
-    titles((box, profiles, events), (_stiffness_is(stiffest), load, ""), stem="fig05c_depth_and_width")
+    titles((profiles, events), (load, ""), stem="fig05c_depth")
     return figure

@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.animation import FuncAnimation
 from matplotlib.figure import Figure
 
+from granular_response.observe.peaks import is_double_peaked
 from granular_response.plot import style
 from granular_response.plot.animation import FULL, Frames, animate
 from granular_response.plot.chains import draw_chains, draw_key, draw_response
@@ -77,10 +78,12 @@ def _overview(slabs: Mapping[str, xr.Dataset]) -> Figure:
             draw_chains(above, Shown.of(slab, 1 if row == 0 else -1), largest=FULL * force, half_width=half)
             draw_response(below, x, curves[k, row], elastic, half_width=half, limits=limits)
             below.tick_params(labelleft=k == 0, labelbottom=row == 1)
+            peaks = "2 peaks" if is_double_peaked(x, curves[k, row]) else "1 peak"
+            below.text(0.03, 0.95, peaks, transform=below.transAxes, va="top", weight="bold", color=style.INCREASED)
             if k == 0:
                 name = style.equals(style.F_EXT, force, style.WEIGHT)
                 above.text(0.0, 0.98, name, transform=above.transAxes, va="top")
-                below.set_ylabel(f"response$/{style.F_EXT}$")
+                below.set_ylabel(style.RESPONSE.replace(" ", "\n", 1))
         panels[0, k].set_title(title, pad=2.0)
         panels[3, k].set_xlabel(style.POSITION)
     draw_key(panels[3, -1], "small loads")
@@ -89,9 +92,16 @@ def _overview(slabs: Mapping[str, xr.Dataset]) -> Figure:
 
 def _photoelastic(packings: list[xr.Dataset]) -> Figure:
     """Side by side, of one material."""
-    figure, panels = style.figure(1, len(packings), width=6.2, height=2.95)
+    figure, panels = style.figure(1, len(packings), width=6.2, height=2.85)
+    figure.set_layout_engine("compressed")
     largest = max(float(slab["total_force"].max()) for slab in packings)
     for axes, slab in zip(panels[0], packings, strict=True):
-        polarised(axes, slab, largest, pixels=PIXELS)
-        axes.set_title(packing(float(slab["polydispersity"])), pad=2.0)
+        half = polarised(axes, slab, largest, pixels=PIXELS)
+        load = style.equals(style.F_EXT, float(slab["total_force"].max()), style.WEIGHT)
+        axes.set_title(f"{packing(float(slab['polydispersity']))}, {load}", pad=2.0)
+        left, bar = axes.get_xlim()[0] + 0.05 * half, 5.0
+        top = axes.get_ylim()[1] - 1.5
+        axes.plot([left, left + bar], [top, top], color=style.BLACK, linewidth=2.0, linestyle="-", clip_on=False)
+        note = {"textcoords": "offset points", "va": "center", "fontsize": 8}
+        axes.annotate(f"${bar:g}\\,{style.RADIUS}$", (left + bar, top), (4.0, 0.0), **note)
     return figure

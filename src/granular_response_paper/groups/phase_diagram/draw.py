@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from itertools import product
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -16,14 +15,14 @@ from granular_response.plot import style
 from granular_response.scene.lattice import touching_largest
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, of_group
-from granular_response_paper.panels import different, family, label_ends, outer, packing, titles
+from granular_response_paper.panels import DASHED, DOTTED, different, family, label_ends, packing, titles
 from granular_response_paper.survey.crossover import ABOVE, FOUND
 
 from .parameters import Parameters
 
 #: Levels of the thick and of the thin bar.
 THICK, THIN = (0.16, 0.84), (0.025, 0.975)
-#: Experiments of Sec. VII: from what to what force, in particle weights; a caret is beyond the axis.
+#: Experiments of Sec. VII: from what to what force, in particle weights.
 EXPERIMENTS = (
     ("photoelastic\ndisks, 2D:\nabout 150", 150.0, 150.0),
     ("sand, 3D:\na few", 2.0, 5.0),
@@ -37,6 +36,10 @@ ASYMMETRIC = 0.01
 SMOOTH_WALLS = 1.0, 91.0
 #: Fill of the forces that were simulated, and that enough packings bear.
 SIMULATED = "#EFF2F4"
+#: Markers of the polydispersities, none of which could be an arrow.
+MARKERS = ("o", "s", "D", "P")
+#: The mark of what goes on beyond the axis.
+UPWARDS, DOWNWARDS = r"$\uparrow$", r"$\downarrow$"
 
 
 @style.context()
@@ -47,9 +50,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     )
     return {
         "fig22_phase_diagram": _diagram(shown.isel(width=-1)),
-        "crossover_intervals": _intervals(shown, shapes, realizations),
-        "five_realizations": _few(shown, shapes),
-        "peak_definitions": _definitions(shown, others, realizations),
+        "crossover_certainty": _certainty(*(one.isel(width=-1) for one in (shown, shapes, others, realizations))),
         "starts": _starts(datasets["starts"]),
     }
 
@@ -68,7 +69,6 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     crossovers = _usual(datasets["crossovers"])
     frictions, deltas = (different(crossovers[name]) for name in ("friction", "polydispersity"))
-    rubbing, disordered = [mu for mu in frictions if mu], {"polydispersity": _disorders(crossovers)}
     realizations = different(crossovers["realizations"][crossovers["polydispersity"].values > 0.0])
     given: dict[str, Value] = {
         "friction": frictions,
@@ -77,20 +77,20 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         "realizations": realizations or 1,
         "width": parameters.widths,
     }
-    rows = len(parameters.widths)
-    last, last_of_few = (chr(ord("a") - 1 + columns * rows) for columns in (len(deltas), len(deltas) - 1))
+    given["width"] = parameters.widths[-1]
+    last, count = chr(ord("a") - 1 + len(deltas)), len(deltas)
+    few = ", ".join(f"({chr(ord('a') + count + k)})" for k in range(len(_disorders(crossovers))))
     return of_group(
         "phase_diagram",
         {
-            "fig22_phase_diagram": given | {"width": parameters.widths[-1]},
-            "crossover_intervals": given,
-            "five_realizations": given | {"friction": rubbing, "wall_friction": rubbing} | disordered,
-            "peak_definitions": given | disordered,
-            "starts": {"friction": [0.0, 0.2]} | disordered,
+            "fig22_phase_diagram": given,
+            "crossover_certainty": given,
+            "starts": {"friction": [0.0, 0.2], "polydispersity": _disorders(crossovers), "width": parameters.widths[0]},
         },
         p=parameters,
         last=last,
-        last_of_few=last_of_few,
+        few=few,
+        tolerances=[100.0 * t for t in sorted(datasets["definitions"]["tolerance"].values.tolist())],
         dip=100 * parameters.tolerance,
     )
 
@@ -98,12 +98,11 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 def _diagram(crossovers: xr.Dataset) -> Figure:
     """Fig. 22: the crossover force of every polydispersity in one plane, beside the forces of experiments."""
     figure, ((axes,),) = style.figure(width="double", height=3.9)
-    axes.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel=style.FORCE, **_FRICTION_AXES)
-    axes.set(xlim=(-0.05, 1.14), ylim=FORCES)
+    axes.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel=f"crossover force {style.FORCE}", **_FRICTION_AXES)
+    axes.set(xlim=(-0.07, 1.16), ylim=FORCES)
     axes.yaxis.set_major_formatter("{x:g}")
-    ends = []
-    deltas = different(crossovers["polydispersity"])
-    for k, (delta, look) in enumerate(family(deltas, of="polydispersity")):
+    ends, looks = [], _by_disorder(crossovers)
+    for delta, look in looks:
         one = crossovers.isel(case=_of(crossovers, delta))
         friction, force, found = one["friction"].values, one["force"].values, one["kind"].values == FOUND
         low, high = one["interval"].sel(level=list(THICK)).values[found].T
@@ -113,52 +112,108 @@ def _diagram(crossovers: xr.Dataset) -> Figure:
         )
         for x, bottom in zip(friction[found][~known], low[~known], strict=True):
             bar = {"color": look["color"], "linestyle": "-", "linewidth": 1.0, "alpha": 0.6}
-            axes.plot([x, x], [bottom, FORCES[1] / 1.1], marker="^", markevery=[1], markersize=5.0, **bar)
+            axes.plot([x, x], [bottom, FORCES[1] / 1.15], marker=UPWARDS, markevery=[1], markersize=7.0, **bar)
         axes.plot(friction[found], force[found], **look | {"linewidth": 1.4, "markersize": 4.5})
         ends += [(packing(delta), friction[found][-1], force[found][-1], look["color"])] if found.any() else []
-        _bounds(axes, one, look["color"], 0.02 * (k - 0.5 * (len(deltas) - 1)), FORCES)
-    for text, x, y in (("two peaks\n(hyperbolic-like)", 0.24, 0.83), ("one peak\n(elastic-like)", 0.62, 0.17)):
+    _bounds(axes, crossovers, looks)
+    for text, x, y in (("two peaks\n(hyperbolic-like)", 0.24, 0.83), ("one peak\n(elastic-like)", 0.62, 0.2)):
         axes.text(x, y, text, transform=axes.transAxes, va="center", style="italic", fontsize=10, color=style.MUTED)
+    for row, text in enumerate(
+        ("paper: rises with friction, falls with disorder", "bands: 68 % of the bootstrap draws")
+    ):
+        colour = style.MUTED if row else style.PAPER
+        axes.text(0.985, 0.09 - 0.05 * row, text, transform=axes.transAxes, ha="right", fontsize=8, color=colour)
     label_ends(axes, ends)
     for text, low, high in EXPERIMENTS:
         ends_at = np.clip([low, high], *FORCES)
         look = {"color": style.MUTED, "linestyle": "-", "clip_on": False, "transform": axes.get_yaxis_transform()}
-        axes.plot([1.03, 1.03], ends_at, linewidth=3.0, marker="^" if low > FORCES[1] else "_", **look)
+        axes.plot(
+            [1.03, 1.03], ends_at, linewidth=3.0, marker=UPWARDS if low > FORCES[1] else "_", markersize=7.0, **look
+        )
         label_ends(axes, [(text, 1.03, float(np.sqrt(ends_at.prod())), style.MUTED)], xycoords=look["transform"])
     return figure
 
 
-def _bounds(axes: Axes, data: xr.Dataset, colour: str, shift: float, limits: tuple[float, float]) -> None:
-    """A caret for each crossover force that is only known to lie below or above a force, to the side where it lies."""
-    for x, bound, what in zip(data["friction"].values, data["force"].values, data["kind"].values, strict=True):
-        if what != FOUND:
-            at = float(np.clip(bound, 1.1 * limits[0], limits[1] / 1.1))
-            axes.plot(x + shift, at, marker="^" if what == ABOVE else "v", color=colour, markersize=5.0, zorder=5)
+def _by_disorder(crossovers: xr.Dataset) -> list[tuple[float, dict[str, Any]]]:
+    """Each polydispersity and the look of its curve."""
+    deltas = different(crossovers["polydispersity"])
+    looks = family(deltas, of="polydispersity")
+    return [(delta, look | {"marker": MARKERS[k % len(MARKERS)]}) for k, (delta, look) in enumerate(looks)]
 
 
-def _intervals(crossovers: xr.Dataset, shapes: xr.Dataset, realizations: xr.Dataset) -> Figure:
-    """A row for each smoothing width, a column for each polydispersity: 68 and 95 % of the draws."""
+def _bounds(axes: Axes, crossovers: xr.Dataset, looks: Iterable[tuple[float, dict[str, Any]]]) -> None:
+    """Crossover forces that are only known to lie below or above a force, as text at the lower or upper edge.
+
+    Of several polydispersities at one friction the texts stand above each other.
+    """
+    rows: dict[tuple[float, bool], int] = {}
+    for delta, look in looks:
+        one = crossovers.isel(case=_of(crossovers, delta))
+        for friction, bound, what in zip(one["friction"].values, one["force"].values, one["kind"].values, strict=True):
+            if what == FOUND:
+                continue
+            above = what == ABOVE
+            row = rows[friction, above] = rows.get((friction, above), -1) + 1
+            inwards = (10.0 * row + 4.0) * (-1) ** above
+            axes.annotate(
+                f"{'>' if above else '≤'} {bound:g}", (friction, float(above)), (-5.0, inwards),
+                xycoords=axes.get_xaxis_transform(), textcoords="offset points", ha="right" if above else "left",
+                va="top" if above else "bottom", fontsize=8, color=look["color"],
+            )  # fmt: skip
+
+
+def _certainty(crossovers: xr.Dataset, shapes: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:
+    """How well each crossover force is known: a column for each polydispersity.
+
+    Above, 68 and 95 % of the draws, other definitions of two peaks, and medians of realizations; below, how often the
+    mean of a few realizations has as many peaks as that of all. The lattice has one realization: keys stand there.
+    """
     applied = shapes["applied_force"].values
     limits = FORCES[0], 2.0 * float(np.nanmax(applied))
-    deltas, widths = different(crossovers["polydispersity"]), crossovers["width"].values.tolist()
-    colours = dict(zip(deltas, style.ordered_colours(len(deltas), of="polydispersity"), strict=True))
-    figure, panels = _grid(widths, deltas, 0.5 + 1.85 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
-    for (width, delta), axes in panels.items():
+    columns = _by_disorder(crossovers)
+    figure, panels = style.figure(2, len(columns), width="double", height=4.2, sharey="row")
+    handles: dict[str, Any] = {}
+    for (delta, look), axes in zip(columns, panels[0], strict=True):
         here = _of(crossovers, delta)
-        one, colour = crossovers.sel(width=width).isel(case=here), colours[delta]
-        axes.set(ylim=limits, **_FRICTION_AXES)
+        one, colour = crossovers.isel(case=here), look["color"]
+        axes.set(ylim=limits, xlabel=f"${style.BOTH_FRICTIONS}$", **_FRICTION_AXES)
         friction, found = one["friction"].values, one["kind"].values == FOUND
         smallest, largest = np.nanmin(applied[here], axis=1), np.nanmax(applied[here], axis=1)
-        axes.fill_between(friction, smallest, largest, color=SIMULATED, linewidth=0.0, zorder=0)
-        axes.plot(friction[found], one["force"].values[found], color=colour, linestyle="-", marker="o", markersize=4.0)
-        for levels, linewidth in ((THIN, 0.7), (THICK, 2.4)):
-            low, high = one["interval"].sel(level=list(levels)).transpose("level", ...).values
-            for x, bottom, top in zip(friction, low, high, strict=True):
+        handles["forces simulated"] = axes.fill_between(
+            friction, smallest, largest, color=SIMULATED, linewidth=0.0, zorder=0
+        )
+        for width, low, high in ((0.7, *THIN), (2.4, *THICK)):
+            ends = one["interval"].sel(level=[low, high]).transpose("level", ...).values
+            for x, bottom, top in zip(friction, *ends, strict=True):
                 if bottom < top:
-                    _bar(axes, x, bottom, top, limits, linewidth, colour)
-        _bounds(axes, one, colour, 0.0, limits)
-        if not delta:
-            _transitions(axes, realizations.sel(width=width).isel(case=here), applied[here])
+                    _bar(axes, x, bottom, top, limits, width, colour)
+        axes.plot(friction[found], one["force"].values[found], **look | {"markersize": 4.0})
+        if delta:
+            ways = others.isel(case=here)
+            forces = np.where(
+                ways["kind"].transpose("tolerance", ...) == FOUND, ways["force"].transpose("tolerance", ...), np.nan
+            )
+            for k, edge in ((0, DASHED), (-1, DOTTED)):
+                percent = 100.0 * float(ways["tolerance"][k])
+                (handles[f"dip of {percent:g} %"],) = axes.plot(
+                    friction, forces[k], color=style.MUTED, linestyle=edge, linewidth=0.9
+                )
+            median = realizations.isel(case=here)["median"].values
+            cross: dict[str, Any] = {"linestyle": "none", "marker": "x", "color": style.BLACK, "markersize": 4.0}
+            (handles["median of realizations"],) = axes.plot(friction, median, zorder=7, **cross)
+        else:
+            handles |= _transitions(axes, realizations.isel(case=here), applied[here])
+        _bounds(axes, one, [(delta, look)])
+    few, keys = _few(panels[1, 1:], crossovers, shapes), panels[1, 0]
+    keys.set_axis_off()
+    keys.legend(
+        [*handles.values(), *few.values()], [*handles, *few], loc="center left", fontsize=7.5, borderaxespad=0.0
+    )
+    panels[0, 0].set_ylabel(f"crossover force {style.FORCE}")
+    panels[1, 1].tick_params(labelleft=True)
+    panels[1, 1].set_ylabel(f"fraction of means of {int(shapes['number'][0])}")
+    names = [packing(delta) for delta, _ in columns]
+    titles([*panels[0], *panels[1, 1:]], [*names, *names[1:]])
     return figure
 
 
@@ -171,33 +226,27 @@ _FRICTION_AXES: dict[str, Any] = {
 }
 
 
-def _grid(
-    widths: Sequence[float], deltas: Sequence[float], height: float, x: str, y: str
-) -> tuple[Figure, dict[tuple[float, float], Axes]]:
-    """A figure with a row for each smoothing width and a column for each polydispersity, named, and its panels."""
-    figure, panels = style.figure(len(widths), len(deltas), width="double", height=height, sharex=True, sharey=True)
-    found = dict(zip(product(widths, deltas), panels.flat, strict=True))
-    titles(found.values(), [f"{packing(delta)}, $w = {width:g}\\,\\bar R$" for width, delta in found])
-    outer(panels, x, y)
-    return figure, found
-
-
 def _of(crossovers: xr.Dataset, delta: float) -> NDArray[np.intp]:
     """The cases of a polydispersity in the order of friction."""
     here = np.flatnonzero(crossovers["polydispersity"].values == delta)
     return here[np.argsort(crossovers["friction"].values[here])]
 
 
-def _transitions(axes: Axes, lattice: xr.Dataset, applied: FloatArray) -> None:
-    """A cross between the last force under which a lattice is symmetric and the first under which it is not."""
+def _transitions(axes: Axes, lattice: xr.Dataset, applied: FloatArray) -> dict[str, Any]:
+    """A cross between the last force under which a lattice is symmetric and the first under which it is not, and a star
+    for the paper's; keys by name."""
+    keys: dict[str, Any] = {}
+    look: dict[str, Any] = {"color": style.BLUE, "markersize": 6.0, "zorder": 6, "linestyle": "none"}
     for case in range(lattice.sizes["case"]):
-        lost = np.flatnonzero(lattice["asymmetry"].values[case, 0] > ASYMMETRIC)
+        lost = np.flatnonzero(lattice["asymmetry"].values[case] > ASYMMETRIC)
         if lost.size and lost[0] > 0:
             ends = applied[case, lost[0] - 1 : lost[0] + 1]
             friction = float(lattice["friction"][case])
             axes.plot([friction] * 2, ends, color=style.BLUE, linewidth=1.6, linestyle="-", zorder=6)
-            axes.plot(friction, np.sqrt(ends.prod()), marker="x", color=style.BLUE, markersize=6.0, zorder=6)
-    axes.plot(*SMOOTH_WALLS, marker="*", color=style.BLUE, markerfacecolor="white", markersize=6.0, zorder=6)
+            (keys["symmetry lost"],) = axes.plot(friction, np.sqrt(ends.prod()), marker="x", **look)
+    star = {**look, "marker": "*", "markerfacecolor": "white"}
+    (keys["the same, paper, smooth walls"],) = axes.plot(*SMOOTH_WALLS, **star)
+    return keys
 
 
 def _bar(
@@ -206,60 +255,31 @@ def _bar(
     """An interval in force; an end beyond every simulated force goes to the edge and has an arrow head there."""
     ends = np.clip([low, high], *limits)
     axes.plot([x, x], ends, color=colour, linewidth=linewidth, linestyle="-", solid_capstyle="butt", zorder=3)
-    for end, edge, marker in ((low, limits[0], "v"), (high, limits[1], "^")):
+    for end, edge, marker in ((low, 1.1 * limits[0], DOWNWARDS), (high, limits[1] / 1.1, UPWARDS)):
         if not np.isfinite(end):
-            axes.plot(x, edge, marker=marker, markersize=5.0, color=colour, zorder=6)
+            axes.plot(x, edge, marker=marker, markersize=7.0, color=colour, zorder=6)
 
 
-def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
-    """How often the mean of a few realizations has as many peaks as that of all, near the crossover and off it.
+def _few(panels: Iterable[Axes], crossovers: xr.Dataset, shapes: xr.Dataset) -> dict[str, Any]:
+    """How often the mean of a few realizations has as many peaks as that of all, against the force per crossover force.
 
-    A column for each polydispersity, a row for each smoothing width, a line for each friction.
+    A panel for each polydispersity, a line for each friction; the lines by name.
     """
-    deltas, widths = _disorders(crossovers), crossovers["width"].values.tolist()
     looks = dict(family(different(crossovers["friction"]), of="friction"))
     tolerance, few = float(shapes.attrs["tolerance"]), shapes.isel(number=0)
-    what = f"fraction of means of {int(few['number'])}"
-    figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), "force over crossover force", what)
     drawn = {}
-    for (width, delta), axes in panels.items():
-        one = crossovers.sel(width=width)
-        for case in np.flatnonzero((one["polydispersity"].values == delta) & (one["kind"].values == FOUND)):
-            friction = float(one["friction"][case])
-            row = few.sel(width=width).isel(case=case)
+    for delta, axes in zip(_disorders(crossovers), panels, strict=True):
+        for case in np.flatnonzero(
+            (crossovers["polydispersity"].values == delta) & (crossovers["kind"].values == FOUND)
+        ):
+            friction, row = float(crossovers["friction"][case]), few.isel(case=case)
             two_peaked = row["two_peaked_means"].values
             agree = np.where(row["shape"].values > tolerance, two_peaked, 1.0 - two_peaked)
-            force = shapes["applied_force"].values[case] / float(one["force"][case])
-            (drawn[friction],) = axes.plot(force, agree, **looks[friction])
+            force = shapes["applied_force"].values[case] / float(crossovers["force"][case])
+            (drawn[friction],) = axes.plot(force, agree, **looks[friction] | {"markersize": 2.8})
         axes.axvline(1.0, color=style.MUTED, linewidth=0.6, linestyle="-", zorder=0)
-        axes.set(xscale="log", ylim=(0.2, 1.05))
-    lines = {f"$\\mu = {friction:g}$": drawn[friction] for friction in sorted(drawn)}
-    figure.legend(list(lines.values()), list(lines), loc="outside upper center", ncols=len(lines))
-    return figure
-
-
-def _definitions(crossovers: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:
-    """Crossovers by what counts as two peaks; found ones alone, those of single realizations beside them."""
-    deltas, widths = _disorders(crossovers), crossovers["width"].values.tolist()
-    figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
-    tolerances = [(float(crossovers.attrs["tolerance"]), crossovers)]
-    tolerances += [(t, others.sel({"tolerance": t})) for t in others["tolerance"].values.tolist()]
-    handles = {}
-    for (width, delta), axes in panels.items():
-        here = _of(crossovers, delta)
-        for (tolerance, data), look in family(sorted(tolerances, key=lambda pair: pair[0]), of="other"):
-            one = data.sel(width=width).isel(case=here)
-            found = one["kind"].values == FOUND
-            friction, force = one["friction"].values[found], one["force"].values[found]
-            (handles[f"{tolerance:.3g}"],) = axes.plot(friction, force, **look | {"markersize": 3.0})
-        single = realizations.sel(width=width).isel(case=here)
-        friction, median = single["friction"].values, single["median"].values
-        known = np.isfinite(median)
-        cross: dict[str, Any] = {"linestyle": "none", "marker": "x", "color": style.VERMILION, "markersize": 4.0}
-        (handles["median of realizations"],) = axes.plot(friction[known], median[known], **cross)
-        axes.set(**_FRICTION_AXES)
-    figure.legend(list(handles.values()), list(handles), loc="outside upper center", ncols=len(handles), title="dip")
-    return figure
+        axes.set(xscale="log", xlim=(0.03, 8.0), ylim=(0.2, 1.05), xlabel="force / crossover force")
+    return {style.equals(style.FRICTION, friction): drawn[friction] for friction in sorted(drawn)}
 
 
 def _starts(starts: xr.Dataset) -> Figure:

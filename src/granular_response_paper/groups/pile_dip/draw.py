@@ -17,7 +17,7 @@ from granular_response.plot import network, style
 from granular_response.plot.field import draw_field
 from granular_response.state import FLOOR, Box
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import chain_key, chains, contact_ends, titles
+from granular_response_paper.panels import Contacts, force_key, forces, titles
 
 from .parameters import Parameters
 
@@ -43,7 +43,8 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     said = {**of_scene(parameters.scene), "width": parameters.stress_width}
-    return of_group("pile_dip", {"fig17_pile": said, "fig17_pile_profiles": said}, p=parameters)
+    opened = datasets["piles"]["central_open_contacts"].sel(case=DRAWN).values.astype(int).tolist()
+    return of_group("pile_dip", {"fig17_pile": said, "fig17_pile_profiles": said}, p=parameters, open=opened)
 
 
 def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
@@ -56,20 +57,20 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     width = float(piles["width"])
     top = float(piles["position"].values[..., 1].max()) + 1.0
     for column, case in enumerate(DRAWN):
-        forces, map_axes, contacts = panels[:, column]
+        chains, map_axes, contacts = panels[:, column]
         one = piles.sel(case=case)
-        _forces(forces, one, strongest)
+        _forces(chains, one, strongest)
         field = fields.sel(case=case)
         image = draw_field(map_axes, stress["x"], stress["z"], field, norm=Normalize(0.0, largest), levels=levels)
         _outline(map_axes, one)
         map_axes.set(xlabel=style.POSITION, ylabel=style.HEIGHT if column == 0 else "")
         _network(contacts, one)
-        for axes in (forces, contacts):
+        for axes in (chains, contacts):
             network.draw_box(axes, Box(width), 2.0)
             style.no_axes(axes)
             axes.set(xlim=(-2.6, width + 2.6), ylim=(-1.6, top + 0.2))
         map_axes.set(xlim=(-0.5 * width, 0.5 * width), ylim=(0.0, top))
-        chain_key(forces, (0.8 * width, 0.9 * top), KEY, strongest, style.WEIGHT)
+        force_key(chains, (0.8 * width, 0.9 * top), KEY, strongest, style.WEIGHT)
     titles(panels.flat, [*(f"forces, {NAMES[case]}" for case in DRAWN), *2 * ["$\\sigma_{zz}$"], *2 * ["contacts"]])
     bar = figure.colorbar(image, ax=panels[1], shrink=0.9, aspect=14, pad=0.02, ticks=[0.0, *levels[1::2]])
     bar.ax.hlines(levels, 0.0, 1.0, transform=bar.ax.get_yaxis_transform(), color="white", linewidth=0.6)
@@ -95,10 +96,9 @@ def _wall_part(piles: xr.Dataset, stress: xr.Dataset) -> xr.DataArray:
 
 def _forces(axes: Axes, one: xr.Dataset, strongest: float) -> None:
     position, radius = one["position"].values, one["radius"].values
-    network.draw_disks(axes, position, radius)
+    network.draw_disks(axes, position, radius, facecolor=style.DISKS, edgecolor="none")
     touching = np.where(one["contact_status"].values[:, None] != 0, one["contact_force"].values, 0.0)
-    size = np.linalg.norm(np.concatenate([touching, one["wall_force"].values]), axis=1)
-    chains(axes, *contact_ends(one, position), size, strongest)
+    forces(axes, Contacts.of(one, position), np.concatenate([touching, one["wall_force"].values]), strongest)
 
 
 def _outline(axes: Axes, one: xr.Dataset) -> None:

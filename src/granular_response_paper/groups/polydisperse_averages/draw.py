@@ -17,11 +17,11 @@ from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
 from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.ensembles import OUTCOMES
 from granular_response_paper.panels import (
-    chain_key,
-    chains,
-    contact_ends,
+    Contacts,
     different,
     family,
+    force_key,
+    forces,
     grey_limit,
     label_ends,
     material,
@@ -36,8 +36,8 @@ from .parameters import Parameters
 #: Fig. 21 is smoothed with this width, and shows at most so many forces of a case.
 FIG21_WIDTH, MOST_FORCES = 6.0, 4
 
-#: Forces of the keys of Fig. 2 in mean disk weights, at rest and added; added force times depth per load that has the
-#: full width.
+#: Forces of the keys of Fig. 2 in mean disk weights, under gravity and incremental; incremental force times depth per
+#: load that has the full width.
 KEYS, DEEP = (20.0, 1.0), 4.0
 
 #: Of the keys over the panels of Fig. 21.
@@ -66,9 +66,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return {
         "fig02_polydisperse_forces": _forces(datasets["forces"]),
         "fig19_disordered_response": _response(datasets["individual"], datasets["averages"]),
-        "fig20_disordered_linear_range": _linear_range(datasets["linear_range"], datasets["averages"]),
+        "fig20_disordered_linear_range": _linear_range(datasets["linear_range"]),
         "fig21_disordered_forces": _averages(datasets["averages"]),
-        "packings": _packings(datasets["packings"], datasets["averages"]),
+        "packings": _packings(datasets["packings"]),
     }
 
 
@@ -104,6 +104,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         tolerance=100.0 * float(datasets["linear_range"].attrs["tolerance"]),
         last=chr(ord("a") - 1 + len(disordered) * len(frictions)),
         contacts=PAPER_CONTACTS,
+        typical=_typical(datasets["linear_range"], averages),
     )
 
 
@@ -120,39 +121,44 @@ def _shown(data: xr.Dataset) -> NDArray[np.intp]:
 
 
 def _forces(data: xr.Dataset) -> Figure:
-    """Fig. 2: the whole slab under gravity; what the load adds in the middle third, and that times the depth."""
+    """Fig. 2: the slab under gravity, and in the middle third the incremental forces, and these times the depth."""
     figure, panels = style.figure(2, 2, width="double", height=4.4, height_ratios=(1.0, 1.6))
     grid = panels[0, 0].get_gridspec()
     for axes in panels[0]:
         axes.remove()
     resting, loaded = _contact_forces(data)
-    at_rest, added = np.linalg.norm(resting, axis=1), np.linalg.norm(loaded - resting, axis=1)
     width, disk, load = float(data["width"]), int(data["loaded_disk"]), float(data["force"][1])
     radius, position = data["radius"].values, data["position"].values
     top = float((position[..., 1] + radius).max())
     x, z = position[1, disk]
-    points, (first, second) = contact_ends(data, position[1])
-    depth = z - 0.5 * (points[first, 1] + points[second, 1])
+    under_gravity, contacts = (Contacts.of(data, one) for one in position)
+    added = loaded - resting
     force = style.equals(style.F_EXT, load, style.WEIGHT)
     wide = figure.add_subplot(grid[0, :])
+    strongest = float(np.linalg.norm(resting, axis=1).max())
+    middle = x - width / 6.0, x + width / 6.0
     drawn = (
-        (wide, 0, at_rest, float(at_rest.max()), KEYS[0], style.WEIGHT, (-1.5, width + 1.5)),
-        (panels[1, 0], 1, added, 0.5 * load, KEYS[1], style.WEIGHT, (x - width / 6.0, x + width / 6.0)),
-        (panels[1, 1], 1, added * depth / load, DEEP, 1.0, style.RADIUS, (x - width / 6.0, x + width / 6.0)),
+        (wide, under_gravity, resting, strongest, KEYS[0], style.WEIGHT, (-1.5, width + 1.5)),
+        (panels[1, 0], contacts, added, 0.5 * load, KEYS[1], style.WEIGHT, middle),
+        (panels[1, 1], contacts, added * (z - contacts.point[:, 1:]) / load, DEEP, 1.0, style.RADIUS, middle),
     )
-    for axes, state, size, largest, key, unit, limits in drawn:
-        network.draw_disks(axes, position[state], radius)
-        network.draw_rotations(axes, position[state], radius, data["angle"].values[state], color="#A8C8DC")
+    for axes, where, vector, largest, key, unit, limits in drawn:
+        state = 0 if axes is wide else 1
+        look: dict[str, Any] = {"facecolor": style.DISKS, "edgecolor": "none"}
+        network.draw_disks(axes, position[state], radius, **look)
+        marks = {"color": "white", "linewidth": 0.4 if axes is wide else 0.9, "zorder": 1.5}
+        network.draw_rotations(axes, position[state], radius, data["angle"].values[state], **marks)
         network.draw_box(axes, Box(width), top)
-        chains(axes, *contact_ends(data, position[state]), size, largest)
-        chain_key(axes, (limits[1] - 0.09 * width, top + 2.8), key, largest, unit)
+        forces(axes, where, vector, largest)
+        force_key(axes, (limits[1] - 0.08 * width, top + 2.8), key, largest, unit)
         style.no_axes(axes)
-        axes.set(xlim=limits, ylim=(-1.5, top + 4.0))
+        axes.set(xlim=limits, ylim=(-2.4, top + 4.0))
         if state:
             network.draw_loaded_disk(axes, (x, z), float(radius[disk]))
             network.draw_load(axes, (x, z + radius[disk]), length=3.6)
             axes.set(xlim=limits)
-    titles((wide, *panels[1]), ("under gravity", f"added by {force}, middle third", "the same, times depth"))
+    times_depth = rf"incremental, $|\mathbf{{f}}|\,z/{style.F_EXT}$"
+    titles((wide, *panels[1]), ("under gravity", f"incremental, {force}, middle third", times_depth))
     return figure
 
 
@@ -216,52 +222,55 @@ def _case(data: xr.Dataset, polydispersity: float, friction: float, start: str |
     return int(np.argmax(here)) if here.any() else None
 
 
-def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
-    """Fig. 20: one packing, the means of all, the lattice, smoothed alike, and the ends of the linear ranges."""
+def _linear_range(data: xr.Dataset) -> Figure:
+    """Fig. 20: one packing and the lattice, smoothed alike, and the ends of their linear ranges."""
     deltas, frictions = different(data["polydispersity"])[::-1], different(data["friction"])
     looks = {friction: look | {"markersize": 3.0} for friction, look in family(frictions, of="friction")}
-    figure, panels = style.figure(1, len(deltas) + 2, width="double", height=3.0)
-    one, means, *others = panels[0]
-    responses = [one, *others[:-1]]
+    wide = [1.0] * len(deltas) + [1.2]
+    figure, panels = style.figure(1, len(deltas) + 1, width="double", height=3.1, width_ratios=wide)
+    *responses, ends = panels[0]
     for axes, delta in zip(responses, deltas, strict=True):
         for friction in frictions:
             response = data["response_at_centre"].values[_case(data, delta, friction)]
-            axes.plot(data["force"], response, **looks[friction], label=f"$\\mu = {friction:g}$")
-    _central_means(means, averages, deltas[0], float(data.attrs["width"]), looks)
-    largest = 1.05 * max(line.get_ydata().max() for axes in (*responses, means) for line in axes.get_lines())
-    for axes in (*responses, means):
+            axes.plot(data["force"], response, **looks[friction], label=style.equals(style.FRICTION, friction))
+    largest = 1.05 * max(line.get_ydata().max() for axes in responses for line in axes.get_lines())
+    for axes in responses:
         axes.set(xscale="log", xlabel=style.FORCE, ylim=(0.0, largest), xlim=(0.04, 600.0))
-    for axes in (means, *others[:-1]):
+    for axes in responses[1:]:
         axes.tick_params(labelleft=False)
-    one.set_ylabel(f"{style.FLOOR_STRESS} at $x = 0$")
-    names = list(map(packing, deltas))
-    titles(panels[0], [f"{names[0]}, smooth walls", "mean, rough walls", *(f"{one}, smooth" for one in names[1:]), ""])
-    ends = others[-1]
+    responses[0].set_ylabel(f"{style.FLOOR_STRESS} at $x = 0$")
+    titles(panels[0], [*map(packing, deltas), "ends of the linear ranges"])
     for delta, look in family(deltas[::-1], of="polydispersity"):
         _range_ends(ends, data.isel(path=data["polydispersity"].values == delta), look, packing(delta))
-    ends.set(yscale="log", xlabel="$\\mu$", ylabel=f"end of the linear range, {style.FORCE}")
+    ends.set(yscale="log", xlabel=f"${style.FRICTION}$", ylabel=f"end of the linear range, {style.FORCE}")
     ends.legend(loc="lower center", bbox_to_anchor=(0.45, 0.0))
-    figure.legend(*one.get_legend_handles_labels(), loc="outside upper center", ncols=len(frictions))
+    figure.legend(*responses[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(frictions))
     return figure
+
+
+def _typical(data: xr.Dataset, averages: xr.Dataset) -> str:
+    """How typical the packing of Fig. 20 is: its response to the smallest force beside those of Fig. 21, in words.
+
+    They differ in nothing without friction, where walls are smooth in both.
+    """
+    delta, width = max(different(data["polydispersity"])), float(data.attrs["width"])
+    case, path = _case(averages, delta, 0.0), _case(data, delta, 0.0)
+    if case is None or path is None or width not in averages["width"].values:
+        return ""
+    one = averages.isel(case=case, step=0).sel(width=width, x=0.0)
+    count = int(one["count_at_rest"])
+    spread = float(one["standard_error"]) * np.sqrt(count)
+    mean, found = float(one["mean"]), float(data["response_at_centre"].values[path][0])
+    kind = "a typical one" if abs(found - mean) <= spread else "not a typical one"
+    return (
+        f" Without friction this packing is {kind}: its response to the smallest force is {found:.3f}, and that of all"
+        f" {count} packings of Fig. 21 is {mean:.3f} on average, with a standard deviation of {spread:.3f}."
+    )
 
 
 def smoothed_by(averages: xr.Dataset) -> int:
     """Index of the width that is that of Fig. 21, or nearest to it."""
     return int(np.abs(averages["width"].values - FIG21_WIDTH).argmin())
-
-
-def _central_means(
-    axes: Axes, averages: xr.Dataset, delta: float, width: float, looks: Mapping[float, dict[str, Any]]
-) -> None:
-    """Mean responses at x = 0 with their standard errors, of the cases that have one of the frictions of ``looks``."""
-    if width not in averages["width"].values:  # they are smoothed otherwise
-        return
-    for friction, look in looks.items():
-        case = _case(averages, delta, friction)
-        if case is not None:
-            one = averages.isel(case=case, step=averages["count_at_rest"].values[case] >= 2).sel(width=width, x=0.0)
-            mean, error = one["mean"].values, one["standard_error"].values
-            axes.errorbar(one["force"].values, mean, error, elinewidth=0.8, capsize=1.5, **look)
 
 
 def _range_ends(axes: Axes, data: xr.Dataset, look: dict[str, Any], name: str) -> None:
@@ -330,8 +339,8 @@ def _realizations(one: xr.Dataset) -> np.ndarray:
     return np.sum([one[f"count_{name}"].values for name in OUTCOMES], axis=0)
 
 
-def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
-    """Directions of contacts, coordination numbers, and how many packings bear a force."""
+def _packings(data: xr.Dataset) -> Figure:
+    """Directions of contacts, and coordination numbers."""
     shown = _shown(data)
     deltas = different(data["polydispersity"])
     colours = dict(zip(deltas, style.ordered_colours(len(deltas), of="polydispersity"), strict=True))
@@ -344,25 +353,21 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     for axes, delta in zip(roses, disordered, strict=True):
         _rose(axes, data, delta, None, {"color": colours[delta], "linestyle": "-"})
     _rose(roses[0], data, disordered[0], LITERAL, {"color": style.BLACK, "linestyle": "--", "linewidth": 0.8})
-    coordination, bearing = figure.add_subplot(grid[1, :-1]), figure.add_subplot(grid[1, -1])
-    ends = []
+    coordination = figure.add_subplot(grid[1, :])
+    ends, counted = [], data["coordination_number_with_walls"].values
     for delta, look in family(deltas, of="polydispersity"):
         here = shown[data["polydispersity"].values[shown] == delta]
-        here = here[np.isfinite(data["coordination_number_bulk"].values[here]).any(axis=1)]
-        numbers, friction = data["coordination_number_bulk"].values[here], data["friction"].values[here]
+        here = here[np.isfinite(counted[here]).any(axis=1)]
+        numbers, friction = counted[here], data["friction"].values[here]
         mean, spread = np.nanmean(numbers, axis=1), np.nanstd(numbers, axis=1)
         coordination.errorbar(friction, mean, spread, **look, elinewidth=0.8, capsize=2.0)
         ends += [(packing(delta), float(friction[-1]), float(mean[-1]), look["color"])] if here.size else []
-    coordination.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel="coordination number $z$ in the bulk")
+    coordination.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel="coordination number $z$, with walls")
     coordination.set_xlim(right=1.18)
     paper = rf"paper: {PAPER_CONTACTS:g} at $\delta = 0.01$, $\mu = 0$"
     style.paper_value(coordination, PAPER_CONTACTS, paper, along="y")
     label_ends(coordination, ends)
-    _bearing(bearing, averages.isel(case=_shown(averages)), colours)
-    bearing.set(xlabel=style.FORCE, ylabel="fraction of stable packings", xscale="log", ylim=(0.0, 1.05))
-    if bearing.containers:  # some packings collapse
-        bearing.legend(loc="lower left", fontsize=7.5)
-    titles((*roses, coordination, bearing), [*map(packing, disordered), "", ""])
+    titles((*roses, coordination), [*map(packing, disordered), ""])
     return figure
 
 
@@ -377,16 +382,3 @@ def _rose(axes: Axes, data: xr.Dataset, delta: float, start: str | None, look: M
     axes.tick_params(labelsize=7, pad=-2.0)
     axes.yaxis.set_major_locator(MaxNLocator(3))
     axes.grid(color=style.FAINT, linewidth=0.4)
-
-
-def _bearing(axes: Axes, averages: xr.Dataset, colours: Mapping[float, str]) -> None:
-    """The part of the packings at rest against the force with its standard error, where some of them collapse."""
-    fallen = np.flatnonzero((averages["count_at_rest"].values < _realizations(averages)).any(axis=1))
-    for k, case in enumerate(fallen):
-        one = averages.isel(case=case, step=np.isfinite(averages["force"].values[case]))
-        total, delta = _realizations(one), float(one["polydispersity"])
-        part = one["count_at_rest"].values / total
-        error = np.sqrt(part * (1.0 - part) / total)
-        look = style.marked_line(k) | {"color": colours[delta], "markersize": 4.0, "markeredgewidth": 0.8}
-        look |= {"markerfacecolor": "white", "elinewidth": 0.8, "capsize": 1.5}
-        axes.errorbar(one["force"].values, part, error, **look, label=material(delta, float(one["friction"])))

@@ -89,11 +89,13 @@ def _distances(axes: Axes, data: xr.Dataset) -> None:
     for index, (case, slabs) in enumerate(alike(data, "slab", *_KEYS).items()):
         layers, distance = slabs["layers"].values, slabs["distance"].values
         colour = style.COLOURS[FLOORS.index(case[1])]
-        axes.plot(layers, distance, **style.marked_line(index, colour=colour), label=_name(case))
-        for k in np.flatnonzero(np.diff(np.log(distance)) > 1.0) + 1:
-            axes.annotate(
-                "row opened", (layers[k], distance[k]), (0, 5), textcoords="offset points", ha="center", fontsize=7
-            )
+        marked = style.marked_line(index, colour=colour)
+        apart = np.flatnonzero(np.diff(np.log(distance)) > 1.0) + 1  # no part of how the distance falls: not joined
+        axes.plot(*np.delete([layers, distance], apart, axis=1), **marked, label=_name(case))
+        for k in apart:
+            axes.plot(layers[k], distance[k], **marked | {"markerfacecolor": "white", "markeredgewidth": 0.9})
+            beside: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 7}
+            axes.annotate("gravity opened a row", (layers[k], distance[k]), (6, 0), **beside)
     layers = np.array([data["layers"].min(), data["layers"].max()], dtype=float)
     other = data["distance_other_floor"].values.min()
     axes.axhline(other, color=style.MUTED, linewidth=0.8, linestyle=(0, (2, 2)))

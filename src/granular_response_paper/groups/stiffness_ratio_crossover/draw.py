@@ -19,8 +19,8 @@ from granular_response_paper.panels import among, family, titles, zero
 from .parameters import Parameters
 
 #: Ratios whose simulated profiles are drawn, and those of the elastic bodies; others are in the dataset.
-DRAWN = (0.0, 0.1, 0.2, 0.25, 0.3, 0.6, 1.0)
-ELASTIC = (0.1, 0.2, 0.3, 0.6)
+DRAWN = (0.0, 0.1, 0.2, 0.3, 0.6, 1.0)
+ELASTIC = (0.1, 0.3, 0.6)
 #: The crossover of the paper's half plane (Sec. V.C), and that of its simulations (Fig. 10).
 PAPER = 0.2915, 0.3
 

@@ -46,7 +46,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     figure, axes = style.figure(rows, 2, width="double", height=3.3 + 2.3 * (rows - 1), height_ratios=[1.3, 1.0][:rows])
     _protocols(axes[0, 0], datasets["runs"], datasets["held"])
     _copies(axes[0, 1], copies)
-    loads = [_symmetric(datasets["runs"]), f"copies, {_load(float(copies['force']))}"]
+    loads = [_lost(datasets["runs"]), f"copies, {_load(float(copies['force']))}"]
     handles: dict[str, Any] = {}
     if with_states:
         for panel, state in zip(axes[1], (1, 2), strict=True):
@@ -80,13 +80,17 @@ def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:
     """Asymmetry against force: colours for ramps, full and hollow markers for time steps."""
     ramps = sorted(set(runs["ramp_time"].values))
     steps = sorted(set(runs["time_step"].values), reverse=True)
+    hollow: dict[str, Any] = {
+        "linestyle": "none", "markersize": 6.0, "markerfacecolor": "none", "markeredgewidth": 0.8,
+    }  # fmt: skip
     for ramp, look in family(ramps, of="other"):
         for column, step in enumerate(steps):
             chosen = (runs["ramp_time"].values == ramp) & (runs["time_step"].values == step)
             curve = runs.isel(run=np.flatnonzero(chosen)).sortby("force")
-            hollow = {"linestyle": "none", "markersize": 6.0, "markerfacecolor": "none", "markeredgewidth": 0.8}
-            label = rf"ramp {ramp:g}, step {step:g}"
+            label = "" if column else rf"gravity, then a ramp of {ramp:g}$\,{style.TIME_UNIT}$"
             panel.plot(curve["force"], curve["asymmetry"], label=label, **look | (hollow if column else {}))
+    if len(steps) > 1:
+        panel.plot([], [], color=style.MUTED, label=f"open symbols: time step {steps[-1]:g}", **hollow, marker="o")
     cross: dict[str, Any] = {"color": style.BLACK, "linestyle": "none", "marker": "x", "markersize": 4.5}
     text = f"path, then displaced by {_power(float(held['displacement']))}"
     panel.plot(held["force"], held["asymmetry"], label=text, **cross)
@@ -96,10 +100,11 @@ def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:
     panel.legend(**OVER)
 
 
-def _symmetric(runs: xr.Dataset) -> str:
-    """Up to which force the response is symmetric after each ramp."""
-    kept = runs.isel(run=runs["asymmetry"].values < ASYMMETRIC).to_dataframe().groupby("ramp_time")["force"].max()
-    return "symmetric up to " + ", ".join(f"{force:.1f} (ramp {ramp:g})" for ramp, force in kept.items())
+def _lost(runs: xr.Dataset) -> str:
+    """From which force on the response is asymmetric, after the ramps under which that is soonest and latest."""
+    lost = runs.isel(run=runs["asymmetry"].values >= ASYMMETRIC).to_dataframe().groupby("ramp_time")["force"].min()
+    ends = sorted({float(lost.min()), float(lost.max())}) if len(lost) else []
+    return rf"symmetry lost at {' to '.join(f'{force:.0f}' for force in ends)}$\,{style.WEIGHT}$" if ends else ""
 
 
 def _copies(panel: Axes, copies: xr.Dataset) -> None:
