@@ -46,7 +46,6 @@ FORMATS = {
     ".pdf": "application/pdf",
     ".png": "image/png",
     ".py": "text/x-python",
-    ".svgz": "image/svg+xml",
     ".yaml": "application/yaml",
 }
 
