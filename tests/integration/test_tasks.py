@@ -11,12 +11,13 @@ import sys
 import threading
 import time
 import warnings
+from operator import call
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from granular_response.scene import Scene
+from granular_response.scene import Contact, Scene, Wall
 from granular_response.solvers.problem import Problem
 from granular_response.sweeps import executor, keys, processes
 from granular_response.sweeps.errors import SweepError
@@ -106,6 +107,21 @@ def test_a_failing_task_is_named(everywhere):
     with pytest.raises(SweepError, match=r"task 4 of 6 \(3\) failed: ValueError: no equilibrium") as caught:
         map_tasks(fail_at_three, range(6), **everywhere)
     assert isinstance(caught.value.__cause__, ValueError)
+
+
+def fail_by_name(scene, width, kind="slab"):
+    raise ValueError(f"no equilibrium of {scene.contact.friction:g}")
+
+
+def test_a_failing_task_is_named_by_the_keys_and_values_that_tell_it_from_others(everywhere):
+    scenes = [Scene(contact=Contact(friction=mu), wall=Wall(friction=0.1)) for mu in (0.5, 0.7)]
+    calls = [functools.partial(fail_by_name, one, np.zeros(3), kind="pile") for one in scenes]
+    one = r"task (1|2) of 2 \(contact.friction = 0.[57]\) failed: ValueError: no equilibrium of 0.[57]"
+    with pytest.raises(SweepError, match=one):
+        map_tasks(call, calls, **everywhere)
+    alone = r"task 1 of 1 \(contact.friction = 0.5, wall.friction = 0.1, kind = 'pile'\) failed"
+    with pytest.raises(SweepError, match=alone):
+        map_tasks(call, calls[:1], **everywhere)
 
 
 class Unreadable(Exception):
