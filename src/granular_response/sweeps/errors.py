@@ -7,11 +7,12 @@ import inspect
 import numbers
 import reprlib
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import GranularError
-from ..scene.base import Description
-from ..scene.errors import show
+
+if TYPE_CHECKING:
+    from ..scene.base import Description
 
 #: Most characters by which a message names a task, and most tasks that it is told from.
 _LONGEST, _COMPARED = 400, 100
@@ -45,18 +46,22 @@ def parts(item: Any) -> dict[str, str]:
 
     Examples
     --------
-    >>> parts(gr.Scene(contact=gr.Contact(friction=0.5)))
+    >>> from granular_response.scene import Contact, Scene
+    >>> parts(Scene(contact=Contact(friction=0.5)))
     {'contact.friction': '0.5'}
-    >>> import functools
     >>> parts(functools.partial(round, 1.25, ndigits=1))
     {'number': '1.25', 'ndigits': '1'}
     """
+    from ..scene.base import Description  # here: command lines import this module at their start
+
     if isinstance(item, Description):
         return dict(_keys(item))
     return dict(_arguments(item)) if isinstance(item, functools.partial) else {}
 
 
 def _keys(described: Description) -> Iterator[tuple[str, str]]:
+    from ..scene.errors import show
+
     waiting = list(described.model_dump(mode="json", exclude_defaults=True).items())
     while waiting:
         key, value = waiting.pop(0)
@@ -67,6 +72,9 @@ def _keys(described: Description) -> Iterator[tuple[str, str]]:
 
 
 def _arguments(call: functools.partial) -> Iterator[tuple[str, str]]:
+    from ..scene.base import Description
+    from ..scene.errors import show
+
     try:
         given = inspect.signature(call.func).bind_partial(*call.args, **call.keywords).arguments
     except (TypeError, ValueError):  # a function of C without a signature
