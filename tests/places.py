@@ -4,5 +4,5 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src"
-#: What other programs and earlier versions have written.
+#: What other programs have written.
 DATA = ROOT / "tests" / "data"

@@ -78,7 +78,7 @@ def simulate(
             )
     except KeyboardInterrupt:
         if count := simulation.finished(group, output):
-            commands.say(f"interrupted; {count} finished tasks are kept and are not run again")
+            raise KeyboardInterrupt(f"{count} finished tasks are kept and are not run again") from None
         raise
     typer.echo(str(path))
 

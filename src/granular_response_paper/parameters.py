@@ -43,6 +43,13 @@ _SOME = Field(min_length=1)
 Growing = Annotated[
     tuple[Positive, ...], _SOME, AfterValidator(growing), allowed("must be a list of growing numbers above 0")
 ]
+#: A curve needs two.
+Several = Annotated[
+    tuple[Positive, ...],
+    Field(min_length=2),
+    AfterValidator(growing),
+    allowed("must be two or more growing numbers above 0"),
+]
 Numbers = Annotated[tuple[float, ...], _SOME, allowed("must be a list of numbers")]
 Positives = Annotated[
     tuple[Positive, ...], _SOME, AfterValidator(_different), allowed("must be a list of different numbers above 0")

@@ -1,19 +1,18 @@
-"""Results as others read them, as versions before wrote them, and sealed files that are no results."""
+"""Results as others read them, and sealed files that are no results."""
+
+import re
 
 import numpy as np
 import pytest
 import xarray as xr
 from commands import refused, succeeded
-from places import DATA
 from small_scenes import scene
 
 import granular_response as gr
 from granular_response.solvers.solution import continue_solution, solve_scene
 from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
-from granular_response.store.result import ResultError, indexed, load_coordinates, solution_from, state_from, to_dataset
-
-OLDER = DATA / "result_layout_1.nc"
+from granular_response.store.result import ResultError, indexed, load_coordinates, state_from, to_dataset
 
 
 @pytest.fixture(scope="module")
@@ -194,17 +193,13 @@ def test_what_a_file_says_is_shown_as_it_is(solution, tmp_path):
     assert "\x1b" not in shown
 
 
-def test_results_of_the_layout_before_are_read(tmp_path):
-    with xr.open_dataset(OLDER) as raw:
-        assert raw["load_factor"].dims == ("state",) and raw.attrs["format"] == "granular_response 1"
-        data = read_result(OLDER)
-        assert data["floor_response"].sel(load_factor=2.0).values.tolist() == raw["floor_response"].values[2].tolist()
-        assert data["state_load_factor"].values.tolist() == raw["load_factor"].values.tolist()
-    assert gr.open_result(OLDER).load_factors == (0.5, 1.0, 2.0)
-    again = to_dataset(solution_from(data))
-    for name in ("position", "contact_force", "wall_force", "load_factor", "floor_response"):
-        np.testing.assert_array_equal(again[name], data[name])
-    succeeded("show", OLDER, folder=tmp_path)
-    succeeded("continue", OLDER, "--to", 2.5, "-o", "more.nc", folder=tmp_path)
-    with xr.open_dataset(tmp_path / "more.nc") as more:
-        assert more["load_factor"].values.tolist() == [0.5, 1.0, 2.0, 2.5]
+@pytest.mark.parametrize("layout", [2, 4])
+def test_a_result_of_another_layout_is_refused_in_one_line(solution, path, tmp_path, monkeypatch, layout):
+    with monkeypatch.context() as other:
+        other.setattr(store, "FORMAT", f"granular_response {layout}")
+        store.write(tmp_path / "other.nc", to_dataset(solution))
+    said = f"other.nc: was written by another version: format = 'granular_response {layout}', must be {store.FORMAT!r}"
+    with pytest.raises(store.StoreError, match=re.escape(said)) as caught:
+        gr.open_result(tmp_path / "other.nc")
+    assert "\n" not in str(caught.value)
+    assert said in refused("show", "other.nc", folder=tmp_path)

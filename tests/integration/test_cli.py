@@ -351,8 +351,9 @@ def test_an_interrupted_command_ends_quietly(tmp_path):
     except OSError:  # the other end is closed
         pass
     os.close(parent)
-    assert run.returncode not in (0, None)
-    assert b"Traceback" not in output
+    assert run.returncode == 130
+    assert b"Traceback" not in output and b"Aborted" not in output
+    assert output.count(b"granular-response: ") == output.count(b"granular-response: interrupted\r\n") == 1
     assert not (tmp_path / "result.nc").exists()
 
 

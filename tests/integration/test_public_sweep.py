@@ -218,7 +218,12 @@ def test_a_combination_without_equilibrium_is_missing_and_says_why():
         ({"contact.law": "hertz"}, None, ValueError, r"^axes: contact.law = 'hertz', must be a list of values$"),
         ({"contact": {"friction": 1}}, None, ValueError, r"^axes: contact = .*friction.*, must be a list of values$"),
         ([("contact.friction", [0.1])], None, ValueError, r"^axes = .*contact.friction.*: must be a mapping of keys"),
-        ({"contact.friction": [0.1]}, lambda result: 1 / 0, SweepError, r"task 1 of 1 .*ZeroDivisionError"),
+        (
+            {"contact.friction": [0.1]},
+            lambda result: 1 / 0,
+            SweepError,
+            r"task 1 of 1 \(.*contact.friction = 0.1.*ZeroDivisionError",
+        ),
         ({"contact.friction": [0.1]}, lambda result: result, SweepError, r"measure is a Result, must be a number"),
         ({"contact.friction": [0.1]}, lambda result: {"friction": 1}, SweepError, r"friction is the name of an axis"),
     ],

@@ -78,7 +78,8 @@ def test_a_study_comes_back_by_group(path):
 def test_plain_xarray_reads_it(path):
     store.write(path, {"mu_1": dataset(2)})
     with xr.open_dataset(path, group="mu_1", decode_timedelta=False) as plain:
-        xr.testing.assert_equal(plain.load(), dataset(2))
+        words = plain["name"].astype(str)  # of plain xarray they are bytes
+        xr.testing.assert_equal(plain.load().assign(name=words), dataset(2))
 
 
 def test_bytes_depend_on_the_data_alone(path, tmp_path):

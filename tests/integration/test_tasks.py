@@ -11,12 +11,13 @@ import sys
 import threading
 import time
 import warnings
+from operator import call
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from granular_response.scene import Scene
+from granular_response.scene import Contact, Scene, Wall
 from granular_response.solvers.problem import Problem
 from granular_response.sweeps import executor, keys, processes
 from granular_response.sweeps.errors import SweepError
@@ -106,6 +107,21 @@ def test_a_failing_task_is_named(everywhere):
     with pytest.raises(SweepError, match=r"task 4 of 6 \(3\) failed: ValueError: no equilibrium") as caught:
         map_tasks(fail_at_three, range(6), **everywhere)
     assert isinstance(caught.value.__cause__, ValueError)
+
+
+def fail_by_name(scene, width, kind="slab"):
+    raise ValueError(f"no equilibrium of {scene.contact.friction:g}")
+
+
+def test_a_failing_task_is_named_by_the_keys_and_values_that_tell_it_from_others(everywhere):
+    scenes = [Scene(contact=Contact(friction=mu), wall=Wall(friction=0.1)) for mu in (0.5, 0.7)]
+    calls = [functools.partial(fail_by_name, one, np.zeros(3), kind="pile") for one in scenes]
+    one = r"task (1|2) of 2 \(contact.friction = 0.[57]\) failed: ValueError: no equilibrium of 0.[57]"
+    with pytest.raises(SweepError, match=one):
+        map_tasks(call, calls, **everywhere)
+    alone = r"task 1 of 1 \(contact.friction = 0.5, wall.friction = 0.1, kind = 'pile'\) failed"
+    with pytest.raises(SweepError, match=alone):
+        map_tasks(call, calls[:1], **everywhere)
 
 
 class Unreadable(Exception):
@@ -263,10 +279,51 @@ def test_an_interrupted_sweep_continues(tmp_path):
     finished = len(list(kept.rglob("*.kept")))
     assert finished == 3
     seen.clear()
-    result = map_tasks(task, range(8), workers=2, checkpoint=kept, progress=lambda done, total, what: seen.append(done))
+    goes_on = {"workers": 2, "checkpoint": kept, "progress": lambda done, total, what: seen.append((done, what))}
+    result = map_tasks(task, range(8), **goes_on)
     assert result == [item * item for item in range(8)]
-    assert seen == [3, 4, 5, 6, 7, 8]
+    assert seen == [(done, "tasks, 3 of 8 taken from the checkpoint") for done in range(3, 9)]
     assert sum(len(starts(marks, item)) for item in range(8)) <= 8 + 2  # again: at most one per worker
+
+
+def test_an_interruption_is_put_off_to_the_end_of_a_block():
+    before, done = signal.getsignal(signal.SIGINT), []
+    with pytest.raises(KeyboardInterrupt), processes._interrupted_later():
+        signal.raise_signal(signal.SIGINT)
+        done.append(True)
+    assert done and signal.getsignal(signal.SIGINT) is before
+    with processes._interrupted_later():
+        pass
+    in_thread = threading.Thread(target=lambda: done.append(map_tasks(abs, [-1, -2], workers=2)))
+    in_thread.start()
+    in_thread.join()
+    assert done[-1] == [1, 2]
+
+
+INTERRUPTED = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from test_tasks import map_tasks, slow_first
+if __name__ == "__main__":
+    print("begins", flush=True)
+    map_tasks(slow_first, [0] * 400, workers=4)
+"""
+
+
+@pytest.mark.parametrize("seconds", [0.02, 0.1, 0.3, 1.0, 2.0])
+def test_a_terminal_that_interrupts_while_workers_begin_has_one_traceback(tmp_path, seconds):
+    """The signal goes to all processes of the terminal: those that are only just importing said so too."""
+    script = tmp_path / "script.py"
+    script.write_text(INTERRUPTED)
+    run = subprocess.Popen(
+        [sys.executable, script, Path(__file__).parent], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, start_new_session=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )  # fmt: skip
+    assert run.stdout.readline() == "begins\n"
+    time.sleep(seconds)
+    os.killpg(run.pid, signal.SIGINT)
+    said = run.communicate(timeout=120)[1]
+    assert said.count("Traceback") == 1 and said.rstrip().endswith("KeyboardInterrupt"), said
 
 
 KILLED = """

@@ -45,6 +45,7 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     ],
     "hysteresis": [({"cases": [LOOP, LOOP]}, "must have each material once"), ({"cases": []}, "cases")],
     "network": [({"polydispersities": [0.0]}, r"polydispersities = \[0.0\]: must be above 0")],
+    "overview": [({"forces": [0.5]}, r"forces = \[0\.5\]: must be two or more growing numbers above 0")],
     "rolling_resistance": [({"most_friction": 0.05}, r"most_friction = 0.05: must be above least_friction = 0.05")],
     "experiments": [
         ({"packings": {}}, r"cases = 'nearly equal': must have packings among"),
@@ -63,6 +64,10 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     ],
     "pile_dip": [({"dip_height": -1.0}, r"dip_height = -1\.0: must be a number greater than 0")],
     "polydisperse_averages": [
+        (
+            {"cases": [{"polydispersities": [0.0], "friction": 0.0, "forces": [2.0]}]},
+            "must have a polydispersity above 0",
+        ),
         ({"collapse_depth": 0.0}, "collapse_depth = 0.*: must be"),
         ({"realizations": 0}, "realizations = 0.*: must be"),
         (
@@ -97,6 +102,7 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     ],
     "superposition": [
         ({"forces": [1.0, 0.5]}, r"forces = \[1.0, 0.5\]: must be two or more growing numbers above 0"),
+        ({"forces": [0.2, 0.5]}, r"forces = \[0\.2, 0\.5\]: must have 0\.2 and 1 among them"),
         ({"single_forces": [1.0]}, r"single_forces = \[1.0\]: must be two or more"),
         ({"offsets": [0]}, r"offsets = \[0\]: must be a list of different whole numbers from 1 on"),
         ({"offsets": [10]}, "must be places from 1 to 9"),

@@ -8,22 +8,18 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import xarray as xr
-from places import DATA
 from rich.console import Console
 from small_scenes import scene
 
 import granular_response as gr
 from granular_response.observe.events import EventNotBracketed
-from granular_response.scene.protocol import Protocol, without_replaced
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import CONTACT_EVENTS
-from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
 from granular_response.store.export import export
-from granular_response.store.result import ResultError, chosen_states, events_from, state_from, to_dataset
+from granular_response.store.result import ResultError, chosen_states, state_from, to_dataset
 from granular_response.store.summary import summarise
 
-BEFORE = DATA / "result_before_events.nc"
 LOAD = [{"disk": "top-centre", "force": [0.0, -6.0]}]
 SCENE = scene(4, 9, contact__friction=0.2, loads=LOAD)
 FACTORS = (0.5, 1.0, 0.25)
@@ -305,46 +301,6 @@ def test_events_are_not_known_without_a_path(method):
     said = f"^protocol.method = {method}: must be path where events are asked for, this scene's loads are followed by"
     with pytest.raises(gr.SceneError, match=said):
         gr.find_event(without, "opens", 0.0, 0.01, progress=False)
-
-
-def test_a_result_of_a_version_with_other_keys_is_read_shown_and_continued(tmp_path):
-    with xr.open_dataset(BEFORE) as raw:
-        text = raw.attrs["scene"]
-        starts = raw["crossing_start"].values.tolist()
-    for key in Protocol.replaced:
-        assert f"{key}: " in text
-    with pytest.raises(gr.SceneError, match="is gone"):
-        gr.Scene.from_text(text)
-    before = gr.open_result(BEFORE)
-    assert before.scene.protocol.method == "path" and before.load_factors == (0.1, 1.0)
-    assert [event.load_factor for event in before.events] == starts and before.events.counts() == {"jump": 3}
-    assert before.events.states == (1, 2, 2)
-    assert before.certificate.stable is True
-    assert "equilibria lost on the way" in shown(BEFORE) and "no equilibrium" in shown(BEFORE)
-    before.continued([1.01]).save(tmp_path / "more.nc")
-    more = gr.open_result(tmp_path / "more.nc")
-    assert more.load_factors == (0.1, 1.0, 1.01) and repr(list(more.events)[:3]) == repr(list(before.events))
-    with xr.open_dataset(tmp_path / "more.nc") as plain:
-        assert not any(key in plain.attrs["scene"] for key in Protocol.replaced)
-        assert not any(str(name).startswith("crossing") for name in plain.variables)
-
-
-def test_a_method_that_is_gone_is_read_as_the_one_in_its_place(tmp_path):
-    data = xr.load_dataset(BEFORE)
-    staged = data.assign_attrs(scene=data.attrs["scene"].replace("method: path", "method: stages"))
-    store.write(tmp_path / "staged.nc", staged)
-    assert gr.open_result(tmp_path / "staged.nc").scene.protocol.method == "path"
-    for other in (None, [], {"protocol": 3}, {"protocol": {"method": 1}}):
-        assert without_replaced(other) == other
-    with pytest.raises(gr.SceneError, match=r"^protocol.friction = 1: unknown key"):
-        gr.Scene.from_dict(without_replaced({"protocol": {"friction": 1, "inertia": "disks"}}))
-
-
-def test_crossings_of_a_broken_file_are_refused():
-    data = xr.load_dataset(BEFORE)
-    with pytest.raises(ResultError, match=r"^is not a whole result: variable crossing_end is missing$"):
-        checked(data.drop_vars("crossing_end"))
-    assert events_from(data) == []
 
 
 @pytest.mark.parametrize(

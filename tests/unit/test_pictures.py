@@ -6,6 +6,7 @@ import matplotlib
 import matplotlib.image
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import to_rgba
 
@@ -285,3 +286,33 @@ def test_the_signed_norm_is_odd_and_grows_by_the_root():
     np.testing.assert_allclose(norm(np.array([-4.0, -1.0, 0.0, 1.0, 4.0])), [0.0, 0.25, 0.5, 0.75, 1.0])
     with pytest.raises(ValueError, match=r"largest = 0\.0"):
         field.root_norm(0.0)
+
+
+def pushed(count: int, directions: int = 1) -> gr.Result:
+    """A small slab under ``count`` loads of its top disk, in some directions."""
+    slab = {"packing": {"kind": "slab", "layers": 3, "disks_per_row": 7}, "contact": {"friction": 0.2}}
+    forces = [[1e-3 * (k % directions) / count, -1.0 / count] for k in range(count)]
+    return gr.solve({**slab, "loads": [{"disk": "top-centre", "force": force} for force in forces]})
+
+
+def test_many_loads_of_one_disk_are_drawn_as_one(ax):
+    one, many = (gr.plot.packing(pushed(count), ax=style.figure(width="double")[1][0, 0]) for count in (1, 300))
+    assert len(many.get_children()) == len(one.get_children())
+    assert many.get_xlim() == one.get_xlim() and many.get_ylim() == pytest.approx(one.get_ylim())
+
+
+def test_limits_are_found_once_however_many_loads_there_are(monkeypatch):
+    """Each time looks through all that is drawn, so the time grew with the square of the number of loads."""
+    calls = []
+    autoscale = Axes.autoscale_view
+    monkeypatch.setattr(
+        Axes, "autoscale_view", lambda axes, *given, **more: calls.append(autoscale(axes, *given, **more))
+    )
+    counts = []
+    for directions in (1, 60):
+        calls.clear()
+        axes = gr.plot.packing(pushed(60, directions), ax=style.figure(width="double")[1][0, 0])
+        axes.figure.draw_without_rendering()
+        counts.append(len(calls))
+    assert counts[0] == counts[1] > 0
+    assert len(axes.texts) == 60

@@ -108,22 +108,6 @@ MALFORMED = {
     ),
     # Protocol and preparation.
     "protocol: {method: newton}": ("protocol.method = 'newton': must be auto or dynamics or path or minimise"),
-    # Keys and methods of earlier versions.
-    "protocol: {path_tolerance: 1e-5}": (
-        "protocol.path_tolerance = 1e-05: is gone, must be left out: a path is exact from one contact event to the next"
-    ),
-    "protocol: {path_tolerance: null}": (
-        "protocol.path_tolerance = null: is gone, must be left out: a path is exact from one contact event to the next"
-    ),
-    "protocol: {inertia: rings}": (
-        "protocol.inertia = 'rings': is gone, must be left out: it was for method stages, now path"
-    ),
-    "protocol: {stage_damping: 0.25}": (
-        "protocol.stage_damping = 0.25: is gone, must be left out: it was for method stages, now path"
-    ),
-    "protocol: {method: stages}": (
-        "protocol.method = 'stages': is gone, must be path, which follows disordered packings too"
-    ),
     "protocol: {integrator: verlett}": (
         f"protocol.integrator = 'verlett': must be {' or '.join(INTEGRATORS)}, did you mean verlet?"
     ),

@@ -19,6 +19,7 @@ from ..scene import Scene
 from ..scene.base import Description
 from ..scene.errors import show
 from ..solvers.solution import Solution, checked_problem, load_programme, solve_scene
+from ..store.files import CHARACTERS, TEXT
 from ..store.result import COORDINATES
 from ..sweeps.errors import SweepError
 from ..sweeps.memory import Memory
@@ -240,6 +241,9 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
     shared = {k: v for k, v in first.items() if all(np.array_equal(v, np.asarray(one.get(k))) for one in others)}
     gridded = xr.Dataset(variables, attrs=shared)
     gridded = gridded.set_coords([*names.values(), *inside, *(name for name in coordinates if name in variables)])
+    for one in gridded.variables.values():
+        if one.dtype.kind in TEXT:
+            one.encoding = dict(CHARACTERS)
     # as for a single result, sel() takes the factor, or the step where factors repeat or differ
     for name in ("load_factor", "step"):
         along = gridded.coords.get(name)

@@ -7,13 +7,14 @@ digits on every x86 machine.
 from __future__ import annotations
 
 import errno
+import functools
 import gc
 import io
 import os
 import sys
 import warnings
 from collections.abc import Callable
-from functools import partial
+from typing import Any
 
 import typer
 
@@ -24,8 +25,11 @@ from ..sweeps.errors import SweepError
 
 floating_point.pin()
 
+#: Exit code of a program that a signal of the terminal ends.
+_INTERRUPTED = 130
+
 #: The option of commands that make a file or a folder.
-output_option = partial(typer.Option, "--output", "-o")
+output_option = functools.partial(typer.Option, "--output", "-o")
 
 
 class CommandLine:
@@ -53,8 +57,24 @@ class CommandLine:
         self.app.callback(help=about, epilog=self._examples(*examples))(start)
 
     def command(self, *examples: str, name: str | None = None) -> Callable[[Callable], Callable]:
-        """A command with examples of its arguments, as they follow the name of the program."""
-        return self.app.command(name, epilog=self._examples(*examples))
+        """A command with examples of its arguments, as they follow the name of the program.
+
+        An interruption ends it with one line, with what the KeyboardInterrupt says, if anything.
+        """
+
+        def declare(run: Callable) -> Callable:
+            @functools.wraps(run)
+            def quiet(*given: Any, **options: Any) -> Any:
+                try:
+                    return run(*given, **options)
+                except KeyboardInterrupt as error:
+                    self.say("; ".join(("interrupted", *map(str, error.args))))
+                    raise typer.Exit(_INTERRUPTED) from None
+
+            self.app.command(name, epilog=self._examples(*examples))(quiet)
+            return run
+
+        return declare
 
     def say(self, message: str) -> None:
         """A line on standard error, after the name of the program."""

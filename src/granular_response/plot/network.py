@@ -58,7 +58,7 @@ def draw_disks(
         **collection,
     )
     axes.add_collection(disks, autolim=False)
-    _include(axes, np.concatenate([centre - 0.5 * diameter[:, None], centre + 0.5 * diameter[:, None]]))
+    include(axes, np.concatenate([centre - 0.5 * diameter[:, None], centre + 0.5 * diameter[:, None]]))
     return disks
 
 
@@ -281,12 +281,12 @@ def draw_load(axes: Axes, at: ArrayLike, direction: ArrayLike = (0.0, -1.0), *, 
         annotation_clip=False,
         zorder=10,
     )
-    _include(axes, np.stack([tail, tip]))
+    include(axes, np.stack([tail, tip]))
 
 
-def draw_loaded_disk(axes: Axes, at: ArrayLike, radius: float) -> None:
-    """Outline a disk that carries a load."""
-    draw_disks(axes, np.reshape(at, (1, 2)), radius, edgecolor=style.LOAD, linewidth=0.9, zorder=6)
+def draw_loaded_disk(axes: Axes, at: ArrayLike, radius: ArrayLike) -> None:
+    """Outline the disk that carries a load, or several."""
+    draw_disks(axes, np.reshape(at, (-1, 2)), radius, edgecolor=style.LOAD, linewidth=0.9, zorder=6)
 
 
 def draw_torque(axes: Axes, at: ArrayLike, torque: float, *, radius: float = 1.7) -> None:
@@ -337,14 +337,18 @@ def draw_box(
 def _segments(axes: Axes, start: FloatArray, end: FloatArray, keywords: dict[str, Any]) -> LineCollection:
     drawn = LineCollection(list(np.stack([start, end], axis=1)), **keywords)
     axes.add_collection(drawn, autolim=False)
-    _include(axes, np.concatenate([start, end]))
+    include(axes, np.concatenate([start, end]))
     return drawn
 
 
-def _include(axes: Axes, points: FloatArray) -> None:
+def include(axes: Axes, points: FloatArray) -> None:
+    """Make room for points (n, 2), as far as limits are not set.
+
+    Limits are found when they are asked for, not here: that looks through all that is drawn each time.
+    """
     if len(points):
         axes.update_datalim(points)
-        axes.autoscale_view()
+        axes.autoscale(enable=None)  # type: ignore[arg-type]  # its type leaves out what its text allows
 
 
 def _points(values: ArrayLike, name: str) -> FloatArray:

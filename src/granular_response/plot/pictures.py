@@ -595,19 +595,25 @@ def _loads(axes: Axes, shown: Shown, *, origin: float | None = None) -> None:
 
     ``origin`` : from where the picture counts x, the shortest way.
     """
-    largest = max((float(np.hypot(*force)) for _, force, _ in shown.loads), default=0.0)
-    for disk, force, torque in shown.loads:
-        centre, radius = shown.position[disk], float(shown.radius[disk])
-        if origin is not None:
-            centre = shown.box.separation(centre, np.array([origin, 0.0]))
-        network.draw_loaded_disk(axes, centre, radius)
+    if not shown.loads:
+        return
+    # loads that look alike are drawn once
+    loads = dict.fromkeys((disk, *force.tolist(), torque) for disk, force, torque in shown.loads)
+    largest = max((float(np.hypot(*force)) for _, *force, _ in loads), default=0.0)
+    disks = list(dict.fromkeys(disk for disk, *_ in loads))
+    centres = shown.position[disks]
+    if origin is not None:
+        centres = shown.box.separation(centres, np.array([origin, 0.0]))
+    network.draw_loaded_disk(axes, centres, shown.radius[disks])
+    places = dict(zip(disks, centres, strict=True))
+    for disk, *components, torque in loads:
+        force, centre, radius = np.array(components), places[disk], float(shown.radius[disk])
         if size := float(np.hypot(*force)):
             length = max(3.0, 0.16 * shown.top) * size / largest
             network.draw_load(axes, centre - radius * force / size, force, length=length)
         network.draw_torque(axes, centre, torque, radius=1.7 * radius)
         if torque and not largest:  # no arrow of a force makes room for the arc
-            axes.update_datalim([(centre[0], centre[1] + 2.2 * radius)])
-            axes.autoscale_view()
+            network.include(axes, centre[None] + (0.0, 2.2 * radius))
 
 
 def _legend(axes: Axes, handles: Sequence[Any], shown: Shown, half_width: float | None) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, WrapValidator, model_validator
@@ -68,9 +68,6 @@ class Description(BaseModel, metaclass=_Public):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    #: Keys that are gone, and what took their place.
-    replaced: ClassVar[Mapping[str, str]] = {}
-
     def __init__(self, /, **data: Any) -> None:
         try:
             super().__init__(**data)
@@ -116,8 +113,6 @@ class Description(BaseModel, metaclass=_Public):
         if not isinstance(data, Mapping):
             raise Problem(f"must be a mapping with keys among {keys}" if keys else "must be {}")
         for key, value in data.items():
-            if isinstance(key, str) and key in cls.replaced:
-                raise Problem(cls.replaced[key], key=(key,), value=value)
             if key not in cls.model_fields:
                 raise Problem(
                     f"unknown key{suggestion(key, cls.model_fields)} (allowed: {keys or 'none'})",

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
 from .base import Count, Description, Flag, NonNegative, Positive, allowed
-from .errors import Problem
 
 TimeStep = Annotated[
     Annotated[float, Field(strict=True, gt=0)] | Literal["auto"], allowed("must be a number greater than 0, or auto")
@@ -20,17 +18,7 @@ LoadFactors = Annotated[
     Field(min_length=1),
     allowed("must be a list of one or more finite numbers"),
 ]
-#: Methods that are gone, each with the one that took its place.
-REPLACED_METHODS = {"stages": "path"}
-
-
-def _check_method(value: Any) -> Any:
-    if isinstance(value, str) and value in REPLACED_METHODS:
-        raise Problem(f"is gone, must be {REPLACED_METHODS[value]}, which follows disordered packings too")
-    return value
-
-
-Method = Annotated[Literal["auto", "dynamics", "path", "minimise"], BeforeValidator(_check_method)]
+Method = Literal["auto", "dynamics", "path", "minimise"]
 Integrator = Literal["beeman", "verlet", "leapfrog", "gear"]
 
 
@@ -59,12 +47,6 @@ class Protocol(Description):
     --------
     >>> loop = gr.Scene(protocol=gr.Protocol(load_factors=[0.5, 1.0, 0.5, 0.0]))
     """
-
-    replaced: ClassVar[Mapping[str, str]] = {
-        "path_tolerance": "is gone, must be left out: a path is exact from one contact event to the next",
-        "inertia": "is gone, must be left out: it was for method stages, now path",
-        "stage_damping": "is gone, must be left out: it was for method stages, now path",
-    }
 
     method: Method = Field(
         default="auto",
@@ -114,18 +96,3 @@ class Protocol(Description):
         description="Most time steps for gravity, for each load, and on a path for each motion from a lost equilibrium "
         "to the next.",
     )
-
-
-def without_replaced(scene: Any) -> Any:
-    """The data of a scene as versions before wrote it, without the keys and methods of its protocol that are gone.
-
-    They said how equilibrium was to be reached, not what was simulated, so that a stored result is read without them.
-    """
-    protocol = scene.get("protocol") if isinstance(scene, Mapping) else None
-    if not isinstance(protocol, Mapping):
-        return scene
-    kept = {key: value for key, value in protocol.items() if key not in Protocol.replaced}
-    method = kept.get("method")
-    if isinstance(method, str):
-        kept["method"] = REPLACED_METHODS.get(method, method)
-    return {**scene, "protocol": kept}

@@ -15,7 +15,6 @@ import xarray as xr
 
 from ..state.box import FARTHEST, WALL_MEANINGS
 from . import files
-from .earlier import of_today
 from .result import ResultError, indexed
 from .variables import REAL, VARIABLES, Stored, labelled
 
@@ -39,8 +38,7 @@ def read_result(path: str | os.PathLike[str], *, sealed: bool = True) -> xr.Data
 
 
 def checked(dataset: xr.Dataset) -> xr.Dataset:
-    """A result in the layout of today, with labels and indices; ResultError, with what is wrong, unless it is whole."""
-    dataset = of_today(dataset)
+    """A result with labels and indices; ResultError, with what is wrong, unless it is whole."""
     events = "event" in dataset.dims or any(str(name).startswith("event_") for name in dataset.variables)
     for name, stored in VARIABLES.items():
         needed = events if name.startswith("event_") else not stored.optional

@@ -3,6 +3,11 @@
 ``write`` and ``read`` are the only way in and out. A file holds one dataset, or one group for each dataset
 of a study. Plain ``xarray.open_dataset(path, group=...)`` reads it without this package.
 
+Texts are stored as characters of one length. The netCDF library keeps strings of any length in memory that it has
+freed, so that opening a file with some repeatedly, or in chunks, ends Python. Labels of a dimension say their encoding,
+and every reader sees words. Other texts do not: words would be Python objects, for which Dask chooses no chunks, so
+that plain xarray sees bytes (``b"path"``). ``read`` makes words of both.
+
 The HDF5 library does not recover from running out of space: it gives no reason, and keeps the file open and locked for
 the life of the process. So it makes the file in a folder for temporary files, and the bytes reach their place through
 ``atomic``, with plain writes and plain errors. They depend on the data alone.
@@ -33,9 +38,12 @@ from . import atomic
 #: What the name of every file of datasets ends with.
 SUFFIX = ".nc"
 #: Root attribute by which a file of ours is known; its number grows when the layout changes.
-FORMAT = "granular_response 2"
-#: Layouts that are read.
-_READ = (FORMAT, "granular_response 1")
+FORMAT = "granular_response 3"
+
+#: Kinds of arrays of texts, by the letters that numpy has for their types.
+TEXT = "OUT"
+#: The encoding with which xarray stores texts as characters of one length.
+CHARACTERS = {"dtype": "S1"}
 
 #: For files in memory, whatever the name of the file on disk.
 _NO_NAME = "memory"
@@ -179,14 +187,26 @@ def _fill(file: netCDF4.Dataset, path: Path, groups: Mapping[str, xr.Dataset]) -
     """Write each dataset as xarray does: the same bytes for the same data."""
     for name, dataset in groups.items():
         numbers = {key: int(value) for key, value in dataset.attrs.items() if isinstance(value, (bool, np.bool_))}
-        arrays = {key: one.dtype.kind not in "OU" and one.ndim and one.size for key, one in dataset.variables.items()}
         try:
-            store = NetCDF4DataStore(file.createGroup(name) if name else file)
-            dataset.assign_attrs(numbers).dump_to_store(
-                store, encoding={key: _PACKED if array else {} for key, array in arrays.items()}
-            )
+            plain = _with_bytes(dataset.assign_attrs(numbers))
+            encoding = {
+                key: {**(_PACKED if one.ndim and one.size else {}), **(CHARACTERS if one.dtype.kind in TEXT else {})}
+                for key, one in plain.variables.items()
+            }
+            plain.dump_to_store(NetCDF4DataStore(file.createGroup(name) if name else file), encoding=encoding)
         except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
             raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
+
+
+def _with_bytes(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset with bytes in UTF-8 in place of texts, but for the labels of dimensions."""
+    coded = {}
+    for key, one in dataset.variables.items():
+        if one.dtype.kind in TEXT and key not in dataset.dims:
+            if not all(isinstance(text, str) for text in one.values.flat):
+                raise TypeError(f"variable {key} holds values that are neither numbers nor texts")
+            coded[key] = one.copy(data=np.char.encode(one.values.astype(str), "utf-8"))
+    return dataset.drop_indexes([name for name in dataset.xindexes if name in coded]).assign(coded)
 
 
 def _verify(data: bytes, groups: Mapping[str, xr.Dataset]) -> None:
@@ -196,7 +216,7 @@ def _verify(data: bytes, groups: Mapping[str, xr.Dataset]) -> None:
             for name, dataset in groups.items():
                 group = file[name] if name else file
                 for key, variable in dataset.variables.items():
-                    if group[str(key)][...].shape != variable.shape:
+                    if group[str(key)][...].shape[: variable.ndim] != variable.shape:
                         raise OSError(f"variable {name}/{key} reads back with another shape")
     except (RuntimeError, IndexError, KeyError) as error:
         raise OSError(f"it does not read back: {error}") from error
@@ -220,16 +240,16 @@ def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
         attributes = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
     except Exception as error:  # damage can surface as nearly any kind of error
         raise _error(path, "is truncated or damaged") from error
-    if sealed and not has_seal:
-        dataset.close()
-        if attributes.get("format") in _READ:
-            raise _error(path, "is truncated or damaged, or another program has written it anew")
-        raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
-    by_xarray = not sealed and attributes.get("package") == "granular_response" and "format" not in attributes
-    if attributes.get("format") not in _READ and not by_xarray:
-        dataset.close()
-        raise _error(path, f"has another layout, must have the attribute format = {FORMAT!r}")
-    return dataset
+    layout = attributes.get("format")
+    by_xarray = not sealed and attributes.get("package") == "granular_response" and layout is None
+    if (layout == FORMAT and (has_seal or not sealed)) or by_xarray:
+        return dataset
+    dataset.close()
+    if layout == FORMAT:
+        raise _error(path, "is truncated or damaged, or another program has written it anew")
+    if re.fullmatch(r"granular_response \d+", str(layout)):
+        raise _error(path, f"was written by another version: format = {layout!r}, must be {FORMAT!r}")
+    raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
 
 
 def is_sealed(path: str | os.PathLike[str]) -> bool:
@@ -259,4 +279,9 @@ def _load(group: netCDF4.Dataset) -> xr.Dataset:
     store = NetCDF4DataStore(group)
     # seconds stay numbers: decoding them to time spans would lose digits
     dataset = xr.open_dataset(store, decode_times=False, decode_timedelta=False).load()
-    return dataset.drop_encoding()
+    texts = {
+        key: one.copy(data=np.char.decode(one.values, "utf-8") if one.dtype.kind == "S" else one.values.astype(str))
+        for key, one in dataset.variables.items()
+        if one.dtype.kind in "SO"
+    }
+    return dataset.assign(texts).drop_encoding()

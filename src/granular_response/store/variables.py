@@ -17,11 +17,12 @@ from ..scene.laboratory import FORCE, LENGTH, MASS, TIME
 from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS
 from ..state.box import WALL_MEANINGS
 from ..state.status import MEANINGS
+from .files import CHARACTERS, TEXT
 
 RADII, WEIGHTS = "in mean disk radii", "in mean disk weights"
 WORK, _WORK = f"{FORCE} * {LENGTH}", "in mean weight times mean radius"
 #: Kinds of values, by the letters that numpy has for their types.
-REAL, WHOLE, TEXT = "fiu", "iu", "UO"
+REAL, WHOLE = "fiu", "iu"
 EVENT_KINDS = CONTACT_EVENTS + LOST_EVENTS + ROLLING_EVENTS
 #: Number of unstable directions in files where it was not determined, and other whole numbers that are not known.
 NOT_DETERMINED = -1
@@ -70,8 +71,6 @@ CERTIFICATE: dict[str, tuple[Any, ...]] = {
     "unbalanced_part": ("largest unbalanced force on a disk, as a part of what it bears",),
     "rolling_excess": (f"largest excess of a rolling force over its limit {WEIGHTS}", FORCE),
 }
-#: Of these, those that versions before did not write; a rolling excess is written of contacts that resist rolling.
-ADDED_LATER = ("unbalanced_part", "rolling_excess")
 #: Of the record of each state, where it is known for one of them.
 REACHED: dict[str, tuple[Any, ...]] = {
     "method": ("method that found the state", "", TEXT),
@@ -153,7 +152,7 @@ VARIABLES: dict[str, Stored] = {
         for prefix, along in CONTACTS.items()
     },
     **{
-        f"certificate_{name}": Stored("state", *said)._replace(finite=False, optional=name in ADDED_LATER)
+        f"certificate_{name}": Stored("state", *said)._replace(finite=False, optional=name == "rolling_excess")
         for name, said in CERTIFICATE.items()
     },
     **{
@@ -208,7 +207,7 @@ def described(name: str, values: Any, *, along: str = "state", text: str = "", *
 def labelled(dataset: xr.Dataset) -> xr.Dataset:
     """A result with short names and units in place of those that :func:`variable` gave.
 
-    ``long_name`` is short enough for an axis, ``description`` says the rest.
+    ``long_name`` is short enough for an axis, ``description`` says the rest. Texts are marked for xarray's own writer.
     """
     for key, one in dataset.variables.items():
         name, attributes = str(key), dict(one.attrs)
@@ -218,4 +217,6 @@ def labelled(dataset: xr.Dataset) -> xr.Dataset:
         text = attributes.pop("description", attributes.get("long_name", ""))
         others = {key: value for key, value in attributes.items() if key not in ("long_name", "units")}
         one.attrs = {**named, "description": text, **others}
+        if one.dtype.kind in TEXT:
+            one.encoding = dict(CHARACTERS)
     return dataset

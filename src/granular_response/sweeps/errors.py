@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
+import numbers
 import reprlib
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from ..errors import GranularError
+
+if TYPE_CHECKING:
+    from ..scene.base import Description
+
+#: Most characters by which a message names a task, and most tasks that it is told from.
+_LONGEST, _COMPARED = 400, 100
 
 
 class SweepError(GranularError, RuntimeError):
@@ -17,8 +26,12 @@ class SweepError(GranularError, RuntimeError):
 
 
 def failed(index: int, items: Sequence[Any], problem: str) -> SweepError:
-    """The error of one task."""
-    return SweepError(f"task {index + 1} of {len(items)} ({reprlib.repr(items[index])}) {problem}")
+    """The error of one task, named by what tells it from the others."""
+    own, others = parts(items[index]), [parts(one) for k, one in enumerate(items[:_COMPARED]) if k != index]
+    differs = {name: value for name, value in own.items() if any(one.get(name) != value for one in others)}
+    said = ", ".join(f"{name} = {value}" for name, value in (differs or own).items()) or reprlib.repr(items[index])
+    said = said if len(said) <= _LONGEST else f"{said[: _LONGEST - 3]}..."
+    return SweepError(f"task {index + 1} of {len(items)} ({said}) {problem}")
 
 
 def raised(index: int, items: Sequence[Any], error: BaseException, said: str | None = None) -> SweepError:
@@ -26,3 +39,50 @@ def raised(index: int, items: Sequence[Any], error: BaseException, said: str | N
     failure = failed(index, items, f"failed: {said or f'{type(error).__name__}: {error}'}")
     failure.__cause__ = error
     return failure
+
+
+def parts(item: Any) -> dict[str, str]:
+    """Keys of a scene that are not at their defaults, and named arguments of a call that are short, with their values.
+
+    Examples
+    --------
+    >>> from granular_response.scene import Contact, Scene
+    >>> parts(Scene(contact=Contact(friction=0.5)))
+    {'contact.friction': '0.5'}
+    >>> parts(functools.partial(round, 1.25, ndigits=1))
+    {'number': '1.25', 'ndigits': '1'}
+    """
+    from ..scene.base import Description  # here: command lines import this module at their start
+
+    if isinstance(item, Description):
+        return dict(_keys(item))
+    return dict(_arguments(item)) if isinstance(item, functools.partial) else {}
+
+
+def _keys(described: Description) -> Iterator[tuple[str, str]]:
+    from ..scene.errors import show
+
+    waiting = list(described.model_dump(mode="json", exclude_defaults=True).items())
+    while waiting:
+        key, value = waiting.pop(0)
+        if isinstance(value, Mapping) and value:
+            waiting[:0] = [(f"{key}.{name}", one) for name, one in value.items()]
+        else:
+            yield key, show(value)
+
+
+def _arguments(call: functools.partial) -> Iterator[tuple[str, str]]:
+    from ..scene.base import Description
+    from ..scene.errors import show
+
+    try:
+        given = inspect.signature(call.func).bind_partial(*call.args, **call.keywords).arguments
+    except (TypeError, ValueError):  # a function of C without a signature
+        given = {f"argument {k}": value for k, value in enumerate(call.args)} | call.keywords
+    for name, value in given.items():
+        if isinstance(value, Description):
+            yield from _keys(value)
+        elif isinstance(value, (numbers.Number, str)) or value is None:
+            yield name, show(value)
+        elif isinstance(value, (list, tuple)) and all(isinstance(one, (numbers.Number, str)) for one in value):
+            yield name, show(list(value))

@@ -12,6 +12,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import forkserver, resource_tracker
 from multiprocessing.synchronize import Event
 from typing import Any
 
@@ -58,11 +59,12 @@ def _pool(count: int, module: str) -> Iterator[tuple[ProcessPoolExecutor, Event]
     """Worker processes, and whether any has begun; an error or an interruption ends them at once."""
     method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
     context = multiprocessing.get_context(method)
-    if method == "forkserver":
-        context.set_forkserver_preload([module])
     try:
+        if method == "forkserver":
+            context.set_forkserver_preload([module])
+            _start_forkserver()
         started = context.Event()
-        pool = ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker, initargs=(started,))
+        pool = _Pool(count, mp_context=context, initializer=_start_worker, initargs=(started,))
     except OSError as error:  # their locks are shared memory
         raise SweepError(f"worker processes cannot begin, /dev/shm: {error.strerror}; or workers=1") from None
     try:
@@ -74,6 +76,47 @@ def _pool(count: int, module: str) -> Iterator[tuple[ProcessPoolExecutor, Event]
         pool.shutdown(wait=True, cancel_futures=True)
         raise
     pool.shutdown(wait=True)
+
+
+class _Pool(ProcessPoolExecutor):
+    """A pool that is never interrupted between a process and the note of it.
+
+    A process that nobody had noted would not be killed with the others, and complain of what went with this one.
+    """
+
+    def submit(self, *task: Any, **more: Any) -> Future:
+        with _interrupted_later():
+            return super().submit(*task, **more)
+
+
+@contextlib.contextmanager
+def _interrupted_later() -> Iterator[None]:
+    """Put off an interruption to the end of the block."""
+    usual = signal.getsignal(signal.SIGINT) if threading.current_thread() is threading.main_thread() else None
+    if not callable(usual):  # it is ignored, or handled elsewhere
+        yield
+        return
+    came: list[Any] = []
+    signal.signal(signal.SIGINT, lambda *given: came.append(given))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, usual)
+        if came:
+            usual(*came[0])
+
+
+def _start_forkserver() -> None:
+    """Begin the process that forks the workers; it and they leave interruptions to this one, from their first moment.
+
+    A terminal interrupts all processes at once, and one that is only just importing would say so.
+    """
+    resource_tracker.ensure_running()  # it would let interruptions through again
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        forkserver.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextlib.contextmanager

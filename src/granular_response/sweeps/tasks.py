@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import logging
 import os
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
@@ -26,6 +27,8 @@ from .memory import MISSING, Memory
 from .processes import over_processes
 from .resources import Progress as Progress
 from .resources import Resources, current, using
+
+LOG = logging.getLogger("granular_response")
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -58,6 +61,7 @@ def map_tasks(
         ``DASK_SCHEDULER_ADDRESS`` are asked.
     progress
         Called as ``progress(done, total, what)`` at the start and after each task; if None, that of the resources.
+        Where a checkpoint had some of the results, ``what`` says how many.
     checkpoint
         Folder in which the result of each finished task is kept until the caller removes it. A later call
         finds it there if function, item and the sources of this package, and of those that the resources in use name,
@@ -91,6 +95,9 @@ def map_tasks(
     results: list[Any] = [memory.load(name) if memory else MISSING for name in names]
     todo = [index for index, result in enumerate(results) if result is MISSING]
     done = len(items) - len(todo)
+    if done:
+        what = f"{what}, {done} of {len(items)} taken from the checkpoint"
+        LOG.info("%s", what)
     if progress:
         progress(done, len(items), what)
     if not todo:

@@ -105,7 +105,7 @@ def simulate(
             raise SceneError(f"{parameter_file}: section {group}: {error}") from error
         except (*TOO_LITTLE, SweepError) as error:
             if isinstance(error, SweepError) and not isinstance(error.__cause__, TOO_LITTLE):
-                raise
+                raise SweepError(f"{parameter_file}: section {group}: {error}") from error.__cause__
             problem = " ".join(str(error).split())
             raise GroupError(f"{parameter_file}: section {group} cannot be measured: {problem}") from error
         store.write(output, datasets, {"group": group, "parameters": text.write(given)}, keep=True)

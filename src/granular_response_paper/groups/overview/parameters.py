@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Description, Fraction, Positive, Ratio
-from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Growing, SceneGroup, over, some
+from granular_response_paper.parameters import UNIT_LOAD, Coefficients, SceneGroup, Several, over, some
 
 
 class Experiment(Description):
@@ -27,5 +27,5 @@ class Parameters(SceneGroup):
         Scene, over(UNIT_LOAD, "packing.polydispersity", "packing.lattice_constant", "contact.friction", "loads")
     ] = Field(description="Base scene; the walls are those of the ordered slabs.")
     frictions: Coefficients
-    forces: Growing = Field(description="In mean disk weights: frames; the first and the last are in the picture.")
+    forces: Several = Field(description="In mean disk weights: frames; the first and the last are in the picture.")
     experiment: Experiment

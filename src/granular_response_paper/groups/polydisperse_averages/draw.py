@@ -345,7 +345,7 @@ def _packings(data: xr.Dataset) -> Figure:
     deltas = different(data["polydispersity"])
     colours = dict(zip(deltas, style.ordered_colours(len(deltas), of="polydispersity"), strict=True))
     disordered = [delta for delta in deltas if delta]
-    figure, panels = style.figure(2, len(disordered), width="double", height=4.6)
+    figure, panels = style.figure(2, max(len(disordered), 2), width="double", height=4.6)
     grid = panels[0, 0].get_gridspec()
     for axes in panels.flat:
         axes.remove()

@@ -101,6 +101,10 @@ class Parameters(EnsembleGroup):
     @model_validator(mode="after")
     def _check(self) -> Parameters:
         shown = self.individual
+        if not any(case.polydispersity for case in self.columns):
+            raise Problem(
+                "must have a polydispersity above 0", key=("cases",), value=[c.model_dump() for c in self.cases]
+            )
         if not self.pictured:
             rule = "must be a realization and a force of one of the cases"
             raise Problem(rule, key=("forces_picture",), value=self.forces_picture.model_dump())

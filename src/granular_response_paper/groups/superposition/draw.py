@@ -15,10 +15,9 @@ from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
 from granular_response_paper.panels import banded, family, titles, zero
 
-from .parameters import Parameters
+from .parameters import FORCES, Parameters
 
-#: Forces of the two figures, and the realization that both show.
-FORCES = {"fig23_superposition": 0.2, "fig24_superposition": 1.0}
+#: The realization that both figures show.
 REALIZATION = 0
 
 #: The force up to which the paper finds the response linear here, in mean disk weights (Sec. VI).

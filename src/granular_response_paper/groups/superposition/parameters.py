@@ -4,21 +4,17 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Positive, allowed
+from granular_response.scene.base import Count, Positive
 from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import Counts, SceneGroup, growing, over
+from granular_response_paper.parameters import Counts, SceneGroup, Several, over
 
 _UNLOADED = Scene(loads=())
 
-Paths = Annotated[
-    tuple[Positive, ...],
-    Field(min_length=2),
-    AfterValidator(growing),
-    allowed("must be two or more growing numbers above 0"),
-]
+#: Forces of the two figures.
+FORCES = {"fig23_superposition": 0.2, "fig24_superposition": 1.0}
 
 
 class Parameters(SceneGroup):
@@ -28,8 +24,8 @@ class Parameters(SceneGroup):
     realizations: Count = Field(description="Of the radii.")
     pair_realizations: Count = Field(description="Those of them with two loads.")
     offsets: Counts = Field(description="Places of the loads to either side of the middle of the top row.")
-    forces: Paths = Field(description="Each of two loads, in mean disk weights.")
-    single_forces: Paths = Field(description="The load on the middle disk.")
+    forces: Several = Field(description="Each of two loads, in mean disk weights.")
+    single_forces: Several = Field(description="The load on the middle disk.")
     width: Positive = Field(description="w of the Gaussian at x = 0, in radii.")
     tolerance: Positive = Field(description="Change that ends the linear range.")
 
@@ -38,6 +34,11 @@ class Parameters(SceneGroup):
         if self.pair_realizations > self.realizations:
             rule = f"must be from 1 to realizations = {self.realizations}"
             raise Problem(rule, key=("pair_realizations",), value=self.pair_realizations)
+        if not set(FORCES.values()) <= set(self.forces):
+            shown = " and ".join(f"{force:g}" for force in FORCES.values())
+            raise Problem(
+                f"must have {shown} among them, which the figures show", key=("forces",), value=list(self.forces)
+            )
         farthest = (int(self.scene.packing.build().row_count[-1]) - 1) // 2
         if max(self.offsets) > farthest:
             raise Problem(f"must be places from 1 to {farthest}", key=("offsets",), value=list(self.offsets))

@@ -1,0 +1,156 @@
+"""Every kind of stored file read by other programs, again and again, in processes of their own: a crash is seen."""
+
+import importlib.util
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+from places import ROOT
+from small_scenes import scene
+
+import granular_response as gr
+from granular_response.solvers.solution import solve_scene
+from granular_response.store import files as store
+from granular_response.store.result import to_dataset
+
+LABEL = {"long_name": "a quantity", "units": "1"}
+#: How often each reader reads; netCDF4 alone held out for some sixty times.
+TIMES = {"netCDF4": 60, "xarray": 20}
+FEW = 4
+
+READ = """
+import sys
+{imports}
+for path, group in zip(sys.argv[2::2], sys.argv[3::2], strict=True):
+    group = group or None
+    whole = xr.open_dataset(path, group=group, decode_timedelta=False).load()
+    for _ in range(int(sys.argv[1])):
+        {read}
+print("read to the end")
+"""
+XARRAY = "import xarray as xr"
+AGAIN = "assert xr.open_dataset(path, group=group, decode_timedelta=False{how}).load().identical(whole)"
+READERS = {
+    "xarray": (XARRAY, AGAIN.format(how="")),
+    "chunks of xarray's choice": (XARRAY, AGAIN.format(how=', chunks="auto"')),
+    "chunks of the file": (XARRAY, AGAIN.format(how=", chunks={}")),
+    "small chunks": (
+        f"import warnings\n{XARRAY}\nwarnings.simplefilter('ignore')",
+        AGAIN.format(how=", chunks={dimension: 3 for dimension in whole.dims}"),
+    ),
+    "netCDF4": (
+        f"import netCDF4\n{XARRAY}",
+        "file = netCDF4.Dataset(path); file = file[group] if group else file; "
+        "assert {name: file[name][...] for name in file.variables}.keys() == whole.variables.keys()",
+    ),
+    "h5netcdf": (XARRAY, AGAIN.format(how=', engine="h5netcdf"')),
+}
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """Paths of files, each with one of its groups: results, studies, a large ensemble, what xarray writes of ours."""
+    folder = tmp_path_factory.mktemp("readers")
+    loaded = scene(contact__friction=0.3, loads=[{"disk": "top-centre", "force": [0.5, -3.0]}])
+    result = to_dataset(solve_scene(loaded, load_factors=(0.5, 2.0, 0.0)))
+    assert result["event_reason"].size  # texts of any length, also none
+    store.write(folder / "result.nc", result.assign_attrs(scene=f"{result.attrs['scene']}# Körner\n"))
+    store.write(folder / "unloaded.nc", to_dataset(solve_scene(scene(loads=[]))))
+    texts = xr.Dataset(
+        {
+            "message": (("case", "seed"), np.array([["", "größer als 2 µ"], ["", "x" * 300]]), LABEL),
+            "why": ((), "no equilibrium", LABEL),
+            "none": ("nowhere", np.array([], str), LABEL),
+            "empty": ("seed", np.array(["", ""], object), LABEL),
+        },
+        {"case": ("case", ["smooth", "π"], LABEL), "name": ("case", ["a", "bb"], LABEL)},
+    )
+    store.write(folder / "study.nc", {"packings": texts, "slab/rest": result})
+    assert store.read(folder / "study.nc")["packings"].identical(texts.drop_attrs(deep=False))
+    made = {folder / "result.nc": "", folder / "unloaded.nc": "", folder / "study.nc": "packings"}
+    made |= {ROOT / "survey" / "data" / "moduli.nc": next(iter(store.read(ROOT / "survey" / "data" / "moduli.nc")))}
+    return made
+
+
+@pytest.fixture(scope="module")
+def by_xarray(tmp_path_factory):
+    """What xarray itself writes of a result and of a sweep."""
+    folder = tmp_path_factory.mktemp("by_xarray")
+    loaded = scene(loads=[{"disk": "top-centre", "force": [0.0, -1.0]}])
+    to_dataset(solve_scene(loaded)).to_netcdf(folder / "result.nc")
+    axes = {"protocol.integrator": ["beeman", "verlet"], "protocol.load_factors": [[1.0], [1.0, 2.0]]}
+    gr.sweep(loaded, axes, workers=1, progress=False).to_netcdf(folder / "sweep.nc")
+    return {folder / "result.nc": "", folder / "sweep.nc": ""}
+
+
+def read(reader, files):
+    imports, body = READERS[reader]
+    given = [str(part) for pair in files.items() for part in pair]
+    script = READ.format(imports=imports, read=body)
+    done = subprocess.run(
+        [sys.executable, "-c", script, str(TIMES.get(reader, FEW)), *given],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0 and done.stdout == "read to the end\n", (done.returncode, done.stderr[-2000:])
+
+
+def installed(reader):
+    if reader == "h5netcdf" and importlib.util.find_spec(reader) is None:
+        pytest.skip("h5netcdf is not installed")
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_files_of_ours_are_read_repeatedly(reader, files):
+    installed(reader)
+    read(reader, files)
+
+
+@pytest.mark.parametrize("reader", [name for name in READERS if name != "chunks of xarray's choice"])
+def test_what_xarray_stores_of_ours_is_read_repeatedly(reader, by_xarray):
+    installed(reader)
+    read(reader, by_xarray)
+
+
+def test_ncdump_shows_words(files):
+    ncdump = shutil.which("ncdump")
+    if ncdump is None:
+        pytest.skip("ncdump is not installed")
+    for path in files:
+        said = subprocess.run([ncdump, path], capture_output=True, text=True, check=True, timeout=60).stdout
+        assert said.rstrip().endswith("}") and "\n\tstring " not in said
+    words = subprocess.run([ncdump, "-v", "branch,axis", next(iter(files))], capture_output=True, text=True, check=True)
+    assert '"loading"' in words.stdout and '"unloading"' in words.stdout and '"x"' in words.stdout
+
+
+def test_no_variable_holds_strings_of_any_length(files, by_xarray):
+    """Nor do files of the reproduction: all are written by the one function that these were."""
+    import netCDF4
+
+    def variables(group):
+        yield from group.variables.values()
+        for inner in group.groups.values():
+            yield from variables(inner)
+
+    for path in (*files, *by_xarray, *(ROOT / "survey" / "data").glob("*.nc")):
+        with netCDF4.Dataset(path) as file:
+            assert not [one.name for one in variables(file) if one.dtype is str], path
+
+
+def test_plain_xarray_sees_words_along_dimensions_and_bytes_elsewhere(files):
+    with xr.open_dataset(next(iter(files))) as plain:
+        assert plain["position"].sel(axis="z").dims == ("state", "disk")
+        assert plain["component"].values.tolist() == ["force_x", "force_z", "torque"]
+        assert plain["branch"].values.tolist() == [b"loading", b"loading", b"unloading"]
+        assert plain["branch"].astype(str).values.tolist() == ["loading", "loading", "unloading"]
+
+
+def test_a_value_that_is_neither_number_nor_text_is_refused(tmp_path):
+    bad = xr.Dataset({"odd": ("n", np.array([1.0, None], object), LABEL)})
+    with pytest.raises(store.StoreError, match="variable odd holds values that are neither numbers nor texts"):
+        store.write(tmp_path / "odd.nc", bad)
