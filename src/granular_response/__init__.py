@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from . import theory as theory
     from .api.event import find_event as find_event
     from .api.event_table import Events as Events
+    from .api.motion import motion as motion
     from .api.result import Result as Result
     from .api.result import open_result as open_result
     from .api.result import solve as solve
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from .scene import FilePacking as File  # noqa: F401
     from .scene import LaboratoryUnits as LaboratoryUnits
     from .scene import Load as Load
+    from .scene import Motion as Motion
     from .scene import PilePacking as Pile  # noqa: F401
     from .scene import PouredPacking as Poured  # noqa: F401
     from .scene import Preparation as Preparation
@@ -78,6 +80,7 @@ _HOME = {
     "GranularError": "errors",
     "LaboratoryUnits": "scene",
     "Load": "scene",
+    "Motion": "scene",
     "PictureError": "plot.pictures",
     "Pile": "scene:PilePacking",
     "Poured": "scene:PouredPacking",
@@ -97,6 +100,7 @@ _HOME = {
     "Wall": "scene",
     "find_event": "api.event",
     "map_tasks": "sweeps.tasks",
+    "motion": "api.motion",
     "open_result": "api.result",
     "plot": "",
     "register_law": "solvers.laws",

@@ -393,7 +393,7 @@ class Result:
         (1.0, 0.5)
         """
         solution = self._solution or solution_from(self._data, folder=self._folder)
-        with compiling.logged(), shown(progress) as report:
+        with shown(progress) as report, compiling.logged(report):
             further = continue_solution(solution, load_factors, progress=report)
         return _vouched(further)
 
@@ -469,7 +469,7 @@ def solve(
     asked = described(scene)
     if method is not None:
         asked = asked.updated({"protocol.method": method})
-    with compiling.logged(), shown(progress) as report:
+    with shown(progress) as report, compiling.logged(report):
         solution = solve_scene(asked, load_factors=load_factors, progress=report)
     return _vouched(solution)
 

@@ -88,6 +88,7 @@ SECTIONS = (
     Section("A disk on top by its place", "loads[].disk", scene.TopSelector, {"x": 0.0}),
     Section("Preparation", "preparation", scene.Preparation),
     Section("Protocol", "protocol", scene.Protocol),
+    Section("Motion at the start", "motion", scene.Motion),
 )
 
 

@@ -11,6 +11,7 @@ from .laboratory import LaboratoryUnits
 from .lattice import PilePacking, SlabPacking
 from .load import Load, RowSelector, TopSelector, resolve_disk
 from .material import Contact, Wall
+from .motion import Motion
 from .packing import Packing
 from .poured import PouredPacking
 from .protocol import Preparation, Protocol
@@ -23,6 +24,7 @@ __all__ = [
     "FilePacking",
     "LaboratoryUnits",
     "Load",
+    "Motion",
     "Packing",
     "PilePacking",
     "PouredPacking",

@@ -165,6 +165,8 @@ def checked_problem(scene: Scene) -> Problem:
     SceneError
         For a packing or a load that is not allowed, too many disks for the memory, or a method that is none for it.
     """
+    if scene.motion.key:
+        raise SceneError(f"{scene.motion.key}: must be left out, equilibria are found from rest; gr.motion follows it")
     check_memory(scene, scene.packing.disk_count)
     problem = Problem.from_scene(scene)
     check_memory(scene, problem.n)  # a file's disks are counted by now
