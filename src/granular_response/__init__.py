@@ -28,6 +28,14 @@ if TYPE_CHECKING:
     from .api.event import find_event as find_event
     from .api.event_table import Events as Events
     from .api.motion import motion as motion
+    from .api.observables import coordination_number as coordination_number
+    from .api.observables import elastic_moduli as elastic_moduli
+    from .api.observables import fabric_tensor as fabric_tensor
+    from .api.observables import force_distribution as force_distribution
+    from .api.observables import mobilization as mobilization
+    from .api.observables import modes as modes
+    from .api.observables import stiffness_matrix as stiffness_matrix
+    from .api.observables import work as work
     from .api.result import Result as Result
     from .api.result import open_result as open_result
     from .api.result import solve as solve
@@ -98,16 +106,24 @@ _HOME = {
     "StoreError": "store.files",
     "SweepError": "sweeps.errors",
     "Wall": "scene",
+    "coordination_number": "api.observables",
+    "elastic_moduli": "api.observables",
+    "fabric_tensor": "api.observables",
     "find_event": "api.event",
+    "force_distribution": "api.observables",
     "map_tasks": "sweeps.tasks",
+    "mobilization": "api.observables",
+    "modes": "api.observables",
     "motion": "api.motion",
     "open_result": "api.result",
     "plot": "",
     "register_law": "solvers.laws",
     "solve": "api.result",
+    "stiffness_matrix": "api.observables",
     "sweep": "api.sweep",
     "theory": "",
     "threads": "machine.threads:using",
+    "work": "api.observables",
 }
 
 

@@ -14,6 +14,7 @@ from granular_response.cli import scene_reference
 from granular_response.scene import LaboratoryUnits, Scene, SceneError
 from granular_response.scene.base import UNITS
 from granular_response.scene.material import Contact
+from granular_response.scene.motion import Motion
 from granular_response.store import generated
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -97,6 +98,7 @@ def test_the_reference_has_every_key_of_every_kind_of_scene():
     scenes.append(Scene.from_arrays([1.0], [1.0], 1.0))
     # written only where they are not the default
     sparse = {f"{part}.{name}" for part in ("contact", "wall") for name in Contact.sparse} - {"wall.parameters"}
+    sparse |= {f"motion.{name}" for name in Motion.sparse}
     assert set().union(sparse, *(paths_of(scene.to_dict()) for scene in scenes)) == known
 
 
