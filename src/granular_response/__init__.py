@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from .api.observables import modes as modes
     from .api.observables import stiffness_matrix as stiffness_matrix
     from .api.observables import work as work
+    from .api.preparations import preparations as preparations
     from .api.result import Result as Result
     from .api.result import open_result as open_result
     from .api.result import solve as solve
@@ -61,6 +62,7 @@ if TYPE_CHECKING:
     from .scene import SceneError as SceneError
     from .scene import SceneFileError as SceneFileError
     from .scene import SlabPacking as Slab  # noqa: F401
+    from .scene import Taps as Taps
     from .scene import TopSelector as At  # noqa: F401
     from .scene import Wall as Wall
     from .solvers.laws import register_law as register_law
@@ -105,6 +107,7 @@ _HOME = {
     "State": "state",
     "StoreError": "store.files",
     "SweepError": "sweeps.errors",
+    "Taps": "scene",
     "Wall": "scene",
     "coordination_number": "api.observables",
     "elastic_moduli": "api.observables",
@@ -117,6 +120,7 @@ _HOME = {
     "motion": "api.motion",
     "open_result": "api.result",
     "plot": "",
+    "preparations": "api.preparations",
     "register_law": "solvers.laws",
     "solve": "api.result",
     "stiffness_matrix": "api.observables",

@@ -14,7 +14,7 @@ from .material import Contact, Wall
 from .motion import Motion
 from .packing import Packing
 from .poured import PouredPacking
-from .protocol import Preparation, Protocol
+from .protocol import Preparation, Protocol, Taps
 from .scene import Scene
 from .table import FilePacking
 
@@ -35,6 +35,7 @@ __all__ = [
     "SceneError",
     "SceneFileError",
     "SlabPacking",
+    "Taps",
     "TopSelector",
     "Wall",
     "resolve_disk",

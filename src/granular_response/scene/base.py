@@ -45,6 +45,8 @@ UNITS = {
     "spin": "1 / sqrt(R/g)",
     "time_step": "sqrt(R/g)",
     "ramp_time": "sqrt(R/g)",
+    "duration": "sqrt(R/g)",
+    "amplitude": "g",
     "load_factors": "",
     "stop_kinetic_energy": "mg × mean radius",
 }
