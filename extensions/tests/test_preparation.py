@@ -6,12 +6,12 @@ import reduced
 
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state
+from granular_response.solvers.taps import tapped as after_taps
 from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import State
 from granular_response_extensions.preparation import draw as figures
 from granular_response_extensions.preparation import simulate as study
 from granular_response_extensions.preparation.parameters import Parameters
-from granular_response_extensions.preparation.simulate import taps
 from granular_response_paper.slab_response import LoadPath, Measures
 
 PARAMETERS = reduced.parameters("preparation")
@@ -90,7 +90,7 @@ def tapped(friction: float, amplitude: float, parts: int = 1) -> tuple[State, St
     usual = resolve_time_step(Problem.from_scene(scene))
     problem = Problem.from_scene(scene.updated({"protocol.time_step": usual / parts}))
     rest = rest_state(problem)
-    return rest, taps.tapped(problem, rest, 1, amplitude, 3.0)
+    return rest, after_taps(problem, rest, 1, amplitude, 3.0)
 
 
 @pytest.mark.parametrize("amplitude", [0.5, 2.0])

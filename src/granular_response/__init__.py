@@ -27,6 +27,16 @@ if TYPE_CHECKING:
     from . import theory as theory
     from .api.event import find_event as find_event
     from .api.event_table import Events as Events
+    from .api.motion import motion as motion
+    from .api.observables import coordination_number as coordination_number
+    from .api.observables import elastic_moduli as elastic_moduli
+    from .api.observables import fabric_tensor as fabric_tensor
+    from .api.observables import force_distribution as force_distribution
+    from .api.observables import mobilization as mobilization
+    from .api.observables import modes as modes
+    from .api.observables import stiffness_matrix as stiffness_matrix
+    from .api.observables import work as work
+    from .api.preparations import preparations as preparations
     from .api.result import Result as Result
     from .api.result import open_result as open_result
     from .api.result import solve as solve
@@ -42,6 +52,7 @@ if TYPE_CHECKING:
     from .scene import FilePacking as File  # noqa: F401
     from .scene import LaboratoryUnits as LaboratoryUnits
     from .scene import Load as Load
+    from .scene import Motion as Motion
     from .scene import PilePacking as Pile  # noqa: F401
     from .scene import PouredPacking as Poured  # noqa: F401
     from .scene import Preparation as Preparation
@@ -51,6 +62,7 @@ if TYPE_CHECKING:
     from .scene import SceneError as SceneError
     from .scene import SceneFileError as SceneFileError
     from .scene import SlabPacking as Slab  # noqa: F401
+    from .scene import Taps as Taps
     from .scene import TopSelector as At  # noqa: F401
     from .scene import Wall as Wall
     from .solvers.laws import register_law as register_law
@@ -78,6 +90,7 @@ _HOME = {
     "GranularError": "errors",
     "LaboratoryUnits": "scene",
     "Load": "scene",
+    "Motion": "scene",
     "PictureError": "plot.pictures",
     "Pile": "scene:PilePacking",
     "Poured": "scene:PouredPacking",
@@ -94,16 +107,27 @@ _HOME = {
     "State": "state",
     "StoreError": "store.files",
     "SweepError": "sweeps.errors",
+    "Taps": "scene",
     "Wall": "scene",
+    "coordination_number": "api.observables",
+    "elastic_moduli": "api.observables",
+    "fabric_tensor": "api.observables",
     "find_event": "api.event",
+    "force_distribution": "api.observables",
     "map_tasks": "sweeps.tasks",
+    "mobilization": "api.observables",
+    "modes": "api.observables",
+    "motion": "api.motion",
     "open_result": "api.result",
     "plot": "",
+    "preparations": "api.preparations",
     "register_law": "solvers.laws",
     "solve": "api.result",
+    "stiffness_matrix": "api.observables",
     "sweep": "api.sweep",
     "theory": "",
     "threads": "machine.threads:using",
+    "work": "api.observables",
 }
 
 

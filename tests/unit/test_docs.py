@@ -14,6 +14,8 @@ from granular_response.cli import scene_reference
 from granular_response.scene import LaboratoryUnits, Scene, SceneError
 from granular_response.scene.base import UNITS
 from granular_response.scene.material import Contact
+from granular_response.scene.motion import Motion
+from granular_response.scene.protocol import Taps
 from granular_response.store import generated
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -97,6 +99,8 @@ def test_the_reference_has_every_key_of_every_kind_of_scene():
     scenes.append(Scene.from_arrays([1.0], [1.0], 1.0))
     # written only where they are not the default
     sparse = {f"{part}.{name}" for part in ("contact", "wall") for name in Contact.sparse} - {"wall.parameters"}
+    sparse |= {f"motion.{name}" for name in Motion.sparse} | {"preparation.taps"}
+    sparse |= {f"preparation.taps.{name}" for name in Taps.model_fields}
     assert set().union(sparse, *(paths_of(scene.to_dict()) for scene in scenes)) == known
 
 

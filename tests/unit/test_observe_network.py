@@ -85,7 +85,7 @@ def test_coordination_number_of_a_lattice_is_six_in_the_bulk():
     bulk = bulk_disks(s, 30.0, side_margin=4.0)
     assert 0 < bulk.sum() < s.position.shape[0]
     assert coordination_number(s, bulk) == 6.0
-    assert coordination_number(s) == 2.0 * s.pairs.first.size / s.position.shape[0] < 6.0
+    assert coordination_number(s, walls=False) == 2.0 * s.pairs.first.size / s.position.shape[0] < 6.0
 
 
 def test_bulk_disks_keep_all_four_margins():
@@ -127,10 +127,10 @@ def test_a_disk_that_touches_another_by_rounding_is_a_rattler_still():
 
 def test_coordination_number_by_definition():
     s = chain_with_loose_ends()
-    assert coordination_number(s) == pytest.approx(10 / 6)
-    assert coordination_number(s, walls=True) == pytest.approx(13 / 6)
-    assert coordination_number(s, without_rattlers=True) == pytest.approx(2.0)
-    assert coordination_number(s, without_rattlers=True, walls=True) == pytest.approx(8 / 3)
+    assert coordination_number(s) == pytest.approx(13 / 6)
+    assert coordination_number(s, walls=False) == pytest.approx(10 / 6)
+    assert coordination_number(s, without_rattlers=True) == pytest.approx(8 / 3)
+    assert coordination_number(s, without_rattlers=True, walls=False) == pytest.approx(2.0)
     assert coordination_number(s, np.arange(6) == 2) == 3.0
     with pytest.raises(ValueError, match="disks"):
         coordination_number(s, np.arange(6) == 5, without_rattlers=True)

@@ -9,7 +9,7 @@ CONTACT_KEYS = (
     "law, normal_stiffness, stiffness_ratio, friction, damping_ratio, rolling_friction, rolling_stiffness_ratio, "
     "parameters"
 )
-SCENE_KEYS = "packing, contact, wall, loads, preparation, protocol"
+SCENE_KEYS = "packing, contact, wall, loads, preparation, protocol, motion"
 KINDS = "slab or pile or poured or file or arrays"
 RATIO = "must be a number from 0 to 1e6"
 DISK = "must be top-centre, the index of a disk, {x: number}, or {row: top | bottom | number, offset: whole number}"

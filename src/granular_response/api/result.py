@@ -298,12 +298,9 @@ class Result:
         >>> response.dims
         ('floor_disk', 'disk')
         """
-        state = self._index(state)
-        solution = self._solution or solution_from(self._data, folder=self._folder)
-        chosen = (solution.rest, *solution.loaded)[state]
-        data = self._data
+        chosen, data = self._solved_state(state), self._data
         disks = data["floor_disk"].values
-        found = influence(solution.problem, chosen, disks, sliding=sliding)
+        found = influence(self._solved.problem, chosen, disks, sliding=sliding)
         across = chosen.box.separation(chosen.position, np.array([self.origin, 0.0]))[:, 0]
         return xr.DataArray(
             found,
@@ -392,10 +389,19 @@ class Result:
         >>> result.continued([0.5]).load_factors
         (1.0, 0.5)
         """
-        solution = self._solution or solution_from(self._data, folder=self._folder)
-        with compiling.logged(), shown(progress) as report:
+        solution = self._solved
+        with shown(progress) as report, compiling.logged(report):
             further = continue_solution(solution, load_factors, progress=report)
         return _vouched(further)
+
+    @cached_property
+    def _solved(self) -> Solution:
+        """What a solver goes on from."""
+        return self._solution or solution_from(self._data, folder=self._folder)
+
+    def _solved_state(self, state: int) -> State:
+        """A state with its own list of candidate contacts; raises as :meth:`_index`."""
+        return (self._solved.rest, *self._solved.loaded)[self._index(state)]
 
     @property
     def _data(self) -> xr.Dataset:
@@ -469,7 +475,7 @@ def solve(
     asked = described(scene)
     if method is not None:
         asked = asked.updated({"protocol.method": method})
-    with compiling.logged(), shown(progress) as report:
+    with shown(progress) as report, compiling.logged(report):
         solution = solve_scene(asked, load_factors=load_factors, progress=report)
     return _vouched(solution)
 

@@ -116,7 +116,7 @@ def _computing(threads: int | None) -> Iterator[TerminalProgress]:
 
     loaded()
     say = commands.say if sys.stderr is not None and sys.stderr.isatty() else None
-    with logged(say), using(threads or cores()), TerminalProgress() as progress:
+    with TerminalProgress() as progress, logged(progress, say), using(threads or cores()):
         yield progress
 
 

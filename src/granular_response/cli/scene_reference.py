@@ -87,7 +87,9 @@ SECTIONS = (
     Section("A disk by its row", "loads[].disk", scene.RowSelector, {"row": "top"}),
     Section("A disk on top by its place", "loads[].disk", scene.TopSelector, {"x": 0.0}),
     Section("Preparation", "preparation", scene.Preparation),
+    Section("Taps", "preparation.taps", scene.Taps),
     Section("Protocol", "protocol", scene.Protocol),
+    Section("Motion at the start", "motion", scene.Motion),
 )
 
 

@@ -109,13 +109,13 @@ def rattlers(state: State, minimum_contacts: int = 2) -> BoolArray:
 
 
 def coordination_number(
-    state: State, disks: BoolArray | None = None, *, walls: bool = False, without_rattlers: bool = False
+    state: State, disks: BoolArray | None = None, *, walls: bool = True, without_rattlers: bool = False
 ) -> float:
-    """Mean number of contacts of a disk (Sec. VII), over ``disks`` ((n,) mask; all of them by default).
+    """Mean number of closed contacts of a disk (Sec. VII), over ``disks`` ((n,) mask; all of them by default).
 
-    Contacts with disks outside ``disks`` count, so a bulk average has no surface in it. ``walls`` adds wall
-    contacts. ``without_rattlers`` leaves out the disks found by :func:`rattlers` together with
-    all contacts they take part in. Raises ``ValueError`` if no disk is left.
+    Contacts with floor and walls count, once each, unless ``walls`` is False. Contacts with disks outside ``disks``
+    count, so a bulk average has no surface in it. ``without_rattlers`` leaves out the disks found by :func:`rattlers`
+    together with all contacts they take part in. Raises ``ValueError`` if no disk is left.
     """
     chosen = np.ones(len(state.position), bool) if disks is None else np.asarray(disks, dtype=bool).copy()
     pairs, live = state.pairs, state.pairs.touching
@@ -126,6 +126,12 @@ def coordination_number(
     if not chosen.any():
         raise ValueError("disks: none left to average over")
     return float(state.contact_count(live, walls=walls)[chosen].mean())
+
+
+def fabric_tensor(state: State) -> FloatArray:
+    """(2, 2) mean of n n over the closed contacts between disks, n their unit normals; nan without any."""
+    normal = state.pair_normal()[state.pairs.touching]
+    return normal.T @ normal / len(normal) if len(normal) else np.full((2, 2), np.nan)
 
 
 def contact_angle_histogram(

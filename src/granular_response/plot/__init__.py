@@ -2,14 +2,16 @@
 
 ``response``, ``floor``, ``forces``, ``contacts``, ``stress`` and ``packing`` each draw a result on axes of their own or
 the ones given as ``ax``, and return the axes, as does ``photoelastic``; ``page`` makes one figure of several of them,
-``animate`` an animation of a growing load. Below them: ``network``, ``field`` and ``style``, which take arrays.
+``animate`` an animation of a growing load, ``motion`` one of moving disks. Below them: ``network``, ``field`` and
+``style``, which take arrays.
 """
 
 from __future__ import annotations
 
 from .animation import animate
+from .motion import motion
 from .photoelastic import photoelastic
 from .pictures import PictureError as PictureError
 from .pictures import contacts, floor, forces, packing, page, response, stress
 
-__all__ = ["animate", "contacts", "floor", "forces", "packing", "page", "photoelastic", "response", "stress"]
+__all__ = ["animate", "contacts", "floor", "forces", "motion", "packing", "page", "photoelastic", "response", "stress"]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -71,20 +72,39 @@ def animate(
     >>> animation = gr.plot.animate(growing, output="growing.gif")  # in a notebook: HTML(animation.to_jshtml())
     """
     check_positive(fps=fps, dpi=dpi)
-    ending = Path(output).suffix if output is not None else ""
-    if output is not None and ending not in FORMATS:
-        raise PictureError(f"{output}: format {ending!r} is unknown, must be {', '.join(FORMATS)}")
+    check_target(output)
     frames = Frames(results, half_width=half_width, width=width, figure=figure)
     frames.figure.set_dpi(dpi)
+    animation = FuncAnimation(frames.figure, frames.draw, frames=frames.count, interval=1000.0 / fps, blit=False)
+    return written(animation, output, fps=fps, dpi=dpi)
+
+
+def check_target(output: str | os.PathLike[str] | None) -> None:
+    """PictureError, before the work, for a file that no animation can be written to."""
+    if output is None:
+        return
+    if (ending := Path(output).suffix) not in FORMATS:
+        raise PictureError(f"{output}: format {ending!r} is unknown, must be {', '.join(FORMATS)}")
+    with _said(output):
+        atomic.check_writable(output)
+
+
+def written(
+    animation: FuncAnimation, output: str | os.PathLike[str] | None, *, fps: float, dpi: float
+) -> FuncAnimation:
+    """The animation, written to ``output`` if that is given; PictureError where it cannot be."""
+    if output is not None:
+        with _said(output):
+            atomic.write_bytes(output, rendered(animation, Path(output).suffix, fps=fps, dpi=dpi))
+    return animation
+
+
+@contextlib.contextmanager
+def _said(output: str | os.PathLike[str]) -> Iterator[None]:
     try:
-        if output is not None:
-            atomic.check_writable(output)  # before the work
-        animation = FuncAnimation(frames.figure, frames.draw, frames=frames.count, interval=1000.0 / fps, blit=False)
-        if output is not None:
-            atomic.write_bytes(output, rendered(animation, ending, fps=fps, dpi=dpi))
+        yield
     except OSError as error:
         raise PictureError(f"{output}: cannot be written: {error.strerror or error}") from error
-    return animation
 
 
 def rendered(animation: FuncAnimation, ending: str = ".gif", *, fps: float = 6.0, dpi: float = 120.0) -> bytes:

@@ -11,9 +11,10 @@ from .laboratory import LaboratoryUnits
 from .lattice import PilePacking, SlabPacking
 from .load import Load, RowSelector, TopSelector, resolve_disk
 from .material import Contact, Wall
+from .motion import Motion
 from .packing import Packing
 from .poured import PouredPacking
-from .protocol import Preparation, Protocol
+from .protocol import Preparation, Protocol, Taps
 from .scene import Scene
 from .table import FilePacking
 
@@ -23,6 +24,7 @@ __all__ = [
     "FilePacking",
     "LaboratoryUnits",
     "Load",
+    "Motion",
     "Packing",
     "PilePacking",
     "PouredPacking",
@@ -33,6 +35,7 @@ __all__ = [
     "SceneError",
     "SceneFileError",
     "SlabPacking",
+    "Taps",
     "TopSelector",
     "Wall",
     "resolve_disk",

@@ -40,8 +40,13 @@ UNITS = {
     "force": "mg",
     "displacement": "mean radius",
     "torque": "mg × mean radius",
+    "vx": "sqrt(gR)",
+    "vz": "sqrt(gR)",
+    "spin": "1 / sqrt(R/g)",
     "time_step": "sqrt(R/g)",
     "ramp_time": "sqrt(R/g)",
+    "duration": "sqrt(R/g)",
+    "amplitude": "g",
     "load_factors": "",
     "stop_kinetic_energy": "mg × mean radius",
 }

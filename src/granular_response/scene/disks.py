@@ -62,6 +62,7 @@ def packed(table: Table, left: float, floor: float, width: float, periodic: bool
         width=float(width / mean),
         periodic=periodic,
         given_mass=None if table.mass is None else mass / exact_mean(mass),
+        columns=table.columns,
     )
 
 

@@ -22,6 +22,7 @@ _DIMENSIONS: Final = {
     "mass": (0, 1, 0),
     "time": (0, 0, 1),
     "velocity": (1, 0, -1),
+    "frequency": (0, 0, -1),
     "acceleration": (1, 0, -2),
     "force": (1, 1, -2),
     "torque": (2, 1, -2),
@@ -36,7 +37,7 @@ LENGTH, MASS, TIME, FORCE = "mean_radius", "mean_mass", "reduced_time", "mean_we
 #: What keys of a scene are, by their unit; lengths of own disks are in any unit.
 _QUANTITIES: Final = {
     "mean radius": "length", "mg / mean radius": "stiffness", "mg": "force", "mg × mean radius": "energy",
-    "sqrt(R/g)": "time",
+    "sqrt(R/g)": "time", "sqrt(gR)": "velocity", "1 / sqrt(R/g)": "frequency",
 }  # fmt: skip
 _KEYS: Final = {key: _QUANTITIES[unit] for key, unit in UNITS.items() if unit in _QUANTITIES}
 #: The same for the place of a loaded disk.
@@ -87,7 +88,7 @@ class LaboratoryUnits:
     def unit(self, quantity: str) -> float:
         """One reduced unit of ``quantity`` in SI units.
 
-        Quantities are length, mass, time, velocity, acceleration, force, torque, energy, stiffness, damping,
+        Quantities are length, mass, time, velocity, frequency, acceleration, force, torque, energy, stiffness, damping,
         inertia, stress and pressure; another name is a SceneError.
 
         Examples
@@ -135,7 +136,7 @@ class LaboratoryUnits:
         return _listed(value) * self.unit(quantity)
 
     def reduced_scene(self, scene: Mapping[str, Any]) -> dict[str, Any]:
-        """The data of a scene whose forces, torques, displacements, stiffnesses, times and energies are in SI units.
+        """The data of a scene with its forces, displacements, stiffnesses, times, energies and motion in SI units.
 
         The keys are those of a scene file. Plain numbers stay, and columns of own disks, in any unit of length.
 

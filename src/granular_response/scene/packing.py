@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -38,6 +39,7 @@ class Packing:
     lattice_constant: float | None = None  #: distance of neighbours in the lattice; None from a file
     periodic: bool = False  #: periodic sides in place of walls
     given_mass: FloatArray | None = None  #: (n,) with mean 1, where disks are not of one material
+    columns: Mapping[str, FloatArray] | None = None  #: (n,) each, of its file beside places and sizes, as they stand
 
     @property
     def n(self) -> int:

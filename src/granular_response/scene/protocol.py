@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from .base import Count, Description, Flag, NonNegative, Positive, allowed
+from .material import Sparse
 
 TimeStep = Annotated[
     Annotated[float, Field(strict=True, gt=0)] | Literal["auto"], allowed("must be a number greater than 0, or auto")
@@ -22,14 +23,33 @@ Method = Literal["auto", "dynamics", "path", "minimise"]
 Integrator = Literal["beeman", "verlet", "leapfrog", "gear"]
 
 
-class Preparation(Description):
-    """How gravity is applied to the unloaded packing. With friction the initial equilibrium depends on it.
+class Taps(Description):
+    """Taps of a packing at rest, one after another: one period of a triangular wave of vertical acceleration, up first.
+
+    Up to 1 g contacts stay closed; beyond it they may open.
+
+    Examples
+    --------
+    >>> scene = gr.Scene(preparation=gr.Preparation(gravity="slow", taps=gr.Taps(number=3)))
+    >>> scene.updated({"preparation.taps.amplitude": 1.5}).preparation.taps
+    Taps(number=3, amplitude=1.5)
+    """
+
+    number: Count = Field(default=10, description="How many; each begins when the packing is at rest again.")
+    amplitude: Positive = Field(default=0.5, description="Largest acceleration of the box.")
+    duration: Positive = Field(default=3.0, description="Time of one period, rounded to four times whole steps.")
+
+
+class Preparation(Sparse):
+    """How the unloaded packing comes to rest. With friction the initial equilibrium depends on it.
 
     Examples
     --------
     >>> gr.Scene(preparation=gr.Preparation(gravity="slow")).preparation.ramp_time
     100.0
     """
+
+    sparse: ClassVar[tuple[str, ...]] = ("taps",)
 
     gravity: Literal["at-once", "slow", "frictionless"] = Field(
         default="at-once",
@@ -38,6 +58,7 @@ class Preparation(Description):
         "springs at zero.",
     )
     ramp_time: Positive = Field(default=100.0, description="Time over which slow gravity grows.")
+    taps: Taps | None = Field(default=None, description="Taps of the packing at rest, before the loads.")
 
 
 class Protocol(Description):

@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,7 +20,8 @@ from .base import MOST_STIFFNESS, PACKING_KINDS, Description, PackingDescription
 from .errors import Problem, SceneError, SceneFileError, from_validation, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
-from .material import Contact, Wall
+from .material import Contact, Sparse, Wall
+from .motion import COLUMN, COMPONENTS, Motion
 from .poured import PouredPacking
 from .protocol import Preparation, Protocol
 from .table import FilePacking
@@ -47,7 +48,7 @@ def _check_list(value: Any) -> Any:
     return tuple(value)
 
 
-class Scene(Description):
+class Scene(Sparse):
     """What is simulated. ``Scene()`` is the paper's: 15 rows of 61 and 60 disks, friction 0.2, F = 15.
 
     Every way to make a scene, the constructor included, raises SceneError with a message of one line that
@@ -59,6 +60,8 @@ class Scene(Description):
     >>> scene.updated({"loads.0.force": [0.0, -4.0]}).loads[0].force
     (0.0, -4.0)
     """
+
+    sparse: ClassVar[tuple[str, ...]] = ("motion",)
 
     packing: Annotated[
         Annotated[SlabPacking | PilePacking | PouredPacking | FilePacking | ArrayPacking, Field(discriminator="kind")],
@@ -72,6 +75,7 @@ class Scene(Description):
     )
     preparation: Preparation = Field(default_factory=Preparation, description="How gravity is applied.")
     protocol: Protocol = Field(default_factory=Protocol, description="How equilibrium is reached.")
+    motion: Motion = Field(default_factory=Motion, description="How disks move at the start of ``gr.motion``.")
 
     @model_validator(mode="after")
     def _check_contacts(self) -> Scene:
@@ -120,6 +124,21 @@ class Scene(Description):
                 except Problem as problem:
                     path = ("loads", place, "disk", *problem.key)
                     raise Problem(problem.allowed, key=path, value=problem.value) from None
+        return self
+
+    @model_validator(mode="after")
+    def _check_motion(self) -> Scene:
+        motion, total = self.motion, self.packing.disk_count
+        if motion.spin != 0.0 and not self.contact.rubs and not self.resolved_wall.rubs:
+            rule = "must be 0 without friction and tangential springs (contact and wall: friction, stiffness_ratio)"
+            raise Problem(f"{rule}, which alone turn disks", key=("motion", "spin"), value=motion.spin)
+        for name in COMPONENTS:
+            given = getattr(motion, name)
+            if given == COLUMN and not isinstance(self.packing, FilePacking):
+                raise Problem("must be numbers, the packing is not from a file", key=("motion", name), value=given)
+            if isinstance(given, tuple) and total and len(given) != total:
+                rule = f"must have one number for each of the {total} disks, has {len(given)}"
+                raise Problem(rule, key=("motion", name), value=list(given))
         return self
 
     def __repr__(self) -> str:
@@ -181,6 +200,9 @@ class Scene(Description):
         width: float | None = None,
         origin: tuple[float, float] = (0.0, 0.0),
         sides: str = "walls",
+        vx: ArrayLike | None = None,
+        vz: ArrayLike | None = None,
+        spin: ArrayLike | None = None,
         scene: Scene | Mapping[str, Any] | None = None,
     ) -> Scene:
         """A scene with a packing of one's own. The disks need not be in equilibrium: they fall first.
@@ -196,6 +218,7 @@ class Scene(Description):
             right wall touches the disk that reaches farthest.
         origin : x of the left wall and z of the floor.
         sides : "walls" or "periodic".
+        vx, vz, spin : (n,) motion at the start, or one for all, for :func:`granular_response.motion`; in reduced units.
         scene : all else, as a scene, whose packing is left out, or nested mappings with its other keys; that of
             ``Scene()`` if left out.
 
@@ -216,7 +239,9 @@ class Scene(Description):
             raise SceneError("scene.packing: must be left out, the packing is that of the arrays")
         rest = scene.to_dict() if isinstance(scene, Scene) else scene or {}
         packing = {"kind": "arrays", **columns, "width": width, "origin": origin, "sides": sides}
-        return cls.from_dict({**rest, "packing": packing})
+        motion = {name: listed(one) for name, one in (("vx", vx), ("vz", vz), ("spin", spin)) if one is not None}
+        own = {"motion": {**rest.get("motion", {}), **motion}} if motion else {}
+        return cls.from_dict({**rest, **own, "packing": packing})
 
     @classmethod
     def from_text(cls, text: str, *, folder: str | PathLike[str] | None = None) -> Scene:

@@ -23,6 +23,7 @@ from .path import follow, lost
 from .problem import Problem
 from .settle import PROTOCOL, NotSettled, not_settled, settle
 from .size import check_memory
+from .taps import tapped
 from .timestep import resolve_time_step
 
 #: Load that the contacts of one disk bear at most without an overlap of a radius, over the stiffness of one.
@@ -165,6 +166,8 @@ def checked_problem(scene: Scene) -> Problem:
     SceneError
         For a packing or a load that is not allowed, too many disks for the memory, or a method that is none for it.
     """
+    if scene.motion.key:
+        raise SceneError(f"{scene.motion.key}: must be left out, equilibria are found from rest; gr.motion follows it")
     check_memory(scene, scene.packing.disk_count)
     problem = Problem.from_scene(scene)
     check_memory(scene, problem.n)  # a file's disks are counted by now
@@ -231,8 +234,20 @@ def load_programme(factors: Any) -> list[float]:
 
 def rest_state(problem: Problem, *, progress: Progress | None = None) -> State:
     """The certified state at rest under gravity, prepared as the scene says."""
+    rest, taps = _under_gravity(problem, progress), problem.scene.preparation.taps
+    if taps is None:
+        return rest
+    if not problem.plan.static:
+        raise SceneError(
+            "preparation.taps: must be null, each tap ends in an equilibrium, and statics is left out here"
+        )
+    return tapped(problem, rest, taps.number, taps.amplitude, taps.duration)
+
+
+def _under_gravity(problem: Problem, progress: Progress | None) -> State:
+    """The same before any taps."""
     if problem.rotations and problem.scene.preparation.gravity == "frictionless":
-        smooth = rest_state(problem.without_friction(), progress=progress)
+        smooth = _under_gravity(problem.without_friction(), progress)
         # no tangential spring is stretched: an equilibrium with friction too
         start = problem.with_static_forces(smooth)
         found = finish(problem, start)

@@ -57,8 +57,9 @@ def name(problem: Problem) -> str:
     packing, protocol = problem.packing, problem.scene.protocol
     method = problem.plan.rest.method
     numerics: tuple = ()
-    # a packing prepared without friction may turn away once it has it, however it was prepared
-    if method == "dynamics" or (problem.rotations and problem.scene.preparation.gravity == "frictionless"):
+    preparation = problem.scene.preparation
+    # a packing prepared without friction may turn away once it has it, however it was prepared; taps are motion
+    if method == "dynamics" or preparation.taps or (problem.rotations and preparation.gravity == "frictionless"):
         numerics = (
             protocol.integrator,
             _time_step(problem, must_be_stable=method == "dynamics"),
@@ -74,7 +75,7 @@ def name(problem: Problem) -> str:
         problem.pair_rolling,
         problem.wall_rolling,
         problem.rule,
-        problem.scene.preparation,
+        preparation,
         method,
         numerics,
     )

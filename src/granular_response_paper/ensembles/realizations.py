@@ -61,11 +61,12 @@ class Packed:
         touching = rest.pairs.touching
         horizontal = np.abs(np.abs(rest.pair_normal()[touching, 0])) > np.cos(np.pi / 6.0)
         bulk = network.bulk_disks(rest, problem.packing.width, wall_margin(problem.packing.width))
+        of_disks = partial(network.coordination_number, walls=False)
         return cls(
-            coordination_number=network.coordination_number(rest),
-            coordination_number_bulk=network.coordination_number(rest, bulk) if bulk.any() else float("nan"),
-            coordination_number_with_walls=network.coordination_number(rest, walls=True),
-            coordination_number_bearing=network.coordination_number(rest, without_rattlers=True),
+            coordination_number=of_disks(rest),
+            coordination_number_bulk=of_disks(rest, bulk) if bulk.any() else float("nan"),
+            coordination_number_with_walls=network.coordination_number(rest),
+            coordination_number_bearing=of_disks(rest, without_rattlers=True),
             horizontal_contacts=np.count_nonzero(horizontal) / count,
             oblique_contacts=np.count_nonzero(~horizontal) / count,
             largest_overlap=float(rest.pairs.overlap.max()),

@@ -13,10 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import suggestion
-from .table import NO_BOX, FormatError, Mark, Table, lines_of, numbers
+from .table import NO_BOX, FormatError, Mark, Table, lines_of, number, numbers
 
 COLUMNS = ("x", "z", "radius")
 MATERIAL = ("mass", "density")
+#: Columns that are read where they are, and taken where ``motion`` asks for them.
+MOTION = ("vx", "vz", "spin")
 #: Columns that look as if they were heeded, and cannot be: contacts have one law.
 REFUSED = {
     **dict.fromkeys(("friction", "mu", "µ", "μ", "friction_coefficient"), "contact.friction"),
@@ -30,6 +32,7 @@ _OTHER_WORDS = {"m": "mass", "rmass": "mass", "weight": "mass", "rho": "density"
 def read(path: Path) -> Table:
     """The disks of a table; errors name the line."""
     rows: list[list[float]] = []
+    moved: list[list[float]] = []
     places: list[str] = []
     header: tuple[str, ...] = ()
     names: tuple[str, ...] = COLUMNS
@@ -48,10 +51,12 @@ def read(path: Path) -> Table:
                 header, units = zip(*map(_name_and_unit, cells), strict=True)
                 names = _names(header, units)
                 columns = [header.index(name) for name in names]
+                motion = [name for name in MOTION if header.count(name) == 1]
                 continue
             if len(cells) != len(header):
                 raise FormatError(f"has {len(cells)} values, must have {len(header)} as the header", place)
             rows.append(numbers([cells[column] for column in columns], names, place))
+            moved.append([_or_nan(cells[header.index(name)]) for name in motion])
             places.append(place)
     except csv.Error as error:
         raise FormatError(f"is not a CSV file: {error}") from None
@@ -67,7 +72,15 @@ def read(path: Path) -> Table:
     mass = None
     if material:
         mass = material[0] if names[3] == "mass" else material[0] * radius**2
-    return Table(x, z, radius, places, mass, NO_BOX if mark is None else mark.box)
+    velocities = dict(zip(motion, np.array(moved).T, strict=True))
+    return Table(x, z, radius, places, mass, NO_BOX if mark is None else mark.box, columns=velocities or None)
+
+
+def _or_nan(cell: str) -> float:
+    try:
+        return number(cell, "", "")
+    except FormatError:
+        return float("nan")
 
 
 def _name_and_unit(cell: str) -> tuple[str, str]:

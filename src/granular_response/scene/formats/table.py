@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -55,6 +55,7 @@ class Table:
     mass: FloatArray | None = None  #: (n,) in any unit; None where the file says nothing of masses
     box: FileBox = field(default=NO_BOX)
     remark: str = ""  #: what a reader should know where disks differ in size
+    columns: Mapping[str, FloatArray] | None = None  #: (n,) motion of the disks; nan where a cell is no number
 
 
 @dataclass(frozen=True)

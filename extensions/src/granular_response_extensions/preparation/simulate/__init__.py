@@ -20,11 +20,11 @@ import xarray as xr
 from granular_response.scene import Scene
 from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.solvers.problem import Problem
+from granular_response.solvers.taps import tapped
 from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS
 from granular_response.sweeps.rest import rest_state
 from granular_response_extensions.preparation.parameters import Parameters
-from granular_response_extensions.preparation.simulate.taps import tapped
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.parameters import material

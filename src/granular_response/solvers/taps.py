@@ -1,19 +1,19 @@
-"""Taps of a slab at rest: the box moves as :class:`~.parameters.Taps` says."""
+"""Taps of a packing at rest: its box moves as :class:`..scene.Taps` says."""
 
 from __future__ import annotations
 
-from granular_response.solvers.dynamics import Dynamics, Stop
-from granular_response.solvers.problem import Problem
-from granular_response.solvers.settle import PROTOCOL, settle
-from granular_response.solvers.timestep import resolve_time_step
-from granular_response.state import State
+from ..state import State
+from .dynamics import Dynamics, Stop
+from .problem import Problem
+from .settle import PROTOCOL, settle
+from .timestep import resolve_time_step
 
 
 def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration: float) -> State:
-    """The equilibrium after a number of taps, each of which begins when the slab is at rest again.
+    """The equilibrium after a number of taps, each of which begins when the packing is at rest again.
 
     In the frame of the box gravity goes from 1 to 1 + ``amplitude``, to 1 - ``amplitude`` and back to 1, in a
-    ``duration`` in sqrt(R/g) that is rounded to four times whole steps. Raises what ``solvers.settle.settle`` raises.
+    ``duration`` in sqrt(R/g) that is rounded to four times whole steps. Raises what :func:`.settle.settle` raises.
     """
     protocol = problem.scene.protocol
     stop = Stop(problem.plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)

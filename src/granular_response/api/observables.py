@@ -1,0 +1,271 @@
+"""Observables of the field for a result: its network, its forces, its stiffness, and where the work of a load goes.
+
+One definition of each, which documents and pictures share. The coordination number is the mean number of closed
+contacts of a disk, those with floor and walls included, over all disks; without rattlers it is over the disks that are
+none, and without the contacts of rattlers. Rattlers are disks with fewer than two contacts that bear more than 1e-8 mg,
+removed again and again.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..observe import network
+from ..scene.laboratory import FORCE, LENGTH
+from ..solvers.modes import lowest_modes
+from ..solvers.modes import stiffness_matrix as _stiffness
+from ..solvers.strain import Following, strained
+from ..solvers.work import slid, stored
+from ..solvers.work import work as done_by_loads
+from ..state import Contacts, State
+from ..store.result import common_candidates, load_coordinates
+from .result import Result
+
+_AXES = ["x", "z"]
+#: Strains and stresses in the order of moduli.
+_COMPONENTS = ["xx", "zz", "xz"]
+_ENERGY = f"{FORCE} * {LENGTH}"
+
+
+def _states(result: Result) -> tuple[State, ...]:
+    return (result.rest, *result.loaded)
+
+
+def _along(result: Result) -> dict[str, Any]:
+    factors = [state.load_factor for state in _states(result)]
+    return {"state_load_factor": ("state", factors, {"long_name": "load factor"})}
+
+
+def coordination_number(result: Result) -> xr.Dataset:
+    """The coordination number of each state, with and without rattlers.
+
+    Dimension ``state``: the initial equilibrium, then one for each load factor. ``coordination_number`` is the mean
+    number of closed contacts of a disk, those with floor and walls included, over all disks. ``without_rattlers``
+    leaves out ``rattlers`` disks with all their contacts: those with fewer than two contacts that bear more than
+    1e-8 mg, removed again and again. nan where all are rattlers.
+
+    Examples
+    --------
+    >>> found = gr.coordination_number(result)
+    >>> found["coordination_number"].values.round(3), found["rattlers"].values
+    (array([4.382, 4.382]), array([0, 0]))
+    """
+
+    def counted(state: State, without_rattlers: bool) -> float:
+        if without_rattlers and network.rattlers(state).all():
+            return float("nan")
+        return network.coordination_number(state, without_rattlers=without_rattlers)
+
+    states = _states(result)
+    columns = {
+        "coordination_number": [counted(state, False) for state in states],
+        "without_rattlers": [counted(state, True) for state in states],
+        "rattlers": [int(network.rattlers(state).sum()) for state in states],
+    }
+    return xr.Dataset({name: ("state", values) for name, values in columns.items()}, _along(result))
+
+
+def fabric_tensor(result: Result) -> xr.DataArray:
+    """The fabric tensor of each state: the mean of n n over closed contacts between disks, n their unit normal.
+
+    Dimensions ``state``, ``axis`` and ``other_axis``; its trace is 1, and half of the unit tensor is an isotropic
+    network. nan without contacts.
+
+    Examples
+    --------
+    >>> fabric = gr.fabric_tensor(result).isel(state=0)
+    >>> round(float(fabric.sel(axis="x", other_axis="x") + fabric.sel(axis="z", other_axis="z")), 12)
+    1.0
+    """
+    tensors = [network.fabric_tensor(state) for state in _states(result)]
+    coordinates = {**_along(result), "axis": _AXES, "other_axis": _AXES}
+    return xr.DataArray(np.stack(tensors), coordinates, ("state", "axis", "other_axis"), "fabric_tensor")
+
+
+def mobilization(result: Result) -> xr.Dataset:
+    """How much of the Coulomb limit each contact needs: |f_t| / (friction f_n), 1 where it is fully mobilized.
+
+    ``contact`` (state, contact) between disks and ``wall_contact`` (state, wall_contact) at floor and walls, in the
+    order of ``result.contacts``; nan where a contact is open, or has no friction.
+
+    Examples
+    --------
+    >>> found = gr.mobilization(result)["mobilization"]
+    >>> float(found.max()) <= 1.0 + 1e-9, float((found > 1 - 1e-6).sum("contact")[-1]) >= 0.0
+    (True, True)
+    """
+    scene, states = result.scene, common_candidates(_states(result), result.to_dataset()["radius"].values)
+
+    def along(kind: str, friction: float) -> np.ndarray:
+        return np.stack([_mobilized(getattr(state, kind), friction) for state in states])
+
+    return xr.Dataset(
+        {
+            "mobilization": (("state", "contact"), along("pairs", scene.contact.friction)),
+            "wall_mobilization": (("state", "wall_contact"), along("walls", scene.resolved_wall.friction)),
+        },
+        _along(result),
+    )
+
+
+def _mobilized(contacts: Contacts, friction: float) -> np.ndarray:
+    limit = np.where(contacts.touching & (contacts.normal_force > 0.0), friction * contacts.normal_force, 0.0)
+    return np.divide(np.abs(contacts.tangential_force), limit, out=np.full(len(limit), np.nan), where=limit > 0.0)
+
+
+def force_distribution(result: Result, *, state: int = -1, bins: int = 24, to: float = 6.0) -> xr.DataArray:
+    """The probability density P(f / <f>) of the normal forces of closed contacts between disks, over their mean.
+
+    Parameters
+    ----------
+    state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
+    bins, to : how many bins of equal width, from 0 to this multiple of the mean. Forces beyond it count in the norm.
+
+    Dimension ``force``: the middles of the bins; attributes ``mean_force`` in mg and ``contacts``.
+
+    Examples
+    --------
+    >>> density = gr.force_distribution(result, state=0, bins=12)
+    >>> density.sizes["force"], round(float(density.sum() * 0.5), 6)
+    (12, 1.0)
+    """
+    chosen = _states(result)[result._index(state)].pairs
+    if isinstance(bins, bool) or not isinstance(bins, (int, np.integer)) or bins < 1:
+        raise ValueError(f"bins = {bins!r}: must be a whole number, 1 or greater")
+    if not (np.isfinite(to) and to > 0.0):
+        raise ValueError(f"to = {to!r}: must be a finite number greater than 0")
+    forces = chosen.normal_force[chosen.touching]
+    if not len(forces) or not forces.mean() > 0.0:
+        raise ValueError("result: no contacts between disks that bear a force")
+    edges = np.linspace(0.0, to, int(bins) + 1)
+    density = np.histogram(forces / forces.mean(), edges)[0] / (len(forces) * np.diff(edges))
+    middles = ("force", 0.5 * (edges[1:] + edges[:-1]), {"long_name": "normal force over its mean"})
+    labels = {"long_name": "probability density", "mean_force": float(forces.mean()), "contacts": len(forces)}
+    return xr.DataArray(density, {"force": middles}, ("force",), "force_distribution", labels)
+
+
+def stiffness_matrix(result: Result, *, state: int = -1, sliding: str = "refuse") -> Any:
+    """The tangent stiffness K = -dF/dq of a stable state, as a ``scipy.sparse.csc_array`` in mg per mean radius.
+
+    Its unknowns are those of the disks one after another: x and z, and the angle where disks turn. With the turn of
+    contacts under the forces that they bear (geometric stiffness).
+
+    Parameters
+    ----------
+    state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
+    sliding : "refuse" a state with contacts at the Coulomb limit, or take them to "stick".
+
+    Raises as :meth:`Result.influence` does.
+
+    Examples
+    --------
+    >>> matrix = gr.stiffness_matrix(result, state=0, sliding="stick")
+    >>> matrix.shape == (3 * 34, 3 * 34)
+    True
+    """
+    return _stiffness(result._solved.problem, result._solved_state(state), sliding=sliding)
+
+
+def modes(result: Result, count: int = 6, *, state: int = -1, sliding: str = "refuse") -> xr.Dataset:
+    """The lowest vibrations of a stable state: K x = omega^2 M x, with the symmetric part of K.
+
+    Parameters
+    ----------
+    count : how many.
+    state, sliding : as of :func:`stiffness_matrix`.
+
+    Returns
+    -------
+    Dimensions ``mode``, ``disk`` and ``component`` ("x", "z" and, where disks turn, "angle"): ``frequency`` omega in
+    sqrt(g/R), and ``displacement`` with x M x = 1. Rattlers are left out, nan there; so is what a load holds.
+
+    Raises as :func:`stiffness_matrix` does, and ValueError for a ``count`` that there is not.
+
+    Examples
+    --------
+    >>> found = gr.modes(result, 3, state=0, sliding="stick")
+    >>> found["displacement"].dims, bool((found["frequency"].diff("mode") >= 0.0).all())
+    (('mode', 'disk', 'component'), True)
+    """
+    chosen, problem = result._solved_state(state), result._solved.problem
+    values, vectors = lowest_modes(problem, chosen, count, network.rattlers(chosen), sliding=sliding)
+    frequency = np.sqrt(np.maximum(values, 0.0))  # a disk that rolls freely has 0, up to rounding
+    return xr.Dataset(
+        {
+            "frequency": ("mode", frequency, {"long_name": "frequency", "units": "1 / reduced_time"}),
+            "displacement": (("mode", "disk", "component"), vectors),
+        },
+        {"component": ["x", "z", "angle"][: problem.freedoms]},
+    )
+
+
+def elastic_moduli(
+    result: Result, *, state: int = 0, following: Following = "free", margin: float = 0.25, prestress: bool = True
+) -> xr.DataArray:
+    """The elastic moduli of a packing between periodic sides: stress per small uniform strain, in mg per mean radius.
+
+    The lowest and the highest row move with the strain and the disks between them as equilibrium wants; both stress and
+    strain are averaged between, tension positive. Contacts at the Coulomb limit are taken to stick.
+
+    Parameters
+    ----------
+    state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
+    following : "free"; "suppressed" where no disk turns; "affine" where every disk moves with the strain.
+    margin : part of the rows that is left out at either end, below 1/2.
+    prestress : whether the turn of contacts under the forces that they bear counts.
+
+    Dimensions ``stress`` and ``strain``: "xx", "zz", "xz".
+
+    Raises ValueError for a packing without rows or periodic sides, granular_response.SolveError for a state that is not
+    stable.
+
+    Examples
+    --------
+    >>> slab = gr.Slab(layers=8, disks_per_row=8, sides="periodic", lattice_constant=1.999)
+    >>> lattice = gr.solve(gr.Scene(packing=slab, contact=gr.Contact(friction=0.0), loads=[]), progress=False)
+    >>> moduli = gr.elastic_moduli(lattice, prestress=False)
+    >>> ratio = moduli.sel(stress="xx", strain="xx") / moduli.sel(stress="xx", strain="zz")
+    >>> round(float(ratio), 1)  # lambda + 2 mu = 3 lambda
+    3.0
+    """
+    chosen = result._solved_state(state)
+    found = strained(result._solved.problem, chosen, following, margin=margin, prestress=prestress)
+    labels = {"long_name": "elastic moduli", "units": f"{FORCE} / {LENGTH}"}
+    coordinates = {"stress": _COMPONENTS, "strain": _COMPONENTS}
+    return xr.DataArray(found.moduli, coordinates, ("stress", "strain"), "elastic_moduli", labels)
+
+
+def work(result: Result) -> xr.Dataset:
+    """Where the work of the loads goes, from each state to the next: into stored energy, and into sliding; in mg R.
+
+    Dimension ``load``, as of ``floor_response``. ``work`` : that of the loads since the state before, their mean force
+    times the way of their disks. ``stored`` : what the energy of springs and weights has grown by. ``dissipated`` :
+    the difference. ``slid`` : the same loss from the slip of the contacts, an independent sum. Both are for a path of
+    equilibria, and have errors of third and second order in the distance of the states: ask :func:`solve` for load
+    factors close to each other, and compare the two. ``cumsum("load")`` sums them up.
+
+    Raises ValueError for a result without loads.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> growing = gr.solve(result.scene, load_factors=np.linspace(0.1, 1.0, 10), progress=False)
+    >>> total = gr.work(growing).sum("load")
+    >>> bool(total["work"] > 0.0), bool(abs(total["dissipated"] - total["slid"]) < 0.01 * total["work"])
+    (True, True)
+    """
+    if not result.loaded:
+        raise ValueError("result: no loads in this scene, so no work")
+    problem = result._solved.problem
+    states = common_candidates(_states(result), problem.packing.radius)
+    energy = np.array([stored(problem, state) for state in states])
+    steps = list(itertools.pairwise(states))
+    done = np.array([done_by_loads(problem, before, after) for before, after in steps])
+    lost = np.array([slid(problem, before, after).total for before, after in steps])
+    columns = {"work": done, "stored": np.diff(energy), "dissipated": done - np.diff(energy), "slid": lost}
+    data = {name: ("load", values, {"long_name": name, "units": _ENERGY}) for name, values in columns.items()}
+    return xr.Dataset(data, load_coordinates(result.load_factors))

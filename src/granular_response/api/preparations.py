@@ -1,0 +1,82 @@
+"""The response of a scene over preparations: with friction it depends on how the packing came to rest."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
+import xarray as xr
+
+from ..scene import Preparation, Scene, SceneError, Taps
+from ..scene.errors import show
+from ..sweeps.tasks import Progress
+from .result import Result, described
+from .sweep import floor_response, sweep
+
+#: Preparations that are compared unless others are given.
+WAYS: Mapping[str, Preparation] = MappingProxyType(
+    {
+        "at once": Preparation(),
+        "slow 20": Preparation(gravity="slow", ramp_time=20.0),
+        "slow 100": Preparation(gravity="slow"),
+        "slow 500": Preparation(gravity="slow", ramp_time=500.0),
+        "without friction": Preparation(gravity="frictionless"),
+        "tapped": Preparation(gravity="slow", taps=Taps()),
+    }
+)
+
+
+def preparations(
+    scene: Scene | Mapping[str, Any] | str | os.PathLike[str],
+    ways: Mapping[str, Preparation | Mapping[str, Any]] = WAYS,
+    measure: Callable[[Result], Any] = floor_response,
+    *,
+    load_factors: Sequence[float] | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    checkpoint: str | os.PathLike[str] | None = None,
+    progress: Progress | bool = True,
+) -> xr.Dataset:
+    """The response of a scene prepared in several ways, with its band over them.
+
+    Under a load that is not small, how gravity was applied decides more than most parameters do: a result for one
+    preparation is one of a band.
+
+    Parameters
+    ----------
+    ways : by name, a ``Preparation`` or a mapping of its keys. If left out: gravity at once (the paper's), grown over
+        20, 100 and 500 sqrt(R/g), a start without friction, and ten taps by 0.5 g after slow gravity.
+    scene, measure, load_factors, workers, scheduler, checkpoint, progress : as of :func:`sweep`.
+
+    Returns
+    -------
+    What :func:`sweep` returns, with the dimension ``preparation``; and of each measured number that depends on it,
+    ``..._low`` and ``..._high``, the ends of its band over preparations (those without an equilibrium left out).
+
+    Raises as :func:`sweep` does; SceneError for what is no preparation.
+
+    Examples
+    --------
+    >>> small = gr.Scene(packing=gr.Slab(layers=3, disks_per_row=7), loads=[gr.Load(disk="top-centre", force=(0, -1))])
+    >>> ways = {"at once": {}, "tapped": gr.Preparation(taps=gr.Taps(number=1))}
+    >>> found = gr.preparations(small, ways, workers=1)
+    >>> bool((found["floor_response_low"] <= found["floor_response_high"]).all())
+    True
+    """
+    if not isinstance(ways, Mapping) or not ways or not all(isinstance(name, str) for name in ways):
+        raise SceneError(f"ways = {show(ways)}: must be a mapping of names to preparations")
+    base, chosen = described(scene), []
+    for name, way in ways.items():
+        try:
+            chosen.append(base.updated({"preparation": way}).preparation)
+        except SceneError as error:
+            raise SceneError(f"ways[{name!r}]: {error}") from None
+    options: dict[str, Any] = {"load_factors": load_factors, "workers": workers, "scheduler": scheduler}
+    found = sweep(base, {"preparation": chosen}, measure, checkpoint=checkpoint, progress=progress, **options)
+    found = found.assign_coords(preparation=("preparation", list(ways), found["preparation"].attrs))
+    over = {name: one for name, one in found.data_vars.items() if "preparation" in one.dims and one.dtype.kind in "fiu"}
+    low = {f"{name}_low": one.min("preparation", keep_attrs=True) for name, one in over.items()}
+    high = {f"{name}_high": one.max("preparation", keep_attrs=True) for name, one in over.items()}
+    return found.assign(low | high)
