@@ -8,7 +8,16 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, WrapValidator, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    ValidationError,
+    WrapValidator,
+    model_serializer,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 
 from .errors import Problem, from_validation, suggestion
@@ -125,6 +134,22 @@ class Description(BaseModel, metaclass=_Public):
                     value=value,
                 )
         return {key: _plain(value) for key, value in data.items()}
+
+
+class Sparse(Description):
+    """A description of which some keys are written only where they are not the default.
+
+    So a scene that does not have what they say is written as if they did not exist.
+    """
+
+    sparse: ClassVar[tuple[str, ...]] = ()
+
+    @model_serializer(mode="wrap")
+    def _written(self, written: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        data: dict[str, Any] = written(self)
+        fields = type(self).model_fields
+        usual = {key for key in self.sparse if key in fields and getattr(self, key) == fields[key].default}
+        return {key: value for key, value in data.items() if key not in usual}
 
 
 def _plain(value: Any) -> Any:

@@ -9,13 +9,11 @@ from pydantic import (
     BeforeValidator,
     Field,
     SerializeAsAny,
-    SerializerFunctionWrapHandler,
     ValidationInfo,
     field_validator,
-    model_serializer,
 )
 
-from .base import Description, Ratio, Stiffness
+from .base import Description, Ratio, Sparse, Stiffness
 from .errors import Problem, suggestion
 
 
@@ -40,18 +38,7 @@ def _check_law(value: Any) -> Any:
     return value
 
 
-class Sparse(Description):
-    """A description of which some keys are written only where they are not the default.
-
-    So a scene that does not have this physics is written as if it did not exist.
-    """
-
-    sparse: ClassVar[tuple[str, ...]] = ("rolling_friction", "rolling_stiffness_ratio", "parameters")
-
-    @model_serializer(mode="wrap")
-    def _written(self, written: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        data: dict[str, Any] = written(self)
-        return {key: value for key, value in data.items() if key not in self.sparse or value not in (0.0, None, {})}
+_SPARSE = ("rolling_friction", "rolling_stiffness_ratio", "parameters")
 
 
 class Contact(Sparse):
@@ -66,6 +53,8 @@ class Contact(Sparse):
     >>> gr.Contact(friction=0.5, normal_stiffness=1000.0).tangential_stiffness
     800.0
     """
+
+    sparse: ClassVar[tuple[str, ...]] = _SPARSE
 
     law: Annotated[str, BeforeValidator(_check_law)] = Field(
         default="linear",
@@ -143,6 +132,8 @@ class Wall(Sparse):
     >>> gr.Scene(wall=gr.Wall(friction=0.3)).resolved_wall.normal_stiffness  # twice that between disks
     6000.0
     """
+
+    sparse: ClassVar[tuple[str, ...]] = _SPARSE
 
     normal_stiffness: Stiffness | None = Field(
         default=None, description="Stiffness of the normal spring; null: twice contact.normal_stiffness."
