@@ -22,6 +22,7 @@ from ..scene import Scene
 from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from ..scene.errors import show
+from ..scene.given import plain, unordered
 from ..scene.laboratory import FORCE, LENGTH
 from ..solvers.small_loads import influence
 from ..solvers.solution import Progress, Solution, continue_solution, solve_scene
@@ -494,7 +495,7 @@ def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scen
 def _places(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:
     """Coordinates of a grid along one axis."""
     try:
-        places = np.asarray(given, float)
+        places = np.array(np.nan if unordered(given) else plain(given), float)
     except (TypeError, ValueError):  # text, or rows of different lengths
         places = np.array(np.nan)
     if places.ndim != 1 or not np.isfinite(places).all():

@@ -11,6 +11,7 @@ from . import formats
 from .base import PackingDescription, Positive, Sides, Vector
 from .disks import packed
 from .errors import Problem
+from .given import plain
 from .packing import Packing
 
 
@@ -85,9 +86,9 @@ class ArrayPacking(PackingDescription):
 
 def listed(values: Any, count: int | None = None) -> Any:
     """An array, a table's column or a list as a list; a lone number ``count`` times where that is given."""
-    plain = list(values) if isinstance(values, (list, tuple)) else np.asarray(values).tolist()
-    lone = isinstance(plain, (int, float)) and not isinstance(plain, bool)
-    return [plain] * count if lone and count is not None else plain
+    found = plain(values)
+    lone = isinstance(found, (int, float)) and not isinstance(found, bool)
+    return [found] * count if lone and count is not None else found
 
 
 def shortened(scene: dict[str, Any]) -> dict[str, Any]:

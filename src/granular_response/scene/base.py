@@ -7,7 +7,6 @@ import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
-import numpy as np
 from pydantic import (
     BaseModel,
     ConfigDict,
@@ -21,6 +20,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 
 from .errors import Problem, from_validation, suggestion
+from .given import plain, unordered
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -133,7 +133,7 @@ class Description(BaseModel, metaclass=_Public):
                     key=(key if isinstance(key, str) else str(key),),
                     value=value,
                 )
-        return {key: _plain(value) for key, value in data.items()}
+        return {key: plain(value) for key, value in data.items()}
 
 
 class Sparse(Description):
@@ -152,19 +152,12 @@ class Sparse(Description):
         return {key: value for key, value in data.items() if key not in usual}
 
 
-def _plain(value: Any) -> Any:
-    """Numpy scalars and arrays as Python numbers and lists, so that sweeps may hand them over."""
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if isinstance(value, (list, tuple)):
-        return [part.item() if isinstance(part, np.generic) else part for part in value]
-    return value.item() if isinstance(value, np.generic) else value
-
-
 def allowed(phrase: str) -> WrapValidator:
     """Say ``phrase`` whatever is wrong with a value, in place of one message per rule or union member."""
 
     def check(value: Any, inner: Callable[[Any], Any]) -> Any:
+        if unordered(value):
+            raise Problem(phrase)
         try:
             return inner(value)
         except (ValidationError, OverflowError):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Any
@@ -13,6 +13,7 @@ import numpy as np
 from ..contact import Linear
 from ..errors import EquilibriumError
 from ..scene import Scene, SceneError
+from ..scene.given import plain, unordered
 from ..state import FloatArray, State
 from .choice import Choice, idle_settings
 from .dynamics import Dynamics, Stop, relax
@@ -215,7 +216,9 @@ def continue_solution(
 
 def load_programme(factors: Any) -> list[float]:
     """A load programme as numbers; raises ``SceneError`` when it is anything but one or more that are finite."""
-    given: list[Any] = list(factors) if np.iterable(factors) and not isinstance(factors, (str, bytes)) else [None]
+    ordered = np.iterable(factors) and not isinstance(factors, (str, bytes, Mapping)) and not unordered(factors)
+    given = plain(list(factors) if ordered and not hasattr(factors, "__array__") else factors)
+    given = given if ordered and isinstance(given, list) else [None]
     if not all(isinstance(factor, Real) and not isinstance(factor, (bool, np.bool_)) for factor in given):
         raise SceneError(f"load factors {factors!r}: must be a list of one or more numbers")
     try:
