@@ -30,12 +30,8 @@ MISSING = {
     "nan": np.array([1.0, np.nan]), "NA": pd.array([1.0, None], "Float64"), "NA int": pd.array([1, None], "Int64"),
     "Series": pd.Series([1, None], dtype="Int64"), "DataArray": xr.DataArray([1.0, np.nan]),
 }  # fmt: skip
-UNORDERED = {
-    "set": {1.0, 3.0},
-    "frozenset": frozenset(NUMBERS),
-    "keys": {1.0: 0, 3.0: 0}.keys(),
-    "dict": {1.0: 0, 3.0: 0},
-}
+NAMED = dict.fromkeys(NUMBERS)
+UNORDERED = {"set": {*NUMBERS}, "frozenset": frozenset(NUMBERS), "keys": NAMED.keys(), "dict": NAMED}
 BOX = {"radius": 1.0, "width": 8.0, "scene": {"loads": []}}
 POURED = {"packing": {"kind": "poured", "disks": 4, "width": 20}}
 
@@ -69,7 +65,7 @@ ENTRIES = {
     "z": lambda values: gr.Scene.from_arrays(x=[2, 6], z=values, **BOX).packing.z,
     "mass": lambda values: gr.Scene.from_arrays(x=[2, 6], z=[1, 1], mass=values, **BOX).packing.mass,
     "Arrays": lambda values: gr.Arrays(x=values, z=[1, 1], radius=[1, 1], width=8.0).x,
-    "origin": lambda values: gr.Scene.from_arrays(x=[5, 9], z=[8, 8], origin=values, radius=1, width=9.0).packing.origin,
+    "origin": lambda values: gr.Scene.from_arrays(x=[5], z=[8], origin=values, radius=1, width=9.0).packing.origin,
     "load_factors": programme, "continued": load_programme, "axis": lambda values: _values({"a.b": values})["a.b"],
     "force": force, "sizes": sizes, "fractions": fractions, "displacement": displacement,
     "places": lambda values: _places("x", values).tolist(),
@@ -100,7 +96,7 @@ def test_what_is_missing_is_no_number(entry, kind):
 @pytest.mark.parametrize("kind", UNORDERED)
 def test_what_has_no_order_is_no_list(entry, kind):
     """Sets were taken in the order of their hashes."""
-    with pytest.raises(ValueError, match="must be"):
+    with pytest.raises(ValueError, match="must be|no item"):
         ENTRIES[entry](UNORDERED[kind])
 
 
@@ -122,5 +118,5 @@ def test_other_things_stay_what_they_are():
     for value in (Decimal(1), "13", b"13", None, True, {"a": 1}, xr.Dataset()):
         assert plain(value) is value
     assert plain(np.array("a")) == "a" and plain([np.bool_(True), [np.int8(3)]]) == [True, [3]]
-    with pytest.raises(gr.SceneError, match="must be a list of finite numbers"):
+    with pytest.raises(gr.SceneError, match="must be a finite number"):
         gr.Scene.from_arrays(x=np.longdouble(["1", "1e400"]), z=[1, 1], **BOX)

@@ -185,9 +185,9 @@ def _dataset(measured: Measured) -> xr.Dataset:
         if isinstance(value, xr.DataArray):
             variables[name] = value
             continue
-        array = np.asanyarray(value)
-        if isinstance(array, np.ma.MaskedArray) and array.dtype.kind in "biuf":
-            array = array.astype(float).filled(np.nan)  # what is missing is not what stands under the mask
+        array = np.asarray(value)
+        if np.ma.is_masked(value) and array.dtype.kind in "biuf":  # what is missing is not what stands under the mask
+            array = np.where(np.ma.getmaskarray(value), np.nan, array)
         if array.dtype.kind not in "biufcSU":
             kind = type(value).__name__
             raise TypeError(f"measure: {name} is a {kind}, must be a number, an array, a DataArray or a Dataset")
