@@ -96,7 +96,7 @@ def test_what_is_missing_is_no_number(entry, kind):
 @pytest.mark.parametrize("kind", UNORDERED)
 def test_what_has_no_order_is_no_list(entry, kind):
     """Sets were taken in the order of their hashes."""
-    with pytest.raises(ValueError, match="must be|no item"):
+    with pytest.raises(ValueError, match=r"must be|no item"):
         ENTRIES[entry](UNORDERED[kind])
 
 

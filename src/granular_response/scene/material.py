@@ -34,7 +34,8 @@ KNOWN_LAWS = {"linear": KnownLaw(), "hertz": KnownLaw()}
 
 def _check_law(value: Any) -> Any:
     if not isinstance(value, str) or value not in KNOWN_LAWS:
-        raise Problem(f"must be {' or '.join(KNOWN_LAWS)}{suggestion(value, KNOWN_LAWS)}")
+        own = ", or a law of gr.register_law whose module is imported (--import MODULE)"
+        raise Problem(f"must be {' or '.join(KNOWN_LAWS)}{own}{suggestion(value, KNOWN_LAWS)}")
     return value
 
 
@@ -81,7 +82,9 @@ class Contact(Sparse):
     @field_validator("parameters", mode="plain")
     @classmethod
     def _check_parameters(cls, value: Any, info: ValidationInfo) -> Description:
-        known = KNOWN_LAWS[info.data.get("law", "linear")]  # another law was refused, and is left out of the data
+        if "law" not in info.data:  # it was refused, and nobody knows its parameters
+            return NoParameters()
+        known = KNOWN_LAWS[info.data["law"]]
         return known.parameters.model_validate(value.model_dump() if isinstance(value, Description) else value)
 
     def __getstate__(self) -> dict[Any, Any]:

@@ -23,7 +23,7 @@ from ..state.box import WALL_MEANINGS
 from .choice import Plan, plan
 from .close_pairs import close_pairs
 from .held import NOTHING, Held
-from .laws import law_class
+from .laws import check_parameters, law_class
 
 #: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
 #: is made again.
@@ -111,7 +111,9 @@ def _laws(scene: Scene) -> tuple[Law, Law]:
         )  # fmt: skip
         return whole if m.rubs else whole.without_friction()
 
-    return law(scene.contact, DISKS), law(scene.resolved_wall, AT_WALL)
+    pair, wall = law(scene.contact, DISKS), law(scene.resolved_wall, AT_WALL)
+    check_parameters(scene.contact.law, pair, wall)
+    return pair, wall
 
 
 def _rolling(contact: Contact) -> Rolling | None:
