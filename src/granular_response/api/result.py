@@ -416,7 +416,19 @@ class Result:
             stable = {True: "stable", False: "unstable", None: "stability not determined"}[state.certificate.stable]
             stable = stable if state.certificate.balanced else "not in balance"
             rows.append((name, f"{stable}, max. unbalanced force {state.certificate.force_residual:.1e}, {contacts}"))
-        return rows
+        return [*rows, *([moved] if (moved := self._moved()) else [])]
+
+    def _moved(self) -> tuple[str, str] | None:
+        """How far given disks have moved until the initial equilibrium; None for packings that are made."""
+        if self._solution:
+            moved = self._solution.problem.packing.moved(self.rest.position)
+        else:
+            moved = self._data["distance_from_given"].values[0] if "distance_from_given" in self._data else None
+        if moved is None:
+            return None
+        disk = int(np.argmax(moved))
+        text = f"median {np.median(moved):.2g}, largest {moved[disk]:.2g} mean radii (disk {disk})"
+        return "moved from the given places", text
 
     def _size(self) -> str:
         return f"{len(self.rest.position)} disks in a box {self.rest.box.width:g} wide"

@@ -186,6 +186,14 @@ Index = Annotated[
 Flag = Annotated[bool, Field(strict=True), allowed("must be true or false")]
 Sides = Annotated[Literal["walls", "periodic"], Field(description="Side walls, or periodic sides.")]
 
+Overlaps = Annotated[
+    Literal["kept", "removed"],
+    Field(
+        description="Of the given disks, kept: they are springs that are pressed, as in a packing that bears forces; "
+        "removed: disks that overlap, as measured ones do, are pushed apart gently before gravity acts."
+    ),
+]
+
 
 class PackingDescription(Description):
     """What all descriptions of packings share."""

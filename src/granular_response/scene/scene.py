@@ -181,6 +181,7 @@ class Scene(Description):
         width: float | None = None,
         origin: tuple[float, float] = (0.0, 0.0),
         sides: str = "walls",
+        overlaps: str = "kept",
         scene: Scene | Mapping[str, Any] | None = None,
     ) -> Scene:
         """A scene with a packing of one's own. The disks need not be in equilibrium: they fall first.
@@ -196,6 +197,7 @@ class Scene(Description):
             right wall touches the disk that reaches farthest.
         origin : x of the left wall and z of the floor.
         sides : "walls" or "periodic".
+        overlaps : "kept", or "removed" for measured disks: those that overlap are pushed apart before gravity acts.
         scene : all else, as a scene, whose packing is left out, or nested mappings with its other keys; that of
             ``Scene()`` if left out.
 
@@ -215,7 +217,7 @@ class Scene(Description):
         if isinstance(scene, Mapping) and "packing" in scene:
             raise SceneError("scene.packing: must be left out, the packing is that of the arrays")
         rest = scene.to_dict() if isinstance(scene, Scene) else scene or {}
-        packing = {"kind": "arrays", **columns, "width": width, "origin": origin, "sides": sides}
+        packing = {"kind": "arrays", **columns, "width": width, "origin": origin, "sides": sides, "overlaps": overlaps}
         return cls.from_dict({**rest, "packing": packing})
 
     @classmethod

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationInfo, model_validator
 
 from . import formats
-from .base import PackingDescription, Positive, Sides, Sparse, Vector, allowed
+from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
 from .disks import ROUNDING, packed
 from .errors import Problem, SceneError, describe, show
 from .formats import csv_table
@@ -75,7 +75,8 @@ class FilePacking(Sparse, PackingDescription):
         description="Which columns of a CSV table are meant, such as {z: Y, radius: R}; without it those of that name, "
         "and y for the height where there is no z, r for the radius, or diameter.",
     )
-    sparse: ClassVar[tuple[str, ...]] = ("columns",)
+    overlaps: Overlaps = "kept"
+    sparse: ClassVar[tuple[str, ...]] = ("columns", "overlaps")
 
     # Not part of the description: where it was read, so that a worker process finds the table too.
     _folder: str | None = PrivateAttr(default=None)

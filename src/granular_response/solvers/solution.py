@@ -35,6 +35,10 @@ LONGEST_WAY = 0.1
 #: Part of a response that may be rounding, from which on that is said.
 ROUNDED = 1e-3
 
+#: Distance from its given place (mean radii) from which on it is said that a disk has moved, and overlap of disks at
+#: the start from which on that may be why.
+FAR_FROM_GIVEN, OVERLAPS_OF_NOISE = 0.5, 0.01
+
 #: Reaction (mean disk weights) up to which a displaced disk counts as free of force.
 BALANCED = 1e-8
 
@@ -99,7 +103,24 @@ class Solution:
                 f"not certified: up to {out:.1g} of what a disk bears is out of balance ({plan.rest.reason}); "
                 "take a smaller protocol.stop_kinetic_energy"
             )
-        return [line for line in (*idle_settings(self.problem), self.unsettled or uncertified or rounded) if line]
+        lines = (*idle_settings(self.problem), self.unsettled or uncertified or rounded, self.displaced)
+        return [line for line in lines if line]
+
+    @property
+    def displaced(self) -> str:
+        """That given disks are no longer near where they were given, in one line; empty where all are."""
+        moved = self.problem.packing.moved(self.rest.position)
+        if moved is None or not moved.max() > FAR_FROM_GIVEN:
+            return ""
+        disk = int(moved.argmax())
+        cure = "are they whole, and do floor and walls stand where they did?"
+        pressed = float(self.problem.bare_state().pairs.overlap.max(initial=0.0))
+        if pressed > OVERLAPS_OF_NOISE and getattr(self.scene.packing, "overlaps", "removed") == "kept":
+            cure = f"they begin with overlaps of up to {pressed:.2g}, which packing.overlaps: removed takes out gently"
+        return (
+            f"disk {disk} comes to rest {moved[disk]:.2g} mean radii from where it was given, half of the disks "
+            f"move by more than {np.median(moved):.2g}; {cure}"
+        )
 
     @property
     def unsettled(self) -> str:

@@ -307,6 +307,8 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "applied_load": problem.load,
         "total_force": applied,
     }
+    if packing.given is not None:
+        numbers["distance_from_given"] = np.stack([packing.moved(state.position) for state in own])
     if loaded and len(problem.held):
         numbers["reaction"] = np.stack([solution.reaction(state) for state in solution.loaded])
     data |= {name: described(name, values) for name, values in numbers.items()}
