@@ -1,4 +1,4 @@
-"""Files that are read: regular ones, whole, as text in UTF-8 or as JSON."""
+"""Files that are read: regular ones, whole, as bytes, as text in UTF-8 or as JSON. Nothing else opens one to read."""
 
 from __future__ import annotations
 
@@ -12,17 +12,31 @@ from typing import Any
 
 def check_regular(path: str | os.PathLike[str]) -> None:
     """Raise the OSError of what cannot be read whole: nothing there, a folder, a device or a pipe (no end)."""
-    kind = os.stat(path).st_mode
+    _check_mode(os.stat(path).st_mode, path)
+
+
+def _check_mode(kind: int, path: str | os.PathLike[str]) -> None:
     if stat.S_ISDIR(kind):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), os.fspath(path))
     if not stat.S_ISREG(kind):
         raise OSError(errno.EINVAL, "is not a regular file", os.fspath(path))
 
 
+def read_bytes(path: str | os.PathLike[str]) -> bytes:
+    """What a regular file holds; what was opened is looked at, so nothing else can take its place. OSError."""
+    # a pipe would wait to be opened
+    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    try:
+        _check_mode(os.fstat(descriptor).st_mode, path)
+        with open(descriptor, "rb", closefd=False) as file:
+            return file.read()
+    finally:
+        os.close(descriptor)
+
+
 def read_text(path: Path) -> str:
     """The text of a file, without a mark of byte order, with line ends as they are. OSError, UnicodeError."""
-    check_regular(path)
-    return path.read_bytes().decode("utf-8-sig")
+    return read_bytes(path).decode("utf-8-sig")
 
 
 def read_json(path: Path) -> Any:

@@ -210,7 +210,7 @@ def test_a_combination_without_equilibrium_is_missing_and_says_why():
         ({"contact.friction": [0.1, 0.1]}, None, ValueError, r"contact.friction has 0.1 twice, must have different"),
         ({"contact.friction": [0, 0.0]}, None, ValueError, r"contact.friction has 0.0 twice"),
         ({"contact.friction": [np.float64(1), 1]}, None, ValueError, r"contact.friction has 1 twice"),
-        ({"loads.0.force": [[0, -1], (0.0, -1.0)]}, None, ValueError, r"loads.0.force has \(0.0, -1.0\) twice"),
+        ({"loads.0.force": [[0, -1], (0.0, -1.0)]}, None, ValueError, r"loads.0.force has \[0.0, -1.0\] twice"),
         ({"protocol.static_finish": [True, True]}, None, ValueError, r"static_finish has true twice"),
         ({"protocol.static_finish": [True, 1]}, None, SceneError, r"static_finish = 1"),  # others, and not allowed
         ({"contact.friction": 0.1}, None, ValueError, r"^axes: contact.friction = 0.1, must be a list of values$"),

@@ -156,6 +156,8 @@ Atoms # sphere
 Velocities
 
 1 0 0 0 0 0 0
+2 0 0 0 0 0 0
+3 0 0 0 0 0 0
 """
 DUMP = """\
 ITEM: TIMESTEP
@@ -257,6 +259,116 @@ def test_yade_in_either_plane(tmp_path):
     for text in ("# by hand\n1 0 1 1\n3 0 1.5 1\n", "#format x_y_z_r_matId\n1 1 2 1 0\n3 1.5 2 1 0\n"):
         packing = build(tmp_path / "a.txt", text, width=9.0)
         np.testing.assert_allclose(packing.position, [[1, 1], [3, 1.5]])
+
+
+#: Files that hold more than is counted, or say a thing twice, with what is said of them.
+HEADER = "ITEM: ATOMS id xs yu z diameter mass"
+CONTRADICTIONS = [
+    # rows that would be lost
+    ("a.dump", DUMP + "3 0.6 0 3.0 2.0 1.0\n", "line 19: holds 3 of 2 atoms in its last frame"),
+    ("a.dump", DUMP.replace("1 1 0.5", "2 1 0.2 0.2 0 0.1\n1 1 0.5"), "line 9: holds 2 of 1 atoms in its frame 1 of 2"),
+    ("a.dump", DUMP.replace("ATOMS\n2", "ATOMS\n0_2"), "line 14: '0_2': must be the number of atoms"),
+    ("a.dump", DUMP.replace("ATOMS\n2", "ATOMS\n2\n2"), "line 13: must be followed by one line, not 2"),
+    ("a.dump", DUMP.replace("-1 1\n2 12", "-1 1\n2 12\n0 5"), "line 15: must be followed by three lines of bounds"),
+    ("a.dump", "a title\n" + DUMP, "is not a LAMMPS dump file of text, must begin with ITEM: TIMESTEP"),
+    ("a.dump", DUMP + "ITEM: CHARGES\n1\n", "line 22: ITEM: CHARGES: is no item of a dump of atoms"),
+    ("a.data", DATA + "4 0 0 0 0 0 0\n", "section Velocities has 4 lines, must have 3, as the header atoms says"),
+    ("a.data", DATA.replace("\nVelocities\n", ""), "as many atoms as it says (found 6)"),
+    ("a.data", DATA.replace("1 1.0\n\nAtoms", "1 1.0\n2 1.0\n\nAtoms"), "section Masses has 2 lines, must have 1"),
+    ("a.data", DATA.replace("3 atoms", "0_3 atoms"), "line 3: '0_3 atoms': is no header of a LAMMPS data file"),
+    ("a.data", DATA.replace("4 atom types", "x").replace("1 atom types", "7 8 9"), "'7 8 9': is no header"),
+    ("a.data", DATA + "\nDisks\n\n1 1\n", "line 26: 'Disks': is no section that atoms of style sphere have"),
+    ("a.csv", 'x,z,radius,note\n1,1,1,a\n3,1,1,"big\n5,1,1,c\n7,1,1,d\n',
+     "line 3: is not CSV: a quote that is not closed in its line"),
+    ("a.csv", 'x,z,radius,note\n1,1,1,"a\n3,1,1,b"\n', "line 2: is not CSV: a quote that is not closed in its line"),
+    ("a.csv", '#,"a comment\nx,z,radius\n1,1,1\n#,"\n1_0,1,1\n', "line 5: x = '1_0': must be a finite number"),
+    ("a.csv", "x,z,radius\n1,1,\u0663\n", "must be a finite number"),
+    ("a.txt", "1 0 1 1\n3 0 1 1 0.5\n", "line 2: has 5 values, must have x y z r"),
+    ("a.txt", "#format x_y_z_r\n1 0 1 1 99 98\n", "line 2: has 6 values, must have x y z r"),
+    ("a.txt", "#format x_y_z_r_attrs\n1 0 1 1 5 6\n3 0 1 1 7\n", "line 3: has 5 values, must have x y z r attrs"),
+    # tables that say a thing twice
+    ("a.dump", DUMP.replace("id xs", "id xs xs").replace("0.1 0", "0.1 0.2 0").replace("0.4 0", "0.4 0.4 0"),
+     "line 19: column xs is given 2 times, as columns 2 and 3; must be given once"),
+    ("a.dump", DUMP.replace("id xs", "id x xs").replace("0.1 0", "1 0.1 0").replace("0.4 0", "-1 0.4 0"),
+     "line 20: columns x and xs contradict each other; must agree, or be one of the two"),
+    ("a.dump", DUMP.replace("diameter", "radius diameter").replace("2.0 1.0", "1 2.0 1").replace("3.0 5.0", "1 3.0 5"),
+     "line 21: columns radius and diameter contradict each other; must agree, or be one of the two"),
+    ("a.dump", DUMP.replace("r mass", "r density mass").replace("2.0 1.0", "2 1 1").replace("3.0 5.0", "3 1 5"),
+     "line 19: columns mass and density: must have one of them"),
+    ("a.dump", DUMP + HEADER + "\n1 0.1 0 3.0 2.0 1.0\n2 0.4 0 3.5 3.0 5.0\n",
+     "line 22: ITEM: ATOMS: is given twice in a frame, in line 19 and here"),
+    ("a.data", DATA.replace("3 atoms", "2 atoms\n3 atoms"), "line 4: atoms: is given twice, in line 3 and here"),
+    ("a.data", DATA.replace("-5.0 5.0 ylo yhi", "0 9 xlo xhi"),
+     "line 7: bounds in x: is given twice, in line 6 and here"),
+    ("a.data", DATA + DATA[DATA.index("Atoms") :], "line 25: section Atoms: is given twice, in line 14 and here"),
+    ("a.data", DATA.replace("made by hand", "granular-response: 3 disks, width 8.0, sides walls"),
+     "line 1: says width 8.0, the bounds xlo xhi 10.0 to 20.0; must agree"),
+    ("a.csv", "x,z,radius\n1,1,1\nx,z,radius\n3,1,1\n", "line 3: header: is given twice, in line 1 and here"),
+    ("a.csv", "x,z,radius,diameter\n1,1,1,2\n3,1,1,4\n", "line 3: columns radius and diameter contradict each other"),
+    ("a.csv", "x,z,radius,R\n1,1,1,2\n", "column radius stands in radius and R, header must name x, z and radius"),
+    ("a.csv", "x,y,z,radius\n1,1,1,1\n3,2,2,1\n", "disks must lie in one plane, y or z must be the same for all"),
+    ("a.csv", "# granular-response: 1 disks, width 9.0, sides walls\nx,z,radius,99\n1,1,1,5\n",
+     "column mass is missing, which tables of granular-response have"),
+    ("a.csv", 2 * "# granular-response: 1 disks, width 9.0, sides walls\n" + "x,z,radius\n1,1,1\n",
+     "line 2: mark of granular-response: is given twice, in line 1 and here"),
+    ("a.txt", "#format x_y_z_r_r\n1 0 1 1 0.5\n", "line 1: format names 'r' 2 times, must name it once"),
+    ("a.txt", "#format x_y_z_r\n#format r_x_y_z\n1 0 1 1\n", "line 2: #format: is given twice, in line 1 and here"),
+    ("a.txt", "1 0 1 1\n#format x_y_z_r\n", "line 2: format must be one word such as x_y_z_r, above the spheres"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "text", "said"), CONTRADICTIONS)
+def test_no_row_is_lost_and_nothing_is_said_twice(tmp_path, name, text, said):
+    """Each was taken without a word: the first value won, or the last, and further rows were gone."""
+    with pytest.raises(SceneError) as caught:
+        build(tmp_path / name, text, **({"width": 9.0} if name not in ("a.data", "a.dump") else {}))
+    assert said in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_what_is_said_twice_alike_is_taken(tmp_path):
+    """Also the numbers of values that a format of YADE leaves open."""
+    text = DUMP.replace("id xs yu z diameter", "id x xs yu z radius diameter")
+    text = text.replace("1 0.1 0 3.0", "1 -4 0.1 0 3.0 1.0").replace("2 0.4 0 3.5", "2 -1.00001 0.4 0 3.5 1.5")
+    plain = build(tmp_path / "b.dump", DUMP)
+    np.testing.assert_allclose(build(tmp_path / "a.dump", text).position, plain.position, atol=1e-4)
+    packing = build(tmp_path / "a.txt", "#format x_y_z_r_attrs\n1 0 1 1 5 6\n3 0 1.5 1 7 8\n", width=9.0)
+    np.testing.assert_allclose(packing.position, [[1, 1], [3, 1.5]])
+    text = "x,y,z,radius,diameter\n1,1,0,1,2\n3,1.5,0,1,2\n"  # a camera's plane
+    np.testing.assert_allclose(build(tmp_path / "a.csv", text, width=9.0).position, [[1, 1], [3, 1.5]])
+
+
+@pytest.mark.parametrize(
+    ("header", "columns"),
+    [("id,X [mm],Y [mm],R [mm]", None), ("id,x,y,d", None), ("id,x,height,size", {"z": "Height", "radius": "size"}),
+     ("z,x,y,radius", {"z": "y"}), ("radius,X,up,R", {"radius": "R", "z": "up"})],
+)  # fmt: skip
+def test_columns_as_cameras_and_scenes_name_them(tmp_path, header, columns):
+    size = 2 if header.endswith(",d") else 1
+    packing = build(tmp_path / "a.csv", f"{header}\n9,1,1,{size}\n8,3,1.5,{size}\n", width=9.0, columns=columns)
+    np.testing.assert_allclose(packing.position, [[1, 1], [3, 1.5]])
+    assert packing.radius.tolist() == [1.0, 1.0]
+    scene = Scene.from_dict({"packing": {"kind": "file", "path": "a.csv", "width": 9, "columns": columns}})
+    assert Scene.from_text(scene.to_yaml()) == scene and ("columns" in scene.to_yaml()) == (columns is not None)
+
+
+@pytest.mark.parametrize(
+    ("columns", "said"),
+    [({"z": "up"}, "columns.z = 'up': there is no such column; there are x, Y, y, r; packing.columns says"),
+     ({"x": "x", "z": "y"}, None), ({"z": "y", "x": "y"}, "packing.columns = "),
+     ({"height": "y"}, "packing.columns = "),
+     ({"z": ""}, "packing.columns = "), ({}, "packing.columns = "), (["y"], "packing.columns = ")],
+)  # fmt: skip
+def test_columns_that_are_not_there_are_named(tmp_path, columns, said):
+    (tmp_path / "a.csv").write_text("x,Y,y,r\n1,5,1,1\n")
+    given = {"packing": {"kind": "file", "path": "a.csv", "width": 9, "columns": columns}, "loads": []}  # fmt: skip
+    if said is None:
+        assert Scene.from_dict(given, folder=tmp_path).packing.build().position.tolist() == [[1.0, 1.0]]
+        return
+    with pytest.raises(SceneError) as caught:
+        Scene.from_dict(given, folder=tmp_path).packing.build()
+    assert said in str(caught.value)
+    with pytest.raises(SceneError, match=r"^columns = .*format yade says what its columns are$"):
+        FilePacking(path="a.txt", columns={"z": "y"})
 
 
 def test_gsd_of_others_has_its_origin_in_the_middle(tmp_path):
@@ -540,7 +652,8 @@ def test_a_start_deep_inside_others_is_asked_about(tmp_path):
         solve_scene(Scene.from_dict({"packing": packing, "loads": []}, folder=tmp_path))
     assert str(caught.value) == (
         "packing: disks 0 and 1 (counted from 0) overlap by 1 mean radii at the start, must be at most 0.5, half the "
-        "smaller radius; are radii diameters, and walls and floor where they should be?"
+        "smaller radius; are radii diameters, and walls and floor where they should be? For measured disks "
+        "packing.overlaps: removed takes overlaps of up to a radius out"
     )
     (tmp_path / "a.csv").write_text("x,z,radius\n0.4,1,1\n3,1,1\n5,1,1\n")
     with pytest.raises(SceneError, match=r"^packing: disk 0 and the left wall \(counted from 0\) overlap by 0\.6 mean"):

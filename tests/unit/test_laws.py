@@ -1,24 +1,32 @@
 """What every contact law must fulfil, and the 3/2 law by hand (Sec. III.B)."""
 
 import math
+import os
 import pickle
+import subprocess
 import sys
 
 import numba as nb
 import numpy as np
 import pytest
 from demonstration import Cohesion, Cohesive, Cubic
+from places import ROOT
+from pydantic import Field
 
 import granular_response as gr
 from granular_response.cli import scene_reference
 from granular_response.contact import LAWS
+from granular_response.contact.consistent import contradiction
 from granular_response.contact.law import elastic_force, energy, stiffness
+from granular_response.machine.lanes import select
 from granular_response.scene import Scene, SceneError
+from granular_response.scene.base import Description, NonNegative
 from granular_response.scene.material import KNOWN_LAWS
 from granular_response.solvers.laws import law_class
 from granular_response.solvers.problem import Problem
 from granular_response.sweeps.keys import key
 
+PATHS = os.pathsep.join([str(ROOT / "src"), str(ROOT / "tests")])
 #: Those of the package, and one that lives outside.
 NAMES = [*LAWS, "cohesive"]
 
@@ -200,3 +208,130 @@ def test_a_softened_law_feels_a_part_of_the_force_at_a_part_of_the_overlap(name)
     shape = shape_of(one)
     softened = asked(one.softened(part), overlap, shape)[0]
     assert softened == pytest.approx(part * asked(one, part * overlap, shape)[0], rel=1e-12)
+
+
+class Stronger(Cubic):
+    """With a force that is not the derivative of its energy."""
+
+    def elastic_force(self, overlap, shape):
+        return 1.3 * self.factor * overlap * overlap * overlap
+
+
+class Softer(Cubic):
+    def stiffness(self, overlap, shape):
+        return 2.0 * self.factor * overlap * overlap
+
+
+class Potential(Cubic):
+    """Half the energy beyond an overlap of 0.01."""
+
+    def energy(self, overlap, shape):
+        return select(overlap > 0.01, 0.125, 0.25) * self.factor * overlap * overlap * overlap * overlap
+
+
+class Undefined(Cubic):
+    def stiffness(self, overlap, shape):
+        return math.inf
+
+
+class Kinked(Cubic):
+    """Twice as stiff from an overlap of 0.001 on, which is a law like others."""
+
+    def elastic_force(self, overlap, shape):
+        return self.normal_stiffness * (overlap + select(overlap > 1e-3, overlap - 1e-3, 0.0))
+
+    def stiffness(self, overlap, shape):
+        return self.normal_stiffness * select(overlap > 1e-3, 2.0, 1.0)
+
+    def energy(self, overlap, shape):
+        beyond = select(overlap > 1e-3, overlap - 1e-3, 0.0)
+        return 0.5 * self.normal_stiffness * (overlap * overlap + beyond * beyond)
+
+
+class Growth(Description):
+    growth: NonNegative = Field(default=0.0, description="Of the force with the overlap.")
+
+
+class Growing(Cohesive):
+    """A force that grows, of which the energy knows nothing: right by its default alone."""
+
+    @classmethod
+    def of(cls, *constants, growth):
+        return cls(*constants[:-1], growth)
+
+    def elastic_force(self, overlap, shape):
+        return self.normal_stiffness * overlap * (1.0 + self.strength * overlap)
+
+    def stiffness(self, overlap, shape):
+        return self.normal_stiffness * (1.0 + 2.0 * self.strength * overlap)
+
+    def energy(self, overlap, shape):
+        return 0.5 * self.normal_stiffness * overlap * overlap
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (Stronger, r"Stronger: elastic_force is \S+ at overlap 1\.01e-06, where the derivative of energy is \S+$"),
+        (Softer, r"Softer: stiffness is .* at overlap 1\.01e-06, where the derivative of elastic_force is"),
+        (Potential, r"Potential: elastic_force is .* at overlap 0\.0\d+, where the derivative of energy is"),
+        (Undefined, r"Undefined: energy, elastic_force or stiffness is no finite number at overlap"),
+    ],
+)
+def test_a_law_that_contradicts_itself_is_refused(wrong, said):
+    """It was taken, and states were called stable by its stiffness."""
+    with pytest.raises(gr.GranularError, match=said):
+        gr.register_law("wrong", wrong)
+    assert "wrong" not in KNOWN_LAWS
+
+
+def test_a_law_with_a_kink_is_taken_and_those_of_the_package_are_right():
+    gr.register_law("kinked", Kinked)
+    del KNOWN_LAWS["kinked"]
+    for name in NAMES:
+        assert contradiction(law(name)) == "" == contradiction(law(name, 1.0).without_friction())
+
+
+def test_parameters_with_which_a_law_contradicts_itself_are_refused():
+    gr.register_law("growing", Growing, Growth)
+    try:
+        scene = Scene().updated({"contact.law": "growing"})
+        Problem.from_scene(scene)
+        with pytest.raises(SceneError, match=r"^contact\.parameters: with these of law growing elastic_force is"):
+            Problem.from_scene(scene.updated({"contact.parameters.growth": 5.0}))
+    finally:
+        del KNOWN_LAWS["growing"]
+
+
+SCENE = """
+packing: {kind: arrays, x: [1.0], z: [1.0], radius: [1.0], width: 2.5}
+contact: {law: mine, friction: 0.0}
+loads: [{disk: 0, force: [0.0, -1.0]}]
+"""
+
+
+def test_a_law_of_ones_own_on_the_command_line(tmp_path):
+    """Its module is named by the option, and in what is said of a result whose law is not known."""
+    (tmp_path / "law_of_mine.py").write_text(MINE)
+    (tmp_path / "scene.yaml").write_text(SCENE)
+
+    def said(*arguments):
+        line = [sys.executable, "-m", "granular_response", *arguments]
+        paths = {**os.environ, "PYTHONPATH": PATHS}
+        done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, env=paths)
+        return done.returncode, done.stderr
+
+    code, line = said("run", "scene.yaml", "-o", "a.nc")
+    assert code == 2 and "contact.law = 'mine': must be linear or hertz, or a law of gr.register_law" in line
+    assert "more mistake" not in line
+    assert said("run", "scene.yaml", "-o", "a.nc", "--import", "law_of_mine") == (0, "")
+    further = ("continue", "a.nc", "--to", "2", "-o", "b.nc")
+    needed = "granular-response: a.nc: contact.law = 'mine': is a law of the module law_of_mine, which must be imported"
+    code, line = said(*further)
+    assert code == 2 and line.startswith(needed)
+    assert said(*further, "--import", "law_of_mine")[0] == 0
+    with pytest.raises(gr.GranularError, match=r"is a law of the module law_of_mine"):
+        _ = gr.open_result(tmp_path / "a.nc").scene
+    code, line = said(*further, "--import", "law_of_yours")
+    missing = "granular-response: --import law_of_yours: ModuleNotFoundError: No module named 'law_of_yours'\n"
+    assert (code, line) == (2, missing)

@@ -50,10 +50,19 @@ def test_layout_of_the_file(build):
     [
         ("", "has no disks, must have a header x,z,radius and a line for each disk"),
         ("x,z,radius\n", "has no disks, must have a header x,z,radius and a line for each disk"),
-        ("x,z\n1,1\n", "column radius is missing, header must name x, z and radius"),
-        ("1,1,1\n", "column x is missing, header must name x, z and radius"),
+        (
+            "x,z\n1,1\n",
+            "column radius is missing, header must name x, z and radius; there are x, z; packing.columns says which "
+            "are meant, as {z: Y, radius: R}",
+        ),
+        (
+            "id,X,height,size\n1,1,1,1\n",
+            "columns z and radius are missing, header must name x, z and radius; there are id, X, height, size; "
+            "packing.columns says which are meant, as {z: Y, radius: R}",
+        ),
+        ("1,1,1\n", "columns x, z and radius are missing, header must name x, z and radius"),
         ("x,z,radius,x\n", "column x is given 2 times, header must name x, z and radius"),
-        ("root:x:0:0:root,1\n", "column x is missing, header must name x, z and radius"),
+        ("root:x:0:0:root,1\n", "columns x, z and radius are missing, header must name x, z and radius"),
         ("x,z,radius\n1,1,1\n3,1\n", "line 3: has 2 values, must have 3 as the header"),
         ("x,z,radius\n1,1,1,1\n", "line 2: has 4 values, must have 3 as the header"),
         ("x,z,radius\n\n1,one,1\n", "line 3: z = 'one': must be a finite number"),

@@ -22,6 +22,7 @@ from ..scene import Scene
 from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from ..scene.errors import show
+from ..scene.given import plain, unordered
 from ..scene.laboratory import FORCE, LENGTH
 from ..solvers.small_loads import influence
 from ..solvers.solution import Progress, Solution, continue_solution, solve_scene
@@ -421,7 +422,19 @@ class Result:
             stable = {True: "stable", False: "unstable", None: "stability not determined"}[state.certificate.stable]
             stable = stable if state.certificate.balanced else "not in balance"
             rows.append((name, f"{stable}, max. unbalanced force {state.certificate.force_residual:.1e}, {contacts}"))
-        return rows
+        return [*rows, *([moved] if (moved := self._moved()) else [])]
+
+    def _moved(self) -> tuple[str, str] | None:
+        """How far given disks have moved until the initial equilibrium; None for packings that are made."""
+        if self._solution:
+            moved = self._solution.problem.packing.moved(self.rest.position)
+        else:
+            moved = self._data["distance_from_given"].values[0] if "distance_from_given" in self._data else None
+        if moved is None:
+            return None
+        disk = int(np.argmax(moved))
+        text = f"median {np.median(moved):.2g}, largest {moved[disk]:.2g} mean radii (disk {disk})"
+        return "moved from the given places", text
 
     def _size(self) -> str:
         return f"{len(self.rest.position)} disks in a box {self.rest.box.width:g} wide"
@@ -500,7 +513,7 @@ def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scen
 def _places(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:
     """Coordinates of a grid along one axis."""
     try:
-        places = np.asarray(given, float)
+        places = np.array(np.nan if unordered(given) else plain(given), float)
     except (TypeError, ValueError):  # text, or rows of different lengths
         places = np.array(np.nan)
     if places.ndim != 1 or not np.isfinite(places).all():

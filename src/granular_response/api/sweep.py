@@ -18,6 +18,7 @@ from ..errors import SolveError
 from ..scene import Scene
 from ..scene.base import Description
 from ..scene.errors import show
+from ..scene.given import plain, unordered
 from ..solvers.solution import Solution, checked_problem, load_programme, solve_scene
 from ..store.files import CHARACTERS, TEXT
 from ..store.result import COORDINATES
@@ -125,22 +126,22 @@ def _values(axes: Any) -> dict[str, list[Any]]:
     values = {}
     for key, given in axes.items():
         # text and mappings can be iterated over too, but by letters and by names
-        if isinstance(given, (str, bytes, Mapping)) or not np.iterable(given):
+        if isinstance(given, (str, bytes, Mapping)) or not np.iterable(given) or unordered(given):
             raise ValueError(f"axes: {key} = {show(given)}, must be a list of values")
-        values[key] = list(given)
+        values[key] = list(plain(given))
         if not values[key]:
             raise ValueError(f"axes: {key} has no values, must have one or more")
         seen = set()
         for value in values[key]:
             if (same := _comparable(value)) in seen:
-                raise ValueError(f"axes: {key} has {show(_plain(value))} twice, must have different values")
+                raise ValueError(f"axes: {key} has {show(plain(value))} twice, must have different values")
             seen.add(same)
     return values
 
 
 def _comparable(value: Any) -> Any:
     """What is equal, and has the same hash, for equal values: numbers as numbers, but truth values apart from them."""
-    value = _plain(value)
+    value = plain(value)
     if isinstance(value, Description):
         return "description", type(value).__name__, _comparable(value.model_dump(mode="json"))
     if isinstance(value, bool):
@@ -186,6 +187,8 @@ def _dataset(measured: Measured) -> xr.Dataset:
             variables[name] = value
             continue
         array = np.asarray(value)
+        if np.ma.is_masked(value) and array.dtype.kind in "biuf":  # what is missing is not what stands under the mask
+            array = np.where(np.ma.getmaskarray(value), np.nan, array)
         if array.dtype.kind not in "biufcSU":
             kind = type(value).__name__
             raise TypeError(f"measure: {name} is a {kind}, must be a number, an array, a DataArray or a Dataset")
@@ -338,13 +341,9 @@ def _names(values: Iterable[str]) -> dict[str, str]:
 
 def _coordinate(values: Sequence[Any]) -> np.ndarray:
     """Values as a coordinate: numbers as numbers, text and numbers as text, others by their place."""
-    plain = [_plain(value) for value in values]
-    if all(type(value) is bool for value in plain) or all(type(value) in (int, float) for value in plain):
-        return np.array(plain)
-    if all(isinstance(value, (bool, int, float, str)) for value in plain):
-        return np.array([str(value) for value in plain])
-    return np.arange(len(plain))
-
-
-def _plain(value: Any) -> Any:
-    return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
+    found = plain(list(values))
+    if all(type(value) is bool for value in found) or all(type(value) in (int, float) for value in found):
+        return np.array(found)
+    if all(isinstance(value, (bool, int, float, str)) for value in found):
+        return np.array([str(value) for value in found])
+    return np.arange(len(found))

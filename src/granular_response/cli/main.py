@@ -6,13 +6,14 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from .. import __version__
-from ..errors import SolveError
+from ..errors import GranularError, SolveError
 from .command_line import CommandLine, loaded, output_option
 
 if TYPE_CHECKING:
@@ -62,6 +63,25 @@ AllowUnsettled = Annotated[
 Threads = Annotated[
     int | None,
     typer.Option(min=1, help="Threads for large packings, all cores if not given; results are bitwise the same."),
+]
+
+
+def _import(names: list[str] | None) -> None:
+    """Import modules that register contact laws, of the current folder too, as ``python -m`` would."""
+    sys.path.insert(0, "")
+    for name in names or ():
+        try:
+            import_module(name)
+        except GranularError as error:
+            raise GranularError(f"--import {name}: {error}") from error
+        except Exception as error:
+            raise GranularError(f"--import {name}: {type(error).__name__}: {' '.join(str(error).split())}") from error
+    sys.path.remove("")
+
+
+Import = Annotated[
+    list[str] | None,
+    typer.Option("--import", help="Module that registers a contact law of the scene; repeated.", callback=_import),
 ]
 
 
@@ -120,7 +140,11 @@ def _computing(threads: int | None) -> Iterator[TerminalProgress]:
         yield progress
 
 
-@commands.command("run examples/slab.yaml -o slab.nc", "run scene.yaml -o scene-by-dynamics.nc --method dynamics")
+@commands.command(
+    "run examples/slab.yaml -o slab.nc",
+    "run scene.yaml -o scene-by-dynamics.nc --method dynamics",
+    "run own-law.yaml -o own-law.nc --import my_laws",
+)
 def run(
     scene: Annotated[Path, typer.Argument(help="Scene file (YAML).")],
     output: ResultFile,
@@ -129,6 +153,7 @@ def run(
     ] = None,
     threads: Threads = None,
     allow_unsettled: AllowUnsettled = False,
+    imported: Import = None,
 ) -> None:
     """Solve a scene and store the result.
 
@@ -167,6 +192,7 @@ def continue_(
     folder: Annotated[Path, typer.Option(help="Folder of the scene file, for a packing from a table.")] = Path("."),
     threads: Threads = None,
     allow_unsettled: AllowUnsettled = False,
+    imported: Import = None,
 ) -> None:
     """Take a result through further loads, up or down.
 
@@ -269,6 +295,7 @@ def plot(
 def keys(
     part: Annotated[str, typer.Argument(help="Beginning of the keys, such as contact.")] = "",
     page: Annotated[Path | None, typer.Option(help="Renew the tables in this file in place of printing.")] = None,
+    imported: Import = None,
 ) -> None:
     """Print the keys of a scene file: default, what is allowed, unit and meaning."""
     from . import scene_reference

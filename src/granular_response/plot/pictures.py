@@ -415,7 +415,7 @@ def packing(
                 axes, shown.position, shown.radius, shown.values("angle"), color=style.SKY, linewidth=0.5
             )
         else:
-            number = np.asarray(values, dtype=float)
+            number: FloatArray = np.ma.filled(np.ma.array(values, dtype=float), np.nan)  # masked: not known
             if number.shape != shown.radius.shape:
                 raise PictureError(f"values: must have shape {shown.radius.shape}, a disk each, not {number.shape}")
             look = {"cmap": cmap, "edgecolor": style.MUTED, **patches}

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from . import formats
-from .base import PackingDescription, Positive, Sides, Vector
+from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector
 from .disks import packed
 from .errors import Problem
+from .given import plain
 from .packing import Packing
 
 
@@ -23,7 +24,7 @@ def _check_numbers(value: Any) -> Any:
 Column = Annotated[tuple[float, ...], BeforeValidator(_check_numbers)]
 
 
-class ArrayPacking(PackingDescription):
+class ArrayPacking(Sparse, PackingDescription):
     """Disks given by their numbers; ``Scene.from_arrays`` makes one of arrays.
 
     Lengths are in any one unit, masses too. Every centre lies above the floor and between the side walls; periodic
@@ -49,6 +50,8 @@ class ArrayPacking(PackingDescription):
     )
     origin: Vector = Field(default=(0.0, 0.0), description="[x, z] of left wall and floor.")
     sides: Sides = "walls"
+    overlaps: Overlaps = "kept"
+    sparse: ClassVar[tuple[str, ...]] = ("overlaps",)
 
     @model_validator(mode="after")
     def _check_disks(self) -> ArrayPacking:
@@ -85,9 +88,9 @@ class ArrayPacking(PackingDescription):
 
 def listed(values: Any, count: int | None = None) -> Any:
     """An array, a table's column or a list as a list; a lone number ``count`` times where that is given."""
-    plain = list(values) if isinstance(values, (list, tuple)) else np.asarray(values).tolist()
-    lone = isinstance(plain, (int, float)) and not isinstance(plain, bool)
-    return [plain] * count if lone and count is not None else plain
+    found = plain(values)
+    lone = isinstance(found, (int, float)) and not isinstance(found, bool)
+    return [found] * count if lone and count is not None else found
 
 
 def shortened(scene: dict[str, Any]) -> dict[str, Any]:

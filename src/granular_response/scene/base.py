@@ -5,13 +5,22 @@ from __future__ import annotations
 import inspect
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
-import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, WrapValidator, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    ValidationError,
+    WrapValidator,
+    model_serializer,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 
 from .errors import Problem, from_validation, suggestion
+from .given import plain, unordered
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -124,22 +133,31 @@ class Description(BaseModel, metaclass=_Public):
                     key=(key if isinstance(key, str) else str(key),),
                     value=value,
                 )
-        return {key: _plain(value) for key, value in data.items()}
+        return {key: plain(value) for key, value in data.items()}
 
 
-def _plain(value: Any) -> Any:
-    """Numpy scalars and arrays as Python numbers and lists, so that sweeps may hand them over."""
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if isinstance(value, (list, tuple)):
-        return [part.item() if isinstance(part, np.generic) else part for part in value]
-    return value.item() if isinstance(value, np.generic) else value
+class Sparse(Description):
+    """A description of which some keys are written only where they are not the default.
+
+    So a scene that does not have what they say is written as if they did not exist.
+    """
+
+    sparse: ClassVar[tuple[str, ...]] = ()
+
+    @model_serializer(mode="wrap")
+    def _written(self, written: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        data: dict[str, Any] = written(self)
+        fields = type(self).model_fields
+        usual = {key for key in self.sparse if key in fields and getattr(self, key) == fields[key].default}
+        return {key: value for key, value in data.items() if key not in usual}
 
 
 def allowed(phrase: str) -> WrapValidator:
     """Say ``phrase`` whatever is wrong with a value, in place of one message per rule or union member."""
 
     def check(value: Any, inner: Callable[[Any], Any]) -> Any:
+        if unordered(value):
+            raise Problem(phrase)
         try:
             return inner(value)
         except (ValidationError, OverflowError):
@@ -167,6 +185,14 @@ Index = Annotated[
 ]
 Flag = Annotated[bool, Field(strict=True), allowed("must be true or false")]
 Sides = Annotated[Literal["walls", "periodic"], Field(description="Side walls, or periodic sides.")]
+
+Overlaps = Annotated[
+    Literal["kept", "removed"],
+    Field(
+        description="Of the given disks, kept: they are springs that are pressed, as in a packing that bears forces; "
+        "removed: disks that overlap, as measured ones do, are pushed apart gently before gravity acts."
+    ),
+]
 
 
 class PackingDescription(Description):

@@ -55,8 +55,10 @@ def packed(table: Table, left: float, floor: float, width: float, periodic: bool
     if len(same):
         one, two = sorted(map(int, order[same[0] : same[0] + 2]))
         raise Problem(f"disk is in the same place as that of {places[one]}", key=(two,))
+    position = np.ascontiguousarray(np.stack([x, z], axis=1) / mean)
     return Packing(
-        position=np.ascontiguousarray(np.stack([x, z], axis=1) / mean),
+        position=position,
+        given=position,
         radius=radius / mean,
         row=np.full(len(radius), -1, dtype=np.int32),
         width=float(width / mean),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from .base import UNITS, unit_of
 from .errors import SceneError, describe, suggestion
+from .given import plain
 from .material import KNOWN_LAWS
 
 Value = TypeVar("Value", float, NDArray[np.float64])
@@ -153,9 +154,10 @@ class LaboratoryUnits:
             if isinstance(value, Mapping):
                 own = {key: _quantities(key, part, value) for key, part in value.items()}
                 return {key: reduced(part, keys.get(key, ""), own[key]) for key, part in value.items()}
-            if isinstance(value, (list, tuple)):
+            value = plain(value)
+            if isinstance(value, list):
                 return [reduced(part, quantity) for part in value]
-            number = quantity and isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
+            number = quantity and isinstance(value, (int, float)) and not isinstance(value, bool)
             return self.to_reduced(quantity, float(value)) if number else value
 
         return {key: reduced(part, keys=_quantities(key, part, scene)) for key, part in scene.items()}

@@ -9,13 +9,11 @@ from pydantic import (
     BeforeValidator,
     Field,
     SerializeAsAny,
-    SerializerFunctionWrapHandler,
     ValidationInfo,
     field_validator,
-    model_serializer,
 )
 
-from .base import Description, Ratio, Stiffness
+from .base import Description, Ratio, Sparse, Stiffness
 from .errors import Problem, suggestion
 
 
@@ -36,22 +34,12 @@ KNOWN_LAWS = {"linear": KnownLaw(), "hertz": KnownLaw()}
 
 def _check_law(value: Any) -> Any:
     if not isinstance(value, str) or value not in KNOWN_LAWS:
-        raise Problem(f"must be {' or '.join(KNOWN_LAWS)}{suggestion(value, KNOWN_LAWS)}")
+        own = ", or a law of gr.register_law whose module is imported (--import MODULE)"
+        raise Problem(f"must be {' or '.join(KNOWN_LAWS)}{own}{suggestion(value, KNOWN_LAWS)}")
     return value
 
 
-class Sparse(Description):
-    """A description of which some keys are written only where they are not the default.
-
-    So a scene that does not have this physics is written as if it did not exist.
-    """
-
-    sparse: ClassVar[tuple[str, ...]] = ("rolling_friction", "rolling_stiffness_ratio", "parameters")
-
-    @model_serializer(mode="wrap")
-    def _written(self, written: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        data: dict[str, Any] = written(self)
-        return {key: value for key, value in data.items() if key not in self.sparse or value not in (0.0, None, {})}
+_SPARSE = ("rolling_friction", "rolling_stiffness_ratio", "parameters")
 
 
 class Contact(Sparse):
@@ -66,6 +54,8 @@ class Contact(Sparse):
     >>> gr.Contact(friction=0.5, normal_stiffness=1000.0).tangential_stiffness
     800.0
     """
+
+    sparse: ClassVar[tuple[str, ...]] = _SPARSE
 
     law: Annotated[str, BeforeValidator(_check_law)] = Field(
         default="linear",
@@ -92,7 +82,9 @@ class Contact(Sparse):
     @field_validator("parameters", mode="plain")
     @classmethod
     def _check_parameters(cls, value: Any, info: ValidationInfo) -> Description:
-        known = KNOWN_LAWS[info.data.get("law", "linear")]  # another law was refused, and is left out of the data
+        if "law" not in info.data:  # it was refused, and nobody knows its parameters
+            return NoParameters()
+        known = KNOWN_LAWS[info.data["law"]]
         return known.parameters.model_validate(value.model_dump() if isinstance(value, Description) else value)
 
     def __getstate__(self) -> dict[Any, Any]:
@@ -143,6 +135,8 @@ class Wall(Sparse):
     >>> gr.Scene(wall=gr.Wall(friction=0.3)).resolved_wall.normal_stiffness  # twice that between disks
     6000.0
     """
+
+    sparse: ClassVar[tuple[str, ...]] = _SPARSE
 
     normal_stiffness: Stiffness | None = Field(
         default=None, description="Stiffness of the normal spring; null: twice contact.normal_stiffness."

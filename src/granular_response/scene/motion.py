@@ -8,9 +8,8 @@ import numpy as np
 from pydantic import Field
 
 from ..state import FloatArray
-from .base import Flag, allowed
+from .base import Flag, Sparse, allowed
 from .errors import SceneError, describe
-from .material import Sparse
 from .packing import Packing
 
 COLUMN = "column"

@@ -40,6 +40,7 @@ class Packing:
     periodic: bool = False  #: periodic sides in place of walls
     given_mass: FloatArray | None = None  #: (n,) with mean 1, where disks are not of one material
     columns: Mapping[str, FloatArray] | None = None  #: (n,) each, of its file beside places and sizes, as they stand
+    given: FloatArray | None = None  #: (n, 2) where a user's own disks were given; None for packings that are made
 
     @property
     def n(self) -> int:
@@ -70,6 +71,12 @@ class Packing:
     def ordered(self) -> bool:
         """Whether this is a lattice of equal disks."""
         return self.left is not None and bool(self.radius.max() == self.radius.min())
+
+    def moved(self, position: FloatArray) -> FloatArray | None:
+        """(n,) distance of disks at ``position`` (n, 2) from where they were given; None where they were not."""
+        if self.given is None:
+            return None
+        return np.linalg.norm(self.box.separation(position, self.given), axis=1)
 
     @cached_property
     def mass(self) -> FloatArray:

@@ -6,8 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from .base import Count, Description, Flag, NonNegative, Positive, allowed
-from .material import Sparse
+from .base import Count, Description, Flag, NonNegative, Positive, Sparse, allowed
 
 TimeStep = Annotated[
     Annotated[float, Field(strict=True, gt=0)] | Literal["auto"], allowed("must be a number greater than 0, or auto")

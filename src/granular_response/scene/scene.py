@@ -16,11 +16,11 @@ from pydantic import BeforeValidator, Field, ValidationError, model_validator
 from ..inputs import read_text
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
-from .base import MOST_STIFFNESS, PACKING_KINDS, Description, PackingDescription
+from .base import MOST_STIFFNESS, PACKING_KINDS, Description, PackingDescription, Sparse
 from .errors import Problem, SceneError, SceneFileError, from_validation, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
-from .material import Contact, Sparse, Wall
+from .material import Contact, Wall
 from .motion import COLUMN, COMPONENTS, Motion
 from .poured import PouredPacking
 from .protocol import Preparation, Protocol
@@ -200,6 +200,7 @@ class Scene(Sparse):
         width: float | None = None,
         origin: tuple[float, float] = (0.0, 0.0),
         sides: str = "walls",
+        overlaps: str = "kept",
         vx: ArrayLike | None = None,
         vz: ArrayLike | None = None,
         spin: ArrayLike | None = None,
@@ -218,6 +219,7 @@ class Scene(Sparse):
             right wall touches the disk that reaches farthest.
         origin : x of the left wall and z of the floor.
         sides : "walls" or "periodic".
+        overlaps : "kept", or "removed" for measured disks: those that overlap are pushed apart before gravity acts.
         vx, vz, spin : (n,) motion at the start, or one for all, for :func:`granular_response.motion`; in reduced units.
         scene : all else, as a scene, whose packing is left out, or nested mappings with its other keys; that of
             ``Scene()`` if left out.
@@ -238,7 +240,7 @@ class Scene(Sparse):
         if isinstance(scene, Mapping) and "packing" in scene:
             raise SceneError("scene.packing: must be left out, the packing is that of the arrays")
         rest = scene.to_dict() if isinstance(scene, Scene) else scene or {}
-        packing = {"kind": "arrays", **columns, "width": width, "origin": origin, "sides": sides}
+        packing = {"kind": "arrays", **columns, "width": width, "origin": origin, "sides": sides, "overlaps": overlaps}
         motion = {name: listed(one) for name, one in (("vx", vx), ("vz", vz), ("spin", spin)) if one is not None}
         own = {"motion": {**rest.get("motion", {}), **motion}} if motion else {}
         return cls.from_dict({**rest, **own, "packing": packing})

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationInfo, model_validator
 
 from . import formats
-from .base import PackingDescription, Positive, Sides, Vector, allowed
+from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
 from .disks import ROUNDING, packed
 from .errors import Problem, SceneError, describe, show
+from .formats import csv_table
 from .packing import Packing, exact_mean
 
 
@@ -29,7 +31,16 @@ Format = Annotated[
 ]
 
 
-class FilePacking(PackingDescription):
+def _check_columns(value: Any) -> Any:
+    text = isinstance(value, Mapping) and all(isinstance(one, str) and one.strip() for one in value.values())
+    if not text or not value or not set(value) <= set(csv_table.NAMED):
+        raise Problem(f"must say the columns of a CSV table as {{z: Y, radius: R}}, for {', '.join(csv_table.NAMED)}")
+    if len(set(value.values())) < len(value):
+        raise Problem("must name a column once")
+    return dict(value)
+
+
+class FilePacking(Sparse, PackingDescription):
     """Disks from a file: CSV with the columns x, z and radius, or what another program wrote (``scene.formats``).
 
     Lengths are in any one unit. Every centre lies above the floor and between the side walls; periodic sides take any
@@ -59,6 +70,13 @@ class FilePacking(PackingDescription):
         "box.",
     )
     sides: Sides = "walls"
+    columns: Annotated[dict[str, str], BeforeValidator(_check_columns)] | None = Field(
+        default=None,
+        description="Which columns of a CSV table are meant, such as {z: Y, radius: R}; without it those of that name, "
+        "and y for the height where there is no z, r for the radius, or diameter.",
+    )
+    overlaps: Overlaps = "kept"
+    sparse: ClassVar[tuple[str, ...]] = ("columns", "overlaps")
 
     # Not part of the description: where it was read, so that a worker process finds the table too.
     _folder: str | None = PrivateAttr(default=None)
@@ -71,6 +89,13 @@ class FilePacking(PackingDescription):
         own = self.model_copy()  # another scene may have the same packing
         own._folder = str(folder)
         return own
+
+    @model_validator(mode="after")
+    def _check_format(self) -> FilePacking:
+        if self.columns is not None and (known := self.format or formats.by_suffix(self.path)) != "csv":
+            rule = f"must be left out, format {known} says what its columns are"
+            raise Problem(rule, key=("columns",), value=self.columns)
+        return self
 
     @property
     def folder(self) -> str | None:
@@ -130,7 +155,7 @@ class FilePacking(PackingDescription):
     def _read(self) -> formats.Table:
         try:
             with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused where it stands
-                return formats.read(self.file, self.format or formats.by_suffix(self.path))
+                return formats.read(self.file, self.format or formats.by_suffix(self.path), self.columns)
         except formats.FormatError as error:
             raise self._error(str(error), error.place) from None
         except FileNotFoundError:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from ..contact import LAWS, Law
+from ..contact.consistent import contradiction
 from ..errors import GranularError
 from ..scene import SceneError
 from ..scene.base import Description
@@ -37,7 +38,8 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
     Raises
     ------
     LawError
-        When another law has the name, or the law lacks something.
+        When another law has the name, the law lacks something, or its energy, force and stiffness are not derivatives
+        of each other. They are compared again with the parameters of each scene.
 
     Examples
     --------
@@ -55,12 +57,21 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
     if not (isinstance(parameters, type) and issubclass(parameters, Description)):
         raise LawError(f"parameters = {parameters!r}: must be a subclass of granular_response.scene.base.Description")
     try:
-        law.of(1.0, 1.0, 1.0, 1.0, 0.0, -math.inf, 0.5, **parameters().model_dump())
+        made = law.of(3000.0, 50.0, 2400.0, 50.0, 0.2, -math.inf, 0.5, **parameters().model_dump())
     except (SceneError, TypeError) as error:
         raise LawError(
             f"law = {law.__qualname__}: {error}; parameters must have defaults, and of() take them"
         ) from None
+    if said := contradiction(made):
+        raise LawError(f"law = {law.__qualname__}: {said}")
     KNOWN_LAWS[name] = KnownLaw(parameters, law)
+
+
+def check_parameters(name: str, *laws: Law) -> None:
+    """Raise SceneError where laws from outside, made with the parameters of a scene, contradict themselves."""
+    for law in laws if KNOWN_LAWS[name].law is not None else ():
+        if said := contradiction(law):
+            raise SceneError(f"contact.parameters: with these of law {name} {said}")
 
 
 def law_class(name: str) -> type[Law]:

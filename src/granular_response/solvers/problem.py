@@ -23,7 +23,8 @@ from ..state.box import WALL_MEANINGS
 from .choice import Plan, plan
 from .close_pairs import close_pairs
 from .held import NOTHING, Held
-from .laws import law_class
+from .laws import check_parameters, law_class
+from .overlaps import without_overlaps
 
 #: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
 #: is made again.
@@ -74,15 +75,18 @@ def _check_period(packing: Packing) -> None:
         )
 
 
-def _check_overlaps(packing: Packing) -> None:
-    """Refuse disks that begin deep inside others or walls: what is read as radii or walls is then something else."""
+def _check_overlaps(packing: Packing, most: float) -> None:
+    """Refuse disks that begin deeper inside others or walls than ``most`` of the smaller radius.
+
+    What is read as radii or walls is then something else.
+    """
     position, radius, box = packing.position, packing.radius, packing.box
     first, second = close_pairs(position, radius, 0.0, box.period)
     apart = np.linalg.norm(box.separation(position[first], position[second]), axis=1)
     disk, wall = box.near_walls(position, radius, 0.0)
     overlap = np.r_[radius[first] + radius[second] - apart, -box.wall_gap(position[disk], radius[disk], wall)]
     smaller = np.r_[np.minimum(radius[first], radius[second]), radius[disk]]
-    deep = overlap > MOST_OVERLAP * smaller
+    deep = overlap > most * smaller
     if not deep.any():
         return
     k = int(np.argmax(np.where(deep, overlap / smaller, 0.0)))
@@ -92,11 +96,13 @@ def _check_overlaps(packing: Packing) -> None:
     else:
         two = f"disk {disk[m]} and the {WALL_MEANINGS[wall[m]].replace('_', ' ')}"
     cure = "are radii diameters, and walls and floor where they should be?"
+    if packing.given is not None and most < 1.0:
+        cure += " For measured disks packing.overlaps: removed takes overlaps of up to a radius out"
     if packing.left is not None:
         cure = "take lattice_constant touching-largest or less polydispersity"
     raise SceneError(
         f"packing: {two} (counted from 0) overlap by {overlap[k]:.3g} mean radii at the start, must be at most "
-        f"{MOST_OVERLAP * smaller[k]:.3g}, half the smaller radius; {cure}"
+        f"{most * smaller[k]:.3g}, {'half ' * (most < 1.0)}the smaller radius; {cure}"
     )
 
 
@@ -111,7 +117,9 @@ def _laws(scene: Scene) -> tuple[Law, Law]:
         )  # fmt: skip
         return whole if m.rubs else whole.without_friction()
 
-    return law(scene.contact, DISKS), law(scene.resolved_wall, AT_WALL)
+    pair, wall = law(scene.contact, DISKS), law(scene.resolved_wall, AT_WALL)
+    check_parameters(scene.contact.law, pair, wall)
+    return pair, wall
 
 
 def _rolling(contact: Contact) -> Rolling | None:
@@ -158,7 +166,9 @@ class Problem:
         start = scene.packing.build() if packing is None else packing
         _check_period(start)
         if packing is None:  # a given one is the caller's own
-            _check_overlaps(start)
+            removed = getattr(scene.packing, "overlaps", "kept") == "removed"
+            _check_overlaps(start, 1.0 if removed else MOST_OVERLAP)
+            start = without_overlaps(start) if removed else start
         pair_law, wall_law = _laws(scene)
         return cls(
             scene=scene,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Any
@@ -13,6 +13,7 @@ import numpy as np
 from ..contact import Linear
 from ..errors import EquilibriumError
 from ..scene import Scene, SceneError
+from ..scene.given import plain, unordered
 from ..state import FloatArray, State
 from .choice import Choice, idle_settings
 from .dynamics import Dynamics, Stop, relax
@@ -34,6 +35,10 @@ LONGEST_WAY = 0.1
 
 #: Part of a response that may be rounding, from which on that is said.
 ROUNDED = 1e-3
+
+#: Distance from its given place (mean radii) from which on it is said that a disk has moved, and overlap of disks at
+#: the start from which on that may be why.
+FAR_FROM_GIVEN, OVERLAPS_OF_NOISE = 0.5, 0.01
 
 #: Reaction (mean disk weights) up to which a displaced disk counts as free of force.
 BALANCED = 1e-8
@@ -99,7 +104,24 @@ class Solution:
                 f"not certified: up to {out:.1g} of what a disk bears is out of balance ({plan.rest.reason}); "
                 "take a smaller protocol.stop_kinetic_energy"
             )
-        return [line for line in (*idle_settings(self.problem), self.unsettled or uncertified or rounded) if line]
+        lines = (*idle_settings(self.problem), self.unsettled or uncertified or rounded, self.displaced)
+        return [line for line in lines if line]
+
+    @property
+    def displaced(self) -> str:
+        """That given disks are no longer near where they were given, in one line; empty where all are."""
+        moved = self.problem.packing.moved(self.rest.position)
+        if moved is None or not moved.max() > FAR_FROM_GIVEN:
+            return ""
+        disk = int(moved.argmax())
+        cure = "are they whole, and do floor and walls stand where they did?"
+        pressed = float(self.problem.bare_state().pairs.overlap.max(initial=0.0))
+        if pressed > OVERLAPS_OF_NOISE and getattr(self.scene.packing, "overlaps", "removed") == "kept":
+            cure = f"they begin with overlaps of up to {pressed:.2g}, which packing.overlaps: removed takes out gently"
+        return (
+            f"disk {disk} comes to rest {moved[disk]:.2g} mean radii from where it was given, half of the disks "
+            f"move by more than {np.median(moved):.2g}; {cure}"
+        )
 
     @property
     def unsettled(self) -> str:
@@ -218,7 +240,9 @@ def continue_solution(
 
 def load_programme(factors: Any) -> list[float]:
     """A load programme as numbers; raises ``SceneError`` when it is anything but one or more that are finite."""
-    given: list[Any] = list(factors) if np.iterable(factors) and not isinstance(factors, (str, bytes)) else [None]
+    ordered = np.iterable(factors) and not isinstance(factors, (str, bytes, Mapping)) and not unordered(factors)
+    given = plain(list(factors) if ordered and not hasattr(factors, "__array__") else factors)
+    given = given if ordered and isinstance(given, list) else [None]
     if not all(isinstance(factor, Real) and not isinstance(factor, (bool, np.bool_)) for factor in given):
         raise SceneError(f"load factors {factors!r}: must be a list of one or more numbers")
     try:

@@ -32,7 +32,7 @@ from xarray.backends import NetCDF4DataStore
 
 from .. import __version__
 from ..errors import GranularError
-from ..inputs import check_regular
+from ..inputs import read_bytes
 from . import atomic
 
 #: What the name of every file of datasets ends with.
@@ -224,8 +224,7 @@ def _verify(data: bytes, groups: Mapping[str, xr.Dataset]) -> None:
 
 def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
     try:
-        check_regular(path)
-        data = Path(path).read_bytes()
+        data = read_bytes(path)
     except FileNotFoundError:
         raise _error(path, "no such file") from None
     except OSError as error:
@@ -254,7 +253,7 @@ def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
 
 def is_sealed(path: str | os.PathLike[str]) -> bool:
     """Whether a file that can be read ends with the digest of what it holds."""
-    return _check_seal(path, Path(path).read_bytes())
+    return _check_seal(path, read_bytes(path))
 
 
 def _check_seal(path: str | os.PathLike[str], data: bytes) -> bool:

@@ -22,6 +22,7 @@ from ..observe.difference import match_candidates, pair_force_difference, wall_f
 from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
 from ..scene import text as scene_text
+from ..scene.material import KNOWN_LAWS
 from ..solvers.problem import Problem
 from ..solvers.solution import Solution
 from ..solvers.timestep import time_step_reason
@@ -306,6 +307,8 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "applied_load": problem.load,
         "total_force": applied,
     }
+    if packing.given is not None:
+        numbers["distance_from_given"] = np.stack([np.asarray(packing.moved(state.position)) for state in own])
     if loaded and len(problem.held):
         numbers["reaction"] = np.stack([solution.reaction(state) for state in solution.loaded])
     data |= {name: described(name, values) for name, values in numbers.items()}
@@ -321,6 +324,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "package_version": __version__,
         "scene": solution.scene.to_yaml(),
         "scene_folder_note": "paths in the scene are relative to the folder of the scene file",
+        **_law_module(solution.scene),
         "width": packing.width,
         "sides": "periodic" if packing.box.periodic else "walls",
         "method": json.dumps({stage: getattr(one, "method", "none") for stage, one in choices.items()}),
@@ -331,6 +335,12 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "units": UNITS,
     }
     return indexed(labelled(_dataset(data, COORDINATES, attributes)))
+
+
+def _law_module(scene: Scene) -> dict[str, str]:
+    """Where a law from outside the package is registered: the module of its class."""
+    law = KNOWN_LAWS[scene.contact.law].law
+    return {} if law is None else {"law_module": law.__module__}
 
 
 def _own_places(own: Contacts, common: Contacts) -> np.ndarray:
@@ -437,5 +447,14 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
 
 
 def scene_of(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None = None) -> Scene:
-    """The scene that a dataset was made from."""
-    return Scene.from_dict(scene_text.read(dataset.attrs["scene"]), folder=folder)
+    """The scene that a dataset was made from. Raises ResultError for a law whose module has not been imported."""
+    data = scene_text.read(dataset.attrs["scene"])
+    contact = data.get("contact") if isinstance(data, Mapping) else None
+    law = contact.get("law") if isinstance(contact, Mapping) else None
+    module = dataset.attrs.get("law_module")
+    if isinstance(law, str) and law not in KNOWN_LAWS and isinstance(module, str):
+        cure = f"the module {module}, which must be imported (on the command line --import {module})"
+        if module == "__main__":
+            cure = "the script that made the result, which must register it"
+        raise ResultError(f"contact.law = {law!r}: is a law of {cure}")
+    return Scene.from_dict(data, folder=folder)

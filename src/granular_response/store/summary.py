@@ -117,6 +117,9 @@ def _result(result: xr.Dataset) -> Iterator[RenderableType]:
         yield from _events(result)
     yield Text("\ncertificate", style="bold")
     yield _by_factor(result, _certificate(result))
+    if "distance_from_given" in result:
+        yield Text("\ndistance of disks from where they were given", style="bold")
+        yield _by_factor(result, _from_given(result))
     if "reaction" in result:
         yield Text("\nforce that holds displaced disks", style="bold")
         yield _table(("at load factor", "disk", "x", "z"), _reaction(result))
@@ -154,6 +157,13 @@ def _certificate(result: xr.Dataset) -> Iterator[tuple[str, list[str]]]:
             if title == "negative modes":
                 values = ["not determined" if value == str(NOT_DETERMINED) else value for value in values]
             yield title, values
+
+
+def _from_given(result: xr.Dataset) -> Iterator[tuple[str, Iterable[str]]]:
+    moved = result["distance_from_given"].values
+    yield "median", (f"{value:.3g}" for value in np.median(moved, axis=1))
+    yield "largest", (f"{value:.3g}" for value in moved.max(axis=1))
+    yield "of disk", map(str, moved.argmax(axis=1))
 
 
 def _reaction(result: xr.Dataset) -> Iterator[tuple[str, ...]]:

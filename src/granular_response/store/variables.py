@@ -115,6 +115,12 @@ _HOLDS = "force x, z with which each load holds its disk at its displacement"
 
 VARIABLES: dict[str, Stored] = {
     "position": Stored("state disk axis", f"disk centre x, z {RADII}", LENGTH),
+    "distance_from_given": Stored(
+        "state disk",
+        f"distance of each disk from where the scene's table or arrays have it {RADII}",
+        LENGTH,
+        optional=True,
+    ),
     "angle": Stored(
         "state disk", "rotation since the start of the preparation, counter-clockwise, in radians", "radian"
     ),

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import GranularError
-from ..inputs import check_regular
+from ..inputs import read_bytes
 from ..scene.base import Description
 from ..scene.material import KNOWN_LAWS, Contact
 from ..scene.table import FilePacking
@@ -55,7 +55,7 @@ def sources(*parts: str) -> str:
     """
     files = sorted({file for part in parts or ("",) for file in _files(part)})
     versions = [metadata.version(package) for package in ("numba", "numpy", "scipy")]
-    return key([(name, path.read_bytes()) for name, path in files], versions)
+    return key([(name, read_bytes(path)) for name, path in files], versions)
 
 
 def _files(part: str) -> Iterator[tuple[str, Path]]:
@@ -125,13 +125,12 @@ def _named(value: Any, by_name: Collection[str]) -> list[Any]:
     name = [value.__module__, value.__qualname__]
     if value.__module__.partition(".")[0] in by_name or not (file and file.endswith(".py")):
         return name
-    return [*name, _sha256(Path(file).read_bytes())]
+    return [*name, _sha256(read_bytes(file))]
 
 
 def _table(packing: FilePacking) -> str:
     try:
-        check_regular(packing.file)
-        return _sha256(packing.file.read_bytes())
+        return _sha256(read_bytes(packing.file))
     except OSError as error:
         raise Indistinct(f"{packing.file} cannot be read: {error.strerror}") from None
 

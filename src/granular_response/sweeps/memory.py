@@ -20,6 +20,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ..inputs import read_bytes
 from ..store import atomic
 from .encoding import NotDecodable, NotEncodable, decode, encode
 from .keys import Indistinct, key, sources
@@ -78,7 +79,7 @@ class Memory:
         if name is None:
             return MISSING
         try:
-            data = self._path(name).read_bytes()
+            data = read_bytes(self._path(name))
             if data[-32:] != _seal(name, data[:-32]):
                 return MISSING
             return decode(data[:-32], self.modules)

@@ -5,6 +5,7 @@ What is read is what the file says, in its own units; ``scene.table`` makes a pa
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 
@@ -27,9 +28,13 @@ def by_suffix(path: str | Path) -> str:
     return next((name for name, suffixes in SUFFIXES.items() if suffix in suffixes), "csv")
 
 
-def read(path: Path, file_format: str) -> Table:
-    """The disks in a file. Raises FormatError for what cannot be read, OSError, and UnicodeError for other text."""
-    table: Table = import_module(f".{_MODULES[file_format]}", __name__).read(path)
+def read(path: Path, file_format: str, columns: Mapping[str, str] | None = None) -> Table:
+    """The disks in a file. Raises FormatError for what cannot be read, OSError, and UnicodeError for other text.
+
+    ``columns`` says which columns of a CSV table are meant.
+    """
+    reader = import_module(f".{_MODULES[file_format]}", __name__).read
+    table: Table = reader(path, columns) if columns else reader(path)
     return table
 
 

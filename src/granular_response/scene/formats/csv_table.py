@@ -1,22 +1,36 @@
 """CSV with a header that names x, z and radius, and mass or density if disks differ in material.
 
-Names may be written in any case, with a unit in brackets. Further columns are ignored, and so are empty lines and lines
-that begin with ``#``, but for the mark of our own tables.
+Names may be written in any case, with a unit in brackets. Cameras and programs that track disks have other names for
+the same: y for the height where there is no z, r for the radius, or a diameter; ``columns`` of a scene says which
+column is meant where a table has others. Further columns are ignored, and so are empty lines and lines that begin with
+``#``, but for the mark of our own tables. Each disk has a line of its own.
 """
 
 from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import suggestion
-from .table import NO_BOX, FormatError, Mark, Table, lines_of, number, numbers
+from .table import NO_BOX, FormatError, Mark, Once, Table, lines_of, number, numbers, radii, shown, upward
 
-COLUMNS = ("x", "z", "radius")
-MATERIAL = ("mass", "density")
+#: What is read of a disk, and the names of columns that have it.
+NAMES = {
+    "x": ("x",),
+    "y": ("y",),
+    "z": ("z",),
+    "radius": ("radius", "r"),
+    "diameter": ("diameter", "d"),
+    "mass": ("mass",),
+    "density": ("density",),
+}
+LENGTHS, MATERIAL = ("x", "y", "z", "radius", "diameter"), ("mass", "density")
+#: What ``columns`` of a scene may name.
+NAMED = ("x", "z", "radius", "diameter", *MATERIAL)
 #: Columns that are read where they are, and taken where ``motion`` asks for them.
 MOTION = ("vx", "vz", "spin")
 #: Columns that look as if they were heeded, and cannot be: contacts have one law.
@@ -25,55 +39,72 @@ REFUSED = {
     **dict.fromkeys(("stiffness", "kn", "k_n", "young", "youngs_modulus", "young_modulus"), "contact.normal_stiffness"),
     "cohesion": "contact.law",
 }
+_SIZES = frozenset({"radius", "diameter"})
 #: Other words for mass and density.
 _OTHER_WORDS = {"m": "mass", "rmass": "mass", "weight": "mass", "rho": "density", "ρ": "density"}
 
+#: Of what a scene names one of, the other is not looked for.
+_ONE_OF = (_SIZES, frozenset(MATERIAL))
 
-def read(path: Path) -> Table:
-    """The disks of a table; errors name the line."""
+
+def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
+    """The disks of a table; errors name the line. ``columns`` says in which column x, z, radius, ... stand."""
     rows: list[list[float]] = []
     moved: list[list[float]] = []
     places: list[str] = []
-    header: tuple[str, ...] = ()
-    names: tuple[str, ...] = COLUMNS
+    header: list[str] = []
+    chosen: dict[str, int] = {}
+    motion: dict[str, int] = {}
     mark: Mark | None = None
+    once = Once()
     lines, whole = lines_of(path)
-    reader = csv.reader((f"{line}\n" for line in lines), skipinitialspace=True)
-    try:
-        for cells in reader:
-            place = f"line {reader.line_num}"
-            if not any(cell.strip() for cell in cells):
-                continue
-            if cells[0].lstrip().startswith("#"):
-                mark = mark or Mark.found(lines[reader.line_num - 1], place)
-                continue
-            if not header:
-                header, units = zip(*map(_name_and_unit, cells), strict=True)
-                names = _names(header, units)
-                columns = [header.index(name) for name in names]
-                motion = [name for name in MOTION if header.count(name) == 1]
-                continue
-            if len(cells) != len(header):
-                raise FormatError(f"has {len(cells)} values, must have {len(header)} as the header", place)
-            rows.append(numbers([cells[column] for column in columns], names, place))
-            moved.append([_or_nan(cells[header.index(name)]) for name in motion])
-            places.append(place)
-    except csv.Error as error:
-        raise FormatError(f"is not a CSV file: {error}") from None
+    for line_number, line in enumerate(lines, start=1):
+        place = f"line {line_number}"
+        if line.lstrip().startswith("#"):
+            if found := Mark.found(line, place):
+                once.add("mark of granular-response", place)
+                mark = found
+            continue
+        try:  # line by line: a quote that is not closed takes no further disk with it
+            cells = next(csv.reader([line], skipinitialspace=True, strict=True), [])
+        except csv.Error as error:
+            unclosed = "a quote that is not closed in its line" if "unexpected end" in str(error) else str(error)
+            raise FormatError(f"is not CSV: {unclosed}", place) from None
+        if not any(cell.strip() for cell in cells):
+            continue
+        if not header:
+            header = cells
+            chosen = _chosen(header, columns or {})
+            titles = [_name_and_unit(cell)[0] for cell in header]
+            motion = {name: titles.index(name) for name in MOTION if titles.count(name) == 1}
+            once.add("header", place)
+            continue
+        if cells == header:
+            once.add("header", place)
+        if len(cells) != len(header):
+            raise FormatError(f"has {len(cells)} values, must have {len(header)} as the header", place)
+        rows.append(numbers([cells[column] for column in chosen.values()], tuple(chosen), place))
+        moved.append([_or_nan(cells[column]) for column in motion.values()])
+        places.append(place)
     if not rows:
         raise FormatError("has no disks, must have a header x,z,radius and a line for each disk")
     if mark is not None:
         mark.check(len(rows), whole)
-    x, z, radius, *material = np.array(rows).T
-    for values, name in zip(material, names[3:], strict=True):
-        if not (values > 0.0).all():
-            bad = int(np.argmin(values > 0.0))
-            raise FormatError(f"{name} = {float(values[bad])!r}: must be greater than 0", places[bad])
-    mass = None
-    if material:
-        mass = material[0] if names[3] == "mass" else material[0] * radius**2
+        if "mass" not in chosen:
+            raise FormatError("column mass is missing, which tables of granular-response have")
+    values = dict(zip(chosen, np.array(rows).T, strict=True))
+    for name in MATERIAL:
+        if name in values and not (values[name] > 0.0).all():
+            bad = int(np.argmin(values[name] > 0.0))
+            raise FormatError(f"{name} = {float(values[name][bad])!r}: must be greater than 0", places[bad])
+    up = "z" if "z" in values else "y"
+    if "y" in values and "z" in values:
+        up = upward(values["y"], values["z"])
+    radius = radii(values, places)
+    mass = values["mass"] if "mass" in values else values["density"] * radius**2 if "density" in values else None
     velocities = dict(zip(motion, np.array(moved).T, strict=True))
-    return Table(x, z, radius, places, mass, NO_BOX if mark is None else mark.box, columns=velocities or None)
+    box = NO_BOX if mark is None else mark.box
+    return Table(values["x"], values[up], radius, places, mass, box, columns=velocities or None)
 
 
 def _or_nan(cell: str) -> float:
@@ -89,23 +120,60 @@ def _name_and_unit(cell: str) -> tuple[str, str]:
     return (match[1].casefold(), (match[2] or "").strip()) if match else (cell.strip(), "")
 
 
-def _names(header: tuple[str, ...], units: tuple[str, ...]) -> tuple[str, ...]:
-    """The columns that are read. What stands in the header is not quoted: the file may be another one."""
-    for column in COLUMNS:
-        if (times := header.count(column)) != 1:
-            problem = "is missing" if times == 0 else f"is given {times} times"
-            raise FormatError(f"column {column} {problem}, header must name x, z and radius")
-    if len({units[header.index(column)] for column in COLUMNS}) > 1:
-        raise FormatError("columns x, z and radius: must have the same unit of length")
+def _chosen(header: list[str], columns: Mapping[str, str]) -> dict[str, int]:
+    """The column of each quantity that is read. Raises FormatError for a header that does not say what they are.
+
+    What stands in the header is quoted only where it is one of a table of disks: the file may be another one.
+    """
+    names, units = zip(*map(_name_and_unit, header), strict=True)
+    chosen: dict[str, int] = {}
+    for name, wanted in columns.items():
+        exact = [k for k, cell in enumerate(header) if cell.strip() == wanted.strip()]
+        places = exact or [k for k, one in enumerate(names) if one == wanted.strip().casefold()]
+        if len(places) != 1:
+            problem = "there is no such column" if not places else f"is given {len(places)} times"
+            raise FormatError(f"columns.{name} = {shown(wanted)}: {problem}{_there(header, names)}")
+        chosen[name] = places[0]
+    taken = set(chosen.values())
+    for name, words in NAMES.items():
+        instead = next((group for group in _ONE_OF if name in group), frozenset())
+        if name in chosen or (name == "y" and "z" in chosen) or instead & columns.keys():
+            continue
+        found = [k for k, one in enumerate(names) if one in words and k not in taken]
+        if len(found) > 1:
+            several = " and ".join(shown(header[k])[1:-1] for k in found)
+            said = f"is given {len(found)} times" if len({names[k] for k in found}) == 1 else f"stands in {several}"
+            raise FormatError(f"column {name} {said}, header must name x, z and radius")
+        if found:
+            chosen[name] = found[0]
+    missing = [] if "x" in chosen else ["x"]
+    missing += [] if {"y", "z"} & chosen.keys() else ["z"]
+    missing += [] if _SIZES & chosen.keys() else ["radius"]
+    if missing:
+        most = f"{', '.join(missing[:-1])} and {missing[-1]}"
+        several = f"columns {most} are" if len(missing) > 1 else f"column {missing[0]} is"
+        raise FormatError(f"{several} missing, header must name x, z and radius{_there(header, names)}")
+    given = [name for name in LENGTHS if name in chosen]
+    if len({units[chosen[name]] for name in given}) > 1:
+        lengths = f"{', '.join(given[:-1])} and {given[-1]}"
+        raise FormatError(f"columns {lengths}: must have the same unit of length")
+    ignored = [one for k, one in enumerate(names) if k not in chosen.values()]
     for column, key in REFUSED.items():
-        if column in header:
+        if column in ignored:
             raise FormatError(f"column {column}: must be left out, {key} is that of all disks")
-    material = tuple(name for name in MATERIAL if name in header)
-    if len(material) > 1 or any(header.count(name) > 1 for name in material):
+    if all(name in chosen for name in MATERIAL):
         raise FormatError("columns mass and density: must have one of them, once")
-    if not material:
-        for column in header:
+    if not any(name in chosen for name in MATERIAL):
+        for column in ignored:
             if (meant := _OTHER_WORDS.get(column)) or (meant := suggestion(column, MATERIAL)):
                 rule = meant if meant.startswith(",") else f", did you mean {meant}?"
                 raise FormatError(f"column {column}: unknown{rule} (mass or density, or neither)")
-    return COLUMNS + material
+    return {name: chosen[name] for name in NAMES if name in chosen}
+
+
+def _there(header: list[str], names: Sequence[str]) -> str:
+    """The names of a header that has a column of disks, and how a scene says what others are."""
+    if not any(name in words for name in names for words in NAMES.values()):
+        return ""
+    there = ", ".join(shown(cell)[1:-1] for cell in header[:12]) + (", ..." if len(header) > 12 else "")
+    return f"; there are {there}; packing.columns says which are meant, as {{z: Y, radius: R}}"

@@ -8,12 +8,13 @@ ends the process at some damaged files.
 from __future__ import annotations
 
 import struct
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...inputs import check_regular
+from ...inputs import read_bytes
 from ...state import FloatArray
 from .table import FileBox, FormatError, Table, upward
 
@@ -26,6 +27,12 @@ _ENTRY = np.dtype(
     [("frame", "<u8"), ("rows", "<u8"), ("at", "<i8"), ("columns", "<u4"), ("name", "<u2"), ("kind", "u1"), ("_", "u1")]
 )
 _NAME_BYTES = 64
+_DAMAGED = "is not a whole GSD file: it is cut or damaged"
+#: Columns of chunks with a row for each particle.
+_OF_PARTICLES = {
+    "position": 3, "orientation": 4, "velocity": 3, "angmom": 4, "moment_inertia": 3, "image": 3, "diameter": 1,
+    "mass": 1, "charge": 1, "body": 1, "typeid": 1,
+}  # fmt: skip
 #: Kinds of numbers by their code, from 1 on.
 _KINDS = ("u1", "<u2", "<u4", "<u8", "i1", "<i2", "<i4", "<i8", "<f4", "<f8")
 
@@ -41,27 +48,61 @@ class _Frames:
         names = self._bytes(names_at, names_size * _NAME_BYTES).split(b"\0")
         self._names = [name.decode("ascii", "replace") for name in names if name]
         index = np.frombuffer(self._bytes(index_at, index_size * _ENTRY.itemsize), _ENTRY)
-        self._index = index[: int(np.argmin(index["at"] > 0)) if (index["at"] <= 0).any() else len(index)]
+        used = int(np.argmin(index["at"] > 0)) if (index["at"] <= 0).any() else len(index)
+        if index[used:].tobytes().strip(b"\0"):
+            raise FormatError(f"{_DAMAGED}: its index goes on after its end")
+        self._index = index[:used]
         if not len(self._index):
             raise FormatError("is not a GSD file with particles: it has no frame")
         self._last = int(self._index["frame"].max())
+        self._check_index(
+            [(0, _HEADER.size), (index_at, index_size * _ENTRY.itemsize), (names_at, names_size * _NAME_BYTES)]
+        )
+
+    def _check_index(self, regions: list[tuple[int, int]]) -> None:
+        """Raise FormatError unless frames are numbered one by one, and each chunk has a name and a place of its own."""
+        frame, name = self._index["frame"], self._index["name"]
+        if frame[0] != 0 or (np.diff(frame.astype(np.int64)) < 0).any() or len(np.unique(frame)) != self._last + 1:
+            raise FormatError(f"{_DAMAGED}: its frames are not numbered one by one")
+        if len(set(self._names)) < len(self._names) or name.max() >= len(self._names):
+            raise FormatError(f"{_DAMAGED}: its list of names")
+        if len(np.unique(np.stack([frame, name.astype(np.uint64)]), axis=1).T) < len(frame):
+            raise FormatError(f"{_DAMAGED}: a chunk is given twice in a frame")
+        kind = self._index["kind"]
+        if not ((kind >= 1) & (kind <= len(_KINDS))).all():
+            raise FormatError(f"{_DAMAGED}: a chunk has values of an unknown kind, code {int(kind.max())}")
+        sizes = np.array([np.dtype(one).itemsize for one in _KINDS])[kind - 1]
+        rows, columns, at = (self._index[one].tolist() for one in ("rows", "columns", "at"))
+        regions += [(a, r * c * s) for a, r, c, s in zip(at, rows, columns, sizes.tolist(), strict=True)]
+        regions = sorted((start, start + size) for start, size in regions if size)
+        if any(end > start for (_, end), (start, _) in pairwise(regions)):
+            raise FormatError(f"{_DAMAGED}: two of its parts stand in the same place")
+        if (end := regions[-1][1]) != len(self._data):
+            raise FormatError(f"{_DAMAGED}: its parts end at byte {end}, it has {len(self._data)}")
 
     def _bytes(self, start: int, size: int) -> bytes:
         if start + size > len(self._data):
-            raise FormatError("is not a whole GSD file: it is cut or damaged")
+            raise FormatError(_DAMAGED)
         return self._data[start : start + size]
 
-    def _chunk(self, frame: int, name: str) -> NDArray | None:
+    def _chunk(self, frame: int, name: str, any_kind: bool = False) -> NDArray | None:
         if name not in self._names:
             return None
         here = self._index[(self._index["frame"] == frame) & (self._index["name"] == self._names.index(name))]
         if not len(here):
             return None
         rows, columns, at, kind = (int(here[0][key]) for key in ("rows", "columns", "at", "kind"))
-        if not 1 <= kind <= len(_KINDS):
-            raise FormatError(f"chunk {name}: has values of an unknown kind, code {kind}")
         number = np.dtype(_KINDS[kind - 1])
+        expected = "u" if name == "particles/N" else "f" if name.startswith(("particles/", "configuration/")) else "uif"
+        if number.kind not in expected and not any_kind:
+            raise FormatError(f"chunk {name}: has values of another kind, code {kind}")
         return np.frombuffer(self._bytes(at, rows * columns * number.itemsize), number).reshape(rows, columns)
+
+    def check(self, name: str, rows: int, columns: int) -> None:
+        """Raise FormatError where the last frame has a chunk of another shape."""
+        found = self._chunk(self._last, name, any_kind=True)
+        if found is not None and found.shape != (rows, columns):
+            raise FormatError(f"chunk {name}: has {found.size} values, must have {rows * columns}")
 
     def has(self, name: str) -> bool:
         """Whether any frame that counts has the chunk."""
@@ -82,12 +123,13 @@ class _Frames:
 
 def read(path: Path) -> Table:
     """The particles as disks."""
-    check_regular(path)
-    frames = _Frames(path.read_bytes())
+    frames = _Frames(read_bytes(path))
     count = float(frames.values("particles/N", 0.0, ()))
     if not 0 < count < 2**31:
         raise FormatError("has no particles")
     n = int(count)
+    for name, columns in _OF_PARTICLES.items():
+        frames.check(f"particles/{name}", n, columns)
     x, y, z = frames.values("particles/position", None, (n, 3)).T
     diameter, mass = (frames.values(f"particles/{name}", 1.0, (n,)) for name in ("diameter", "mass"))
     box = frames.values("configuration/box", None, (6,))

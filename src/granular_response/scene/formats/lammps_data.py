@@ -11,23 +11,87 @@ from pathlib import Path
 
 import numpy as np
 
-from .table import FileBox, FormatError, Mark, Table, bounds, by_id, lines_of, numbers, upright, upward
+from .table import (
+    FileBox,
+    FormatError,
+    Mark,
+    Once,
+    Table,
+    bounds,
+    by_id,
+    lines_of,
+    numbers,
+    shown,
+    upright,
+    upward,
+    whole_number,
+)
 
 _COLUMNS = ("diameter", "density", "x", "y", "z")
 _REASON = "a LAMMPS data file does not say what bounds its disks"
+_BOUNDS = (("xlo", "xhi"), ("ylo", "yhi"), ("zlo", "zhi"))
 #: Edges of a box in newer files, and which of the components must be 0.
 _EDGES = ("avec", "bvec", "cvec")
+_NUMBERED = ("atom", "bond", "angle", "dihedral", "improper")
+#: Headers with a whole number that a file may have.
+_COUNTS = {f"{name}s" for name in _NUMBERED} | {f"{name} types" for name in _NUMBERED}
+_COUNTS |= {f"extra {name} per atom" for name in (*_NUMBERED, "special")}
+#: Sections that may stand beside atoms of style sphere, and the header that says how many lines they have.
+_SECTIONS = {"Atoms": "atoms", "Velocities": "atoms", "Masses": "atom types", "Pair Coeffs": "atom types"}
+_SECTIONS |= {f"{name.capitalize()}s": f"{name}s" for name in _NUMBERED[1:]}
+_SECTIONS |= {f"{name.capitalize()} Coeffs": f"{name} types" for name in _NUMBERED[1:]}
+_SECTIONS |= {f"{name.capitalize()} Type Labels": f"{name} types" for name in _NUMBERED}
+
+
+class _Header:
+    """What stands above the sections."""
+
+    def __init__(self) -> None:
+        self.counts: dict[str, int] = {}
+        self.sides: dict[str, tuple[float, float]] = {}
+        self.corner: list[float] | None = None
+
+    def add(self, cells: list[str], place: str) -> str:
+        """Take a line; what it says. Raises FormatError for one that is no header."""
+        count = whole_number(cells[0])
+        name = " ".join(cells[1:])
+        if name in _COUNTS and count is not None:
+            self.counts[name] = count
+            return name
+        ends = tuple(cells[2:])
+        if ends in _BOUNDS:
+            low, high = numbers(cells[:2], ends, place)
+            self.sides[ends[0][0]] = bounds(low, high, ends[0][0], place)
+            return f"bounds in {ends[0][0]}"
+        values = cells[:3]
+        if cells[3:] == ["xy", "xz", "yz"]:
+            upright(numbers(values, cells[3:], place), place)
+            return "xy xz yz"
+        if cells[3:] == ["abc", "origin"]:
+            self.corner = numbers(values, ("x", "y", "z"), place)
+            return "abc origin"
+        if len(cells) == 4 and cells[3] in _EDGES:
+            k = _EDGES.index(cells[3])
+            edge = numbers(values, ("x", "y", "z"), place)
+            upright(edge[:k] + edge[k + 1 :], place)
+            self.sides["xyz"[k]] = bounds(0.0, edge[k], "xyz"[k], place)
+            return f"bounds in {'xyz'[k]}"
+        raise FormatError(f"{shown(' '.join(cells))}: is no header of a LAMMPS data file", place)
+
+    def across(self) -> tuple[float, float]:
+        """Where the box begins in x, and its width."""
+        left, width = self.sides["x"]
+        return left if self.corner is None else left + self.corner[0], width
 
 
 def read(path: Path) -> Table:
     """The disks of section Atoms."""
-    count: int | None = None
-    sides: dict[str, tuple[float, float]] = {}
-    corner: list[float] | None = None
+    header, once = _Header(), Once()
     ids: list[str] = []
     rows: list[list[float]] = []
     places: list[str] = []
-    inside = False
+    found: dict[str, int] = {}  #: lines of each section
+    section = ""
     lines, whole = lines_of(path)
     mark = Mark.found(lines[0], "line 1") if lines else None
     for line_number, line in enumerate(lines[1:], start=2):
@@ -36,43 +100,47 @@ def read(path: Path) -> Table:
         if not cells:
             continue
         if cells[0][0].isalpha():
-            inside = cells == ["Atoms"]
-            if inside and comment.strip() != "sphere":  # other styles have as many columns
+            section = " ".join(cells)
+            if section not in _SECTIONS:
+                rule = f"{shown(section)}: is no section that atoms of style sphere have"
+                raise FormatError(rule, place)
+            once.add(f"section {section}", place)
+            found[section] = 0
+            if section == "Atoms" and comment.strip() != "sphere":  # other styles have as many columns
                 raise FormatError("atoms must be of style sphere, and say so: Atoms # sphere", place)
-        elif inside:
+            continue
+        if not section:
+            once.add(header.add(cells, place), place)
+            continue
+        found[section] += 1
+        if whole_number(cells[0]) is None:
+            raise FormatError(f"{shown(cells[0])}: a line of section {section} must begin with a whole number", place)
+        if section == "Atoms":
             if len(cells) not in (7, 10):  # three numbers of the periodic image may follow
                 raise FormatError(f"has {len(cells)} values, must have id type diameter density x y z", place)
             ids.append(cells[0])
             rows.append(numbers(cells[2:7], _COLUMNS, place))
             places.append(place)
-        elif cells[1:] == ["atoms"] and cells[0].isdecimal() and len(cells[0]) <= 20:
-            count = int(cells[0])
-        elif len(cells) == 4 and cells[2:] in (["xlo", "xhi"], ["ylo", "yhi"], ["zlo", "zhi"]):
-            low, high = numbers(cells[:2], cells[2:], place)
-            sides[cells[2][0]] = bounds(low, high, cells[2][0], place)
-        elif cells[3:] == ["xy", "xz", "yz"]:
-            upright(numbers(cells[:3], cells[3:], place), place)
-        elif len(cells) == 4 and cells[3] in _EDGES:
-            k = _EDGES.index(cells[3])
-            edge = numbers(cells[:3], ("x", "y", "z"), place)
-            upright(edge[:k] + edge[k + 1 :], place)
-            sides["xyz"[k]] = bounds(0.0, edge[k], "xyz"[k], place)
-        elif cells[3:] == ["abc", "origin"]:
-            corner = numbers(cells[:3], ("x", "y", "z"), place)
-    if corner is not None:
-        sides = {axis: (low + corner["xyz".index(axis)], size) for axis, (low, size) in sides.items()}
-    if count is None or "x" not in sides or len(rows) != count:
+    count = header.counts.get("atoms")
+    if count is None or "x" not in header.sides or len(rows) != count:
         rule = f"must have the headers atoms and xlo xhi, and as many atoms as it says (found {len(rows)})"
         raise FormatError(f"is not a whole LAMMPS data file, {rule}")
+    for name, number in found.items():
+        if number != (said := header.counts.get(_SECTIONS[name], 0)):
+            rule = f"must have {said}, as the header {_SECTIONS[name]} says"
+            raise FormatError(f"section {name} has {number} lines, {rule}")
     if not rows:
         raise FormatError("has no atoms")
     if not whole:
         raise FormatError("is cut: its last line has no end")
+    left, width = header.across()
     if mark is not None:
         mark.check(len(rows), whole)
+        if (left, width) != (0.0, mark.width):
+            rule = f"says width {mark.width!r}, the bounds xlo xhi {left!r} to {left + width!r}; must agree"
+            raise FormatError(rule, "line 1")
     order = by_id(ids, places)
     diameter, density, x, y, z = np.array(rows)[order].T
-    left, width = sides["x"]
     return Table(
         x, z if upward(y, z) == "z" else y, 0.5 * diameter, [places[k] for k in order], density * diameter**3,
         FileBox(left, width, reason=_REASON) if mark is None else mark.box,

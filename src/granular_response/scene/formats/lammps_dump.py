@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,59 +18,127 @@ from .table import (
     FileBox,
     FormatError,
     Table,
+    agree,
     bounds,
     by_id,
     lines_of,
     number,
     numbers,
+    radii,
     shown,
     upright,
     upward,
+    whole_number,
 )
 
 _AXES = "xyz"
+#: Items of a frame, and how many lines each has; None: a line for each atom.
+_ITEMS = {"UNITS": 1, "TIME": 1, "TIMESTEP": 1, "NUMBER OF ATOMS": 1, "BOX BOUNDS": 3, "ATOMS": None}
+_NEEDED = ("TIMESTEP", "NUMBER OF ATOMS", "BOX BOUNDS", "ATOMS")
+
+
+class _Item(NamedTuple):
+    """An item of a frame: where its heading stands, the words after its name, and its lines with their numbers."""
+
+    place: str
+    words: list[str]
+    lines: list[tuple[int, str]]
+
+
+def _frames(lines: list[str]) -> list[dict[str, _Item]]:
+    """All frames by their items. Raises FormatError for a line that belongs to none, and for an item given twice."""
+    frames: list[dict[str, _Item]] = [{}]
+    item: _Item | None = None
+    for k, line in enumerate(lines, start=1):
+        place = f"line {k}"
+        if not line.strip():
+            continue
+        if not line.startswith("ITEM:"):
+            if item is None:
+                raise FormatError("is not a LAMMPS dump file of text, must begin with ITEM: TIMESTEP")
+            item.lines.append((k, line))
+            continue
+        heading = line[len("ITEM:") :].strip()
+        name = max((name for name in _ITEMS if f"{heading} ".startswith(f"{name} ")), key=len, default=None)
+        if name is None:
+            raise FormatError(f"ITEM: {shown(heading)[1:-1]}: is no item of a dump of atoms", place)
+        frame = frames[-1]
+        # units and time stand above the number of the step, which begins a frame
+        if "ATOMS" in frame and "BOX BOUNDS" in frame and name in ("UNITS", "TIME", "TIMESTEP"):
+            frames.append(frame := {})
+        if name in frame:
+            raise FormatError(f"ITEM: {name}: is given twice in a frame, in {frame[name].place} and here", place)
+        frame[name] = item = _Item(place, heading[len(name) :].split(), [])
+    return frames
+
+
+def _checked(frame: dict[str, _Item], which: str) -> int:
+    """The number of atoms of a frame, once it is whole: every item is there with its lines and no other."""
+    if missing := [name for name in _NEEDED if name not in frame]:
+        if missing == ["TIMESTEP", "NUMBER OF ATOMS", "BOX BOUNDS", "ATOMS"]:
+            raise FormatError("is not a LAMMPS dump file of text, must have ITEM: TIMESTEP")
+        raise FormatError(f"is not a whole LAMMPS dump file: the {which} lacks its number, box or atoms")
+    for name, expected in _ITEMS.items():
+        if name not in frame or expected is None:
+            continue
+        item = frame[name]
+        if len(item.lines) != expected:
+            lines = "one line" if expected == 1 else "three lines of bounds"
+            if name == "BOX BOUNDS":
+                lines += ", and have flags of three axes or none"
+            raise FormatError(f"must be followed by {lines}, not {len(item.lines)}", item.place)
+    k, text = frame["NUMBER OF ATOMS"].lines[0]
+    count = whole_number(text.strip())
+    if count is None:
+        raise FormatError(f"{shown(text)}: must be the number of atoms", f"line {k}")
+    found = len(frame["ATOMS"].lines)
+    if found != count or not count:
+        raise FormatError(f"holds {found} of {count} atoms in its {which}", frame["ATOMS"].place)
+    return count
 
 
 def read(path: Path) -> Table:
     """The disks of the last frame."""
     lines, whole = lines_of(path)
-    starts = [k for k, line in enumerate(lines) if line.startswith("ITEM: TIMESTEP")]
-    if not starts:
-        raise FormatError("is not a LAMMPS dump file of text, must have ITEM: TIMESTEP")
-    headings = [k for k in range(starts[-1], len(lines)) if lines[k].startswith("ITEM: ")]
-    parts = ("NUMBER OF ATOMS", "BOX BOUNDS", "ATOMS")
-    items = {name: k for k in headings for name in parts if lines[k].startswith(f"ITEM: {name}")}
-    try:
-        count = int(lines[items["NUMBER OF ATOMS"] + 1])
-        box, atoms = items["BOX BOUNDS"], items["ATOMS"]
-        rows = [line.split() for line in lines[atoms + 1 : atoms + 1 + count]]
-    except (KeyError, IndexError, ValueError):
-        raise FormatError("is not a whole LAMMPS dump file: the last frame lacks its number, box or atoms") from None
-    if len(rows) != count or not count:
-        raise FormatError(f"holds {len(rows)} of {count} atoms in its last frame")
+    frames = _frames(lines)
+    for k, one in enumerate(frames, start=1):
+        _checked(one, "last frame" if k == len(frames) else f"frame {k} of {len(frames)}")
     if not whole:
         raise FormatError("is cut: its last line has no end")
-    flags, sides = _box(lines, box)
-    names = lines[atoms].split()[2:]
-    places = [f"line {atoms + 2 + k}" for k in range(count)]
+    frame = frames[-1]
+    flags, sides = _box(frame["BOX BOUNDS"])
+    atoms = frame["ATOMS"]
+    names, heading = atoms.words, atoms.place
+    for name in names:
+        if names.count(name) > 1:
+            several = [str(k) for k, other in enumerate(names, start=1) if other == name]
+            given = f"is given {len(several)} times, as columns {' and '.join(several)}; must be given once"
+            raise FormatError(f"column {shown(name)[1:-1]} {given}", heading)
+    rows = [line.split() for _, line in atoms.lines]
+    places = [f"line {k}" for k, _ in atoms.lines]
     for cells, place in zip(rows, places, strict=True):
         if len(cells) != len(names):
             raise FormatError(f"has {len(cells)} values, must have {len(names)} as ITEM: ATOMS", place)
     if "id" in names:
         order = by_id([cells[names.index("id")] for cells in rows], places)
         rows, places = [rows[k] for k in order], [places[k] for k in order]
-    heading = f"line {atoms + 1}"
 
     def column(at: int) -> FloatArray:
         return np.array([number(cells[at], names[at], place) for cells, place in zip(rows, places, strict=True)])
 
     def coordinate(axis: int) -> FloatArray:
         low, size = sides[axis]
+        found: dict[str, FloatArray] = {}
         for ending, scaled in (("", False), ("u", False), ("s", True), ("su", True)):
             if (name := _AXES[axis] + ending) in names:
                 values = column(names.index(name))
-                return low + size * values if scaled else values
-        raise FormatError(f"column {_AXES[axis]} is missing", heading)
+                found[name] = low + size * values if scaled else values
+        if not found:
+            raise FormatError(f"column {_AXES[axis]} is missing", heading)
+        (first, values), *others = found.items()
+        for name, other in others:
+            agree((first, name), values, other, places, size if flags[axis : axis + 1] == ["pp"] else 0.0)
+        return values
 
     def quantity(*words: str) -> FloatArray | None:
         found = [k for k, name in enumerate(names) if _plain(name) in words]
@@ -78,13 +147,14 @@ def read(path: Path) -> Table:
             raise FormatError(f"columns {several}: must have one of them", heading)
         return column(found[0]) if found else None
 
-    radius, diameter = quantity("radius"), quantity("diameter")
-    if radius is None and diameter is not None:
-        radius = 0.5 * diameter
-    if radius is None:
+    sizes = {name: values for name in ("radius", "diameter") if (values := quantity(name)) is not None}
+    if not sizes:
         raise FormatError("column radius or diameter is missing", heading)
+    radius = radii(sizes, places)
     mass, density = quantity("mass", "rmass"), quantity("density")
-    if mass is None and density is not None:
+    if mass is not None and density is not None:
+        raise FormatError("columns mass and density: must have one of them", heading)
+    if density is not None:
         mass = density * (2.0 * radius) ** 3  # of a sphere, as LAMMPS has it
     x, y, z = (coordinate(axis) for axis in range(3))
     up = upward(y, z if np.ptp(z) else 0.0 * z)  # where all z are the same, that is anywhere in the box
@@ -97,27 +167,29 @@ def _plain(name: str) -> str:
     return re.sub(r"^(?:c|f|v|i|d)2?_|(?:\[\d+\])+$", "", name).casefold()
 
 
-def _box(lines: list[str], at: int) -> tuple[list[str], list[tuple[float, float]]]:
+def _box(item: _Item) -> tuple[list[str], list[tuple[float, float]]]:
     """Flags of the three axes, if there are any, and along each where the box begins and how far it reaches.
 
     Tilted boxes have three numbers a line, those of newer versions an edge and a component of the origin.
     """
-    words, heading = lines[at].split()[3:], f"line {at + 1}"
-    flags = [word for word in words if re.fullmatch("[pfsm]{2}", word)]
+    words, names = item.words, ["lo", "hi"]
     edges = words[:2] == ["abc", "origin"]
-    if len(flags) not in (0, 3) or len(lines) < at + 4:
-        raise FormatError("must be followed by three lines of bounds, and have flags of three axes or none", heading)
-    names = [*_AXES, "origin"] if edges else ["lo", "hi", "tilt"] if "xy" in words else ["lo", "hi"]
+    if edges:
+        names, words = [*_AXES, "origin"], words[2:]
+    elif words[:3] == ["xy", "xz", "yz"]:
+        names, words = ["lo", "hi", "tilt"], words[3:]
+    if len(words) not in (0, 3) or not all(re.fullmatch("[pfsm]{2}", word) for word in words):
+        raise FormatError("must be followed by three lines of bounds, and have flags of three axes or none", item.place)
     sides = []
-    for axis in range(3):
-        place = f"line {at + 2 + axis}"
-        values = numbers(lines[at + 1 + axis].split(), names, place)
+    for axis, (k, line) in enumerate(item.lines):
+        place = f"line {k}"
+        values = numbers(line.split(), names, place)
         if edges:
             upright(values[:axis] + values[axis + 1 : 3], place)
             values = [values[3], values[3] + values[axis]]
         upright(values[2:], place)
         sides.append(bounds(values[0], values[1], _AXES[axis], place))
-    return flags, sides
+    return words, sides
 
 
 def _file_box(flags: list[str], sides: list[tuple[float, float]], up: int) -> FileBox:

@@ -96,6 +96,18 @@ class Mark:
             raise FormatError("is cut: its last line has no end")
 
 
+class Once:
+    """Where each thing that a file says once stands in it."""
+
+    def __init__(self) -> None:
+        self._places: dict[str, str] = {}
+
+    def add(self, what: str, place: str) -> None:
+        """Note it. Raises FormatError, with both places, where it is said a second time."""
+        if (first := self._places.setdefault(what, place)) != place:
+            raise FormatError(f"{what}: is given twice, in {first} and here; must be given once", place)
+
+
 def lines_of(path: Path) -> tuple[list[str], bool]:
     """The lines of a text file, and whether the last one has an end. OSError, UnicodeError."""
     text = read_text(path).replace("\r\n", "\n").replace("\r", "\n")
@@ -104,13 +116,18 @@ def lines_of(path: Path) -> tuple[list[str], bool]:
 
 def number(text: str, name: str, place: str) -> float:
     """A finite number. Raises FormatError with the name of its column."""
-    try:
-        value = math.nan if "_" in text else float(text)  # 1_0 is Python's, and no table's
+    try:  # 1_0 and digits of other scripts are Python's, and no table's
+        value = math.nan if "_" in text or not text.isascii() else float(text)
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
         raise FormatError(f"{name} = {shown(text)}: must be a finite number", place)
     return value
+
+
+def whole_number(text: str) -> int | None:
+    """A whole number, 0 or greater, as other programs write it, with 64 bits; None for anything else."""
+    return int(text) if text.isascii() and text.isdecimal() and len(text) <= 20 else None
 
 
 def shown(text: str) -> str:
@@ -146,11 +163,39 @@ def by_id(ids: Sequence[str], places: Sequence[str]) -> list[int]:
     """
     first: dict[int, int] = {}
     for k, (text, place) in enumerate(zip(ids, places, strict=True)):
-        if not (text.isdecimal() and len(text) <= 20):  # LAMMPS has 64 bits
+        value = whole_number(text)
+        if value is None:
             raise FormatError(f"id = {shown(text)}: must be a whole number", place)
-        if (known := first.setdefault(int(text), k)) != k:
-            raise FormatError(f"id = {int(text)}: must differ from that of {places[known]}", place)
+        if (known := first.setdefault(value, k)) != k:
+            raise FormatError(f"id = {value}: must differ from that of {places[known]}", place)
     return [first[value] for value in sorted(first)]
+
+
+#: How far, relative to the largest, numbers that other programs print may differ and still be the same.
+PRINTED = 1e-5
+
+
+def agree(names: Sequence[str], one: FloatArray, other: FloatArray, places: Sequence[str], period: float = 0.0) -> None:
+    """Raise FormatError, with both names, unless two columns say the same, up to printing and whole periods."""
+    apart = one - other
+    if period:
+        apart = apart - period * np.round(apart / period)
+    wrong = ~(np.abs(apart) <= PRINTED * max(float(np.abs(one).max()), float(np.abs(other).max()), period))
+    if wrong.any():
+        k = int(np.argmax(wrong))
+        pair = " and ".join(f"{shown(name)[1:-1]}" for name in names)
+        raise FormatError(f"columns {pair} contradict each other; must agree, or be one of the two", places[k])
+
+
+def radii(columns: dict[str, FloatArray], places: Sequence[str]) -> FloatArray:
+    """Radii from columns ``radius`` and ``diameter``, of which there is one at least; two must agree."""
+    if "diameter" not in columns:
+        return columns["radius"]
+    half = 0.5 * columns["diameter"]
+    if "radius" not in columns:
+        return half
+    agree(("radius", "diameter"), columns["radius"], half, places)
+    return columns["radius"]
 
 
 def upward(y: FloatArray, z: FloatArray) -> str:

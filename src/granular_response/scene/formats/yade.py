@@ -6,31 +6,40 @@ from pathlib import Path
 
 import numpy as np
 
-from .table import NO_MASSES, FormatError, Mark, Table, lines_of, numbers, upward
+from .table import NO_MASSES, FormatError, Mark, Once, Table, lines_of, numbers, shown, upward
 
 _COLUMNS = ("x", "y", "z", "r")
+#: The last name of a format of YADE that stands for as many values as its user asked for.
+_ANY = "attrs"
 
 
 def read(path: Path) -> Table:
     """The spheres as disks. The format has no box; our own files say theirs in a comment."""
     names: list[str] = list(_COLUMNS)
-    rows, places = [], []
+    rows: list[list[float]] = []
+    places: list[str] = []
     mark: Mark | None = None
+    once = Once()
+    values = 0  #: in each line, where the format leaves their number open
     lines, whole = lines_of(path)
     for line_number, line in enumerate(lines, start=1):
         place = f"line {line_number}"
-        if line.startswith("#"):
-            mark = mark or Mark.found(line, place)
-            words = line[1:].split()
-            if words[:1] == ["format"] and len(words) == 2:
-                names = words[1].split("_")
-                if not set(_COLUMNS) <= set(names):
-                    raise FormatError("format must have x, y, z and r", place)
+        if line.lstrip().startswith("#"):
+            if found := Mark.found(line, place):
+                once.add("mark of granular-response", place)
+                mark = found
+            words = line.split()
+            if words[0] == "#format" or (words[:2] == ["#", "format"] and len(words) == 3):
+                once.add("#format", place)
+                names = _names(line, place, bool(rows))
             continue
         cells = line.split()
         if not cells:
             continue
-        if len(cells) < len(names):
+        expected = len(names)
+        if names[-1] == _ANY:
+            values = expected = values or max(len(cells), len(names))
+        if len(cells) != expected:
             raise FormatError(f"has {len(cells)} values, must have {' '.join(names)}", place)
         rows.append(numbers([cells[names.index(name)] for name in _COLUMNS], _COLUMNS, place))
         places.append(place)
@@ -43,3 +52,17 @@ def read(path: Path) -> Table:
     if mark is None:
         return Table(x, up, radius, places, remark=NO_MASSES)
     return Table(x, up, radius, places, box=mark.box)  # what masses it cannot hold was said when it was written
+
+
+def _names(line: str, place: str, late: bool) -> list[str]:
+    """The names of a format line."""
+    names = line.replace("#", " ", 1).split()[1:]
+    if late or len(names) != 1:
+        raise FormatError("format must be one word such as x_y_z_r, above the spheres", place)
+    names = names[0].split("_")
+    for name in dict.fromkeys(names):
+        if names.count(name) > 1:
+            raise FormatError(f"format names {shown(name)} {names.count(name)} times, must name it once", place)
+    if not set(_COLUMNS) <= set(names):
+        raise FormatError("format must have x, y, z and r", place)
+    return names

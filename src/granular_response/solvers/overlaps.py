@@ -1,0 +1,80 @@
+"""Given disks without their overlaps, for places that were measured.
+
+Noise of a measurement presses some disks into each other, and their contacts into springs that hold far more than
+gravity: a packing in balance is then thrown about. Here overlapping disks are pushed apart first, by a relaxation
+without friction, weights and inertia: each disk moves by half its overlaps, away from the disks and walls that it
+overlaps with, and by half of its last step, until no overlap is left that could move anything. So disks that touch
+nothing stay where they are, and others move by about the noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..scene import Packing, SceneError
+from ..state import FloatArray
+from ..state.box import WALL_NORMAL
+from .close_pairs import close_pairs
+
+
+@dataclass(frozen=True)
+class RemovalOptions:
+    """Numbers by which overlaps are taken out. Lengths in mean radii."""
+
+    #: Overlap that is left. A contact of stiffness 1e6 mg / mean radius that holds it could lift a disk by 0.005.
+    left: float = 1e-4
+    #: Parts of the overlaps, and of the last step, by which disks move: faster steps throw them farther.
+    part: float = 0.5
+    momentum: float = 0.5
+    #: Gap up to which pairs are listed, and most steps.
+    skin: float = 0.25
+    steps: int = 20_000
+
+
+OPTIONS = RemovalOptions()
+
+
+def without_overlaps(packing: Packing) -> Packing:
+    """The packing with its disks pushed apart; the places that were given are kept beside them.
+
+    Raises SceneError where overlaps are left after ``RemovalOptions.steps``.
+    """
+    position, box, radius = packing.position.copy(), packing.box, packing.radius
+    step = np.zeros_like(position)
+    listed = position
+    first, second = close_pairs(position, radius, OPTIONS.skin, box.period)
+    for _ in range(OPTIONS.steps):
+        if np.abs(position - listed).max() > 0.25 * OPTIONS.skin:
+            listed = position
+            first, second = close_pairs(position, radius, OPTIONS.skin, box.period)
+        push, largest = _push(packing, position, first, second)
+        if largest <= OPTIONS.left:
+            return replace(packing, position=position)
+        step = OPTIONS.momentum * step + OPTIONS.part * push
+        position = position + step
+    raise SceneError(
+        f"packing.overlaps = 'removed': an overlap of {largest:.2g} mean radii is left after {OPTIONS.steps} steps, "
+        "the disks have no room"
+    )
+
+
+def _push(packing: Packing, position: FloatArray, first, second) -> tuple[FloatArray, float]:
+    """(n, 2) half the overlaps of each disk with others and all of those with walls, and the largest overlap."""
+    box, radius, n = packing.box, packing.radius, packing.n
+    apart = box.separation(position[first], position[second])
+    distance = np.sqrt((apart * apart).sum(axis=1))
+    overlap = radius[first] + radius[second] - distance
+    deep = np.flatnonzero(overlap > 0.0)
+    largest = float(overlap.max(initial=0.0))
+    first, second = first[deep], second[deep]
+    half = apart[deep] * (0.5 * overlap[deep] / np.maximum(distance[deep], 1e-12))[:, None]
+    push = np.zeros((n, 2))
+    for axis in (0, 1):
+        push[:, axis] = np.bincount(first, half[:, axis], n) - np.bincount(second, half[:, axis], n)
+    for wall in box.walls:
+        inside = np.maximum(-box.wall_gap(position, radius, np.array(wall)), 0.0)
+        push += inside[:, None] * WALL_NORMAL[wall]
+        largest = max(largest, float(inside.max()))
+    return push, largest
