@@ -114,6 +114,11 @@ class StaticSystem(Equations):
                 return updated
         return self.renewed_factor(known, sense)
 
+    def outdate(self, factor: Updated) -> None:
+        """Let the next :meth:`updated_factor` be made anew, if ``factor`` is still the one that it would update."""
+        if self._updated is not None and self._updated[0] is factor:
+            self._updated = None
+
     def renewed_factor(self, known: Configuration, sense: np.ndarray) -> Updated:
         """The same, made anew."""
         self._updated = None
