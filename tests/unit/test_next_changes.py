@@ -218,28 +218,28 @@ def test_solutions_brought_up_to_date_are_those_of_the_changed_matrix(seed):
     rng = np.random.default_rng(seed)
     n, b, most, e = 30, 5, 12, 4
     dense = np.triu(np.tril(rng.normal(size=(n, n)), b), -b) + 4.0 * np.eye(n)
-    updated = Updated(_factor(dense, b), n, most, e)
+    updated = Updated(_factor(dense, b), n, most, e, np.zeros(6, np.int64))
     known = {}
 
     def change(key):
         """One column or two; large enough to turn the sign of the determinant now and then."""
         return known[key]
 
-    wanted: dict[int, int] = {}
+    wanted = np.zeros(6, np.int64)
     right = rng.normal(size=n)
     signs = set()
     for turn in range(40):
         key = int(rng.integers(6))
-        if key in wanted and rng.random() < 0.5:
-            del wanted[key]
+        if wanted[key] and rng.random() < 0.5:
+            wanted[key] = 0
         else:
-            wanted[key] = turn
+            wanted[key] = turn + 1
             rows = int(rng.integers(1, 3))
             places = np.array([rng.choice(n, e, replace=False) for _ in range(rows)])
             known[key] = places, *(rng.normal(0.0, 2.0, (rows, e)) for _ in range(2))
-        assert updated.update(dict(wanted), of_all(change))
+        assert updated.update(wanted.copy(), of_all(change))
         matrix = dense.copy()
-        for k in wanted:
+        for k in np.flatnonzero(wanted):
             for at, p, q in zip(*known[k], strict=True):
                 matrix[np.ix_(at, at)] += np.outer(p, q)
         sign = np.linalg.slogdet(matrix)[0]
@@ -275,18 +275,18 @@ def test_several_right_hand_sides_have_the_digits_that_each_has_alone(b):
 
 
 def test_more_changes_than_there_is_room_for_are_refused():
-    updated = Updated(_factor(np.eye(5) * 2.0, 0), 5, 3, 1)
+    updated = Updated(_factor(np.eye(5) * 2.0, 0), 5, 3, 1, np.zeros(2, np.int64))
     two = np.zeros((2, 1), np.int64), np.ones((2, 1)), np.ones((2, 1))
-    assert updated.update({0: 1}, of_all(lambda _: two))
-    assert not updated.update({0: 1, 1: 1}, of_all(lambda _: two))
-    assert updated.update({1: 2}, of_all(lambda _: two))  # the first one goes, so there is room
+    assert updated.update(np.array([1, 0]), of_all(lambda _: two))
+    assert not updated.update(np.array([1, 1]), of_all(lambda _: two))
+    assert updated.update(np.array([0, 2]), of_all(lambda _: two))  # the first one goes, so there is room
 
 
 @pytest.mark.parametrize("held", [1e-12, 1e12])
 def test_a_change_that_takes_hold_of_what_nothing_held_is_not_called_accurate(held):
     dense = np.diag([1.0, 1.0, held, 1.0])
-    updated = Updated(_factor(dense, 0), 4, 2, 1)
+    updated = Updated(_factor(dense, 0), 4, 2, 1, np.zeros(1, np.int64))
     one = np.array([[2]]), np.array([[1.0]]), np.array([[-held + 1e-3 if held > 1.0 else 1.0]])
     assert updated.accurate
-    assert updated.update({0: 1}, of_all(lambda _: one)) and not updated.accurate
-    assert updated.update({}, of_all(lambda _: one)) and updated.accurate
+    assert updated.update(np.array([1]), of_all(lambda _: one)) and not updated.accurate
+    assert updated.update(np.array([0]), of_all(lambda _: one)) and updated.accurate

@@ -4,6 +4,7 @@ import inspect
 import re
 from dataclasses import fields, replace
 
+import numpy as np
 import pytest
 from small_scenes import at_rest, free_disks, scene
 
@@ -108,6 +109,25 @@ def test_changed_stiffnesses_make_no_factorisation_up_to_a_number(monkeypatch):
     few = factorisations()
     monkeypatch.setattr(system, "OPTIONS", replace(system.OPTIONS, most_changed=0))
     assert factorisations() > 2 * few
+
+
+def test_a_landing_leaves_force_and_a_factorisation_as_its_options_say(monkeypatch):
+    """Coarser events have other loads, by no more than the force that is left; the floor feels nothing of it."""
+    loads = [{"disk": "top-centre", "force": [0.0, -12.0]}]
+    problem, rest = at_rest(scene(6, 13, contact__friction=0.2, loads=loads))
+    usual = path.OPTIONS
+
+    def loaded(**options) -> State:
+        monkeypatch.setattr(path, "OPTIONS", replace(usual, **options))
+        return follow(problem, rest, [1.0])[0]
+
+    exact, coarse, renewed = loaded(passing=1e-12), loaded(), loaded(outdated=0)
+    for other in (coarse, renewed):
+        assert [event.kind for event in other.reached.events] == [event.kind for event in exact.reached.events]
+        assert np.abs(other.wall_force() - exact.wall_force()).max() < usual.passing
+    at = np.array([[e.load_factor for e in state.reached.events] for state in (exact, coarse)])
+    assert 0.0 < np.median(np.abs(at[1] - at[0])) < usual.passing
+    assert renewed.reached.factorisations > 2 * coarse.reached.factorisations
 
 
 def test_regularisation_holds_what_nothing_holds():

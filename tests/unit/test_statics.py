@@ -55,6 +55,29 @@ def test_forces_agree_with_dynamics_at_rest(friction, spring, law):
         assert found == pytest.approx(expected, abs=1e-11)
 
 
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("friction", FRICTION)
+@pytest.mark.parametrize("size", [1e-4, 0.1])
+def test_contacts_that_keep_their_status_have_the_same_bits_in_vectors(friction, law, size):
+    """Statuses at random, small and large turns; and by which force the return map would give others."""
+    problem = problem_with(friction, law)
+    system, known = started(problem, shaken(problem, spring=5e-3))
+    rng = np.random.default_rng(1)
+    rubs = system.friction > 0.0
+    sense = np.where(rubs, rng.integers(-2, 3, len(rubs)), rng.integers(0, 2, len(rubs))).astype(np.int8)
+    sense[sense == -1] = OPEN
+    q = known.q + size * rng.normal(size=system.dof)
+    fixed, kept = system.trial(known, q, fixed=sense), system.kept(known, q, sense, np.zeros(system.dof), 1.0)
+    for name in ("contact_force", "normal", "tangential", "status"):
+        assert np.array_equal(getattr(kept, name), getattr(fixed, name)), name
+    assert np.array_equal(kept.normals, fixed.normals)
+    assert np.array_equal(kept.configuration.spring, fixed.configuration.spring)
+    free = system.trial(known, q)
+    own = system.kept(known, q, free.sense, np.zeros(system.dof), 1.0)
+    assert own.contradiction == 0.0 and np.array_equal(own.contact_force, free.contact_force)
+    assert kept.contradiction > 1.0
+
+
 def dense_tangent(system, trial):
     """The tangent as a dense matrix in the order ``[x | z | angle]``."""
     matrix = system.tangent(trial).toarray()

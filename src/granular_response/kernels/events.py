@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import math
 
+from ..contact.law import stiffness
+from ..machine.lanes import WIDTH, anywhere, gather, magnitude, put, select, spread, take
 from ..machine.machine_code import kernel
 from ..state.status import OPEN, SLIDING, STICKING
-from .statics import _contact_at
+from .statics import _contact_at, _item, _shapes
 
 #: What a contact does next; ``SLIDES`` is negative where it will slide under a negative force.
 NOTHING, OPENS, CLOSES, SLIDES, STICKS = 0, 1, 2, 3, 4
@@ -41,25 +43,27 @@ def _rolling_rates(c, v, i, j, apart, k, n, rolls):
 
 @kernel(forceinline=True)
 def _next_to_limit(what, left, rate, status, limit, force, grows, falls, tip, negligible):
-    """What a contact does next, if it opens so, or does nothing, unless friction makes it do something before.
+    """What contacts do next, if they open so, or do nothing, unless friction makes them do something before.
 
     ``limit`` : of a ``force`` that grows, if it sticks, while the limit falls.
     """
-    if abs(status) == SLIDING:
-        sense = 1.0 if status > 0 else -1.0
-        behind = -(sense * grows + falls)
-        if behind > negligible:
-            return STICKS, 0.0, behind
-        return what, left, rate
+    slides, against = magnitude(status) > STICKING, status < 0.0
+    behind = -(select(against, -grows, grows) + falls)
+    back = slides & (behind > negligible)
     for sense in (1.0, -1.0):
         closing = sense * grows + falls
-        if closing > negligible:
-            room = limit - sense * force
-            # one that bears nothing slides before it opens
-            first = room <= tip and left <= tip and closing > rate
-            if rate == 0.0 or room * rate < left * closing or first:
-                what, left, rate = SLIDES if sense > 0.0 else -SLIDES, room, closing
-    return what, left, rate
+        room = limit - sense * force
+        # one that bears nothing slides before it opens
+        first = (room <= tip) & (left <= tip) & (closing > rate)
+        sooner = (rate <= 0.0) | (room * rate < left * closing) | first
+        # with a mask for what may slide at all
+        sooner = sooner & (closing > negligible) & (magnitude(status) <= STICKING)
+        what, left, rate = (
+            select(sooner, sense * SLIDES, what),
+            select(sooner, room, left),
+            select(sooner, closing, rate),
+        )
+    return select(back, STICKS, what), select(back, 0.0, left), select(back, behind, rate)
 
 
 @kernel
@@ -84,11 +88,13 @@ def until(c, what, q, v, n, radius, pairs, walls, rolls, normal, tangential, rol
 
 
 @kernel
-def _count(pairs, walls, rolls, status, normal, tip, ties, bearing, turning):
-    """Count what ties each disk, (n,), along normals and where contacts stick, and its contacts that bear something.
+def count_ties(pairs, walls, rolls, status, normal, tip, count):
+    """Count in ``count`` (3, n) the ties of each disk, its contacts that bear something, and those that stick.
 
-    ``turning`` counts those that stick: where there is none its turn changes no force.
+    A contact ties along its normal and, where it sticks, along the tangent. Where none sticks the turn of the disk
+    changes no force.
     """
+    ties, bearing, turning = count[0], count[1], count[2]
     m = pairs.first.size
     size = m + walls.disk.size
     for c in range(size):
@@ -110,58 +116,121 @@ def _count(pairs, walls, rolls, status, normal, tip, ties, bearing, turning):
             turning[pairs.second[c]] += sticks
 
 
+@kernel(forceinline=True)
+def _next(status, apart, along, overlap, normal, tangential, k, law, tip, negligible):
+    """What contacts of a law do next that are not those of a rattler, for numbers or for vectors of them."""
+    unit = law.normal_stiffness
+    is_open, parts = magnitude(status) <= 0.0, unit * apart
+    sense = select(is_open, -1.0, 1.0)
+    goes = sense * parts > negligible
+    what = select(goes, select(is_open, float(CLOSES), float(OPENS)), 0.0)
+    left, rate = select(goes, sense * (unit * overlap), 0.0), select(goes, sense * parts, 0.0)
+    if law.friction > 0.0:
+        mu, kt = law.friction, law.tangential_stiffness
+        does, until, speed = _next_to_limit(
+            what, left, rate, status, mu * normal, tangential, -kt * along, mu * k * apart, tip, negligible
+        )
+        what, left, rate = select(is_open, what, does), select(is_open, left, until), select(is_open, rate, speed)
+    return what, left, rate
+
+
 @kernel
 def next_changes(
-    q, v, n, radius, pairs, walls, rolls, normal, tangential, rolling, overlap, status, tip, negligible, count, what,
-    left, rate,
+    v, n, radius, pairs, pair_shape, walls, rolls, nx, nz, normal, tangential, rolling, overlap, status, tip,
+    negligible, loaded, table, count, what, left, rate,
 ):  # fmt: skip
     """Fill ``what``, ``left`` (mean weights) and ``rate`` (of the fall of ``left``), as long as ``status`` each.
 
-    ``q``, ``v`` (dof,) : displacements and their rates; ``rolls`` : ``statics.Rolls`` or None; ``normal``,
-    ``tangential``, ``rolling``, ``overlap`` (m + w,) : forces, the rolling ones None without; ``status`` (m + w,), or
-    twice as many with rolling resistance : negative for contacts that slide under a negative force; ``tip``,
-    ``negligible`` : a force and a rate of a force that are none; ``count`` (3, n) : to count contacts in, from zero, or
-    from more ties than freedoms where a load acts; in the last row those that stick. A rattler that
-    rests on one contact and that no more ties than it has freedoms, pushed along by another disk, bears nothing there
-    however it moves: such a contact opens when the other disk withdraws, and nothing else happens to it.
+    ``v`` (dof,) : rates of displacements; ``rolls`` : ``statics.Rolls`` or None; ``nx``, ``nz``, ``normal``,
+    ``tangential``, ``rolling``, ``overlap`` (m + w,) : normals and forces, the rolling ones None without; ``status``
+    (m + w,), or twice as many with rolling resistance, of floats : negative for contacts that slide under a negative
+    force; ``tip``, ``negligible`` : a force and a rate of a force that are none; ``loaded`` (n,) : ties that loads
+    count as, more than a disk has freedoms; ``table`` (m, 2) : disks of the pairs; ``count`` (3, n) : room to count in.
+    A rattler that rests on one contact and that no more ties than it has freedoms, pushed along by another disk, bears
+    nothing there however it moves: such a contact opens when the other disk withdraws, and nothing else happens to it.
+
+    Returns how many are within ``tip`` of their change.
     """
-    ties, bearing = count[0], count[1]
-    _count(pairs, walls, rolls, status, normal, tip, ties, bearing, count[2])
-    freedoms = q.size // n
-    size = normal.size
-    for c in range(size):
-        i, j, nx, nz, k, unit, mu, kt = _contact_at(c, q, n, pairs, walls)
-        does, until, speed = NOTHING, 0.0, 0.0
-        does_roll, until_roll, speed_roll = NOTHING, 0.0, 0.0
-        apart, along = _motion(v, i, j, nx, nz, n, radius)
-        first = ties[i] <= freedoms and bearing[i] <= 1
-        second = j >= 0 and ties[j] <= freedoms and bearing[j] <= 1
-        if status[c] == OPEN:
-            if -unit * apart > negligible:
-                does, until, speed = CLOSES, -unit * overlap[c], -unit * apart
-        elif normal[c] <= tip and (first or second):
+    size, m = normal.size, pairs.first.size
+    like, turns = spread(0.0), v.size == 3 * n
+    rests = False
+    whole = m - m % WIDTH
+    for c in range(0, whole, WIDTH):
+        wx = gather(v, 0, table, c, 0) - gather(v, 0, table, c, 1)
+        wz = gather(v, n, table, c, 0) - gather(v, n, table, c, 1)
+        x, z = take(nx, c, like), take(nz, c, like)
+        along = wz * x - wx * z
+        if turns:
+            turn = gather(radius, 0, table, c, 0) * gather(v, 2 * n, table, c, 0)
+            along = along - (turn + gather(radius, 0, table, c, 1) * gather(v, 2 * n, table, c, 1))
+        xi, fn, sense = take(overlap, c, like), take(normal, c, like), take(status, c, like)
+        rests = rests or anywhere((magnitude(sense) > 0.0) & (fn <= tip))
+        k = stiffness(pairs.law, xi, _shapes(pair_shape, c, like))
+        does, until, speed = _next(
+            sense, wx * x + wz * z, along, xi, fn, take(tangential, c, like), k, pairs.law, tip, negligible
+        )
+        put(what, c, does)
+        put(left, c, until)
+        put(rate, c, speed)
+    for c in range(whole, size):
+        i = pairs.first[c] if c < m else walls.disk[c - m]
+        j = pairs.second[c] if c < m else -1
+        apart, along = _motion(v, i, j, nx[c], nz[c], n, radius)
+        rests = rests or (status[c] != 0.0 and normal[c] <= tip)
+        if c < m:
+            k = stiffness(pairs.law, overlap[c], _item(pair_shape, c))
+            does, until, speed = _next(
+                status[c], apart, along, overlap[c], normal[c], tangential[c], k, pairs.law, tip, negligible
+            )
+        else:
+            k = stiffness(walls.law, overlap[c], _item(walls.shape, c - m))
+            does, until, speed = _next(
+                status[c], apart, along, overlap[c], normal[c], tangential[c], k, walls.law, tip, negligible
+            )
+        what[c], left[c], rate[c] = does, until, speed
+    if rolls is not None:
+        for c in range(size):
+            i = pairs.first[c] if c < m else walls.disk[c - m]
+            j = pairs.second[c] if c < m else -1
+            if c < m:
+                k = stiffness(pairs.law, overlap[c], _item(pair_shape, c))
+            else:
+                k = stiffness(walls.law, overlap[c], _item(walls.shape, c - m))
+            apart, _ = _motion(v, i, j, nx[c], nz[c], n, radius)
+            grows, falls = _rolling_rates(c, v, i, j, apart, k, n, rolls)
+            does, until, speed, turned = 0.0, 0.0, 0.0, status[size + c]
+            if turned != 0.0:
+                limit = rolls.friction[c] * normal[c]
+                does, until, speed = _next_to_limit(
+                    does, until, speed, turned, limit, rolling[c], grows, falls, tip, negligible
+                )
+            what[size + c], left[size + c], rate[size + c] = does, until, speed
+    if rests:
+        count[:, :] = 0
+        for i in range(n):
+            count[0, i] = loaded[i]
+        count_ties(pairs, walls, rolls, status, normal, tip, count)
+        for c in range(size):
+            if status[c] == 0.0 or normal[c] > tip:
+                continue
+            i = pairs.first[c] if c < m else walls.disk[c - m]
+            j = pairs.second[c] if c < m else -1
+            first = count[0, i] <= v.size // n and count[1, i] <= 1
+            if not (first or (j >= 0 and count[0, j] <= v.size // n and count[1, j] <= 1)):
+                continue
+            does, speed = 0.0, 0.0
             if j >= 0:
                 # the velocity of the rattler towards the other disk: one that would be drawn along stays behind
-                drawn = -(v[i] * nx + v[n + i] * nz) if first else v[j] * nx + v[n + j] * nz
-                if unit * drawn > negligible:
-                    does, speed = OPENS, unit * drawn
-        else:
-            if unit * apart > negligible:
-                does, until, speed = OPENS, unit * overlap[c], unit * apart
-            if mu > 0.0:
-                does, until, speed = _next_to_limit(
-                    does, until, speed, status[c], mu * normal[c], tangential[c], -kt * along, mu * k * apart, tip,
-                    negligible,
-                )  # fmt: skip
-            if rolls is not None and status[size + c] != OPEN:
-                grows, falls = _rolling_rates(c, v, i, j, apart, k, n, rolls)
-                does_roll, until_roll, speed_roll = _next_to_limit(
-                    NOTHING, 0.0, 0.0, status[size + c], rolls.friction[c] * normal[c], rolling[c], grows, falls, tip,
-                    negligible,
-                )  # fmt: skip
-        what[c], left[c], rate[c] = does, until, speed
-        if rolls is not None:
-            what[size + c], left[size + c], rate[size + c] = does_roll, until_roll, speed_roll
+                drawn = -(v[i] * nx[c] + v[n + i] * nz[c]) if first else v[j] * nx[c] + v[n + j] * nz[c]
+                if pairs.law.normal_stiffness * drawn > negligible:
+                    does, speed = float(OPENS), pairs.law.normal_stiffness * drawn
+            what[c], left[c], rate[c] = does, 0.0, speed
+            if rolls is not None:
+                what[size + c], left[size + c], rate[size + c] = 0.0, 0.0, 0.0
+    due = 0
+    for c in range(rate.size):
+        due += rate[c] > 0.0 and left[c] <= tip
+    return due
 
 
 @kernel

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from ..contact.coulomb import return_map
 from ..contact.law import elastic_force, energy, stiffness
+from ..machine.lanes import take
 from ..machine.machine_code import kernel
 from ..state.status import AT_LIMIT, OPEN, SLIDING, STICKING
 
@@ -69,13 +70,15 @@ class Response(NamedTuple):
     normal: Floats
     tangential: Floats
     spring: Floats
+    nx: Floats  #: direction of the normal force on the first body
+    nz: Floats
     status: NDArray[Any]
 
     @classmethod
     def empty(cls, size: int) -> Response:
         """Room for ``size`` contacts."""
-        overlap, normal, tangential, spring = np.zeros((4, size))
-        return cls(overlap, normal, tangential, spring, np.zeros(size, np.int8))
+        overlap, normal, tangential, spring, nx, nz = np.zeros((6, size))
+        return cls(overlap, normal, tangential, spring, nx, nz, np.zeros(size, np.int8))
 
 
 class RollingResponse(NamedTuple):
@@ -127,6 +130,14 @@ def _item(values, c):
 
 
 @kernel(forceinline=True)
+def _shapes(values, c, like):
+    """What the law needs of the radii of a vector of contacts; None for a law that needs nothing."""
+    if values is None:
+        return None
+    return take(values, c, like)
+
+
+@kernel(forceinline=True)
 def _pair_at(q, n, pairs, c):
     """Disks of a listed pair, their relative displacement, and separation, distance and overlap at ``q``."""
     i = pairs.first[c]
@@ -144,12 +155,17 @@ def _pair_at(q, n, pairs, c):
 
 
 @kernel(forceinline=True)
+def _small_angle(sine, cosine):
+    t = sine / cosine
+    u = t * t
+    return t - t * u * (1.0 / 3.0 - u * (1.0 / 5.0 - u * (1.0 / 7.0 - u * (1.0 / 9.0))))
+
+
+@kernel(forceinline=True)
 def _angle(sine, cosine):
     """``atan2(sine, cosine)``: of the small turn of an increment by its series, to the last digit."""
     if abs(sine) < SMALL_TURN * cosine:
-        t = sine / cosine
-        u = t * t
-        return t - t * u * (1.0 / 3.0 - u * (1.0 / 5.0 - u * (1.0 / 7.0 - u * (1.0 / 9.0))))
+        return _small_angle(sine, cosine)
     return math.atan2(sine, cosine)
 
 
@@ -206,7 +222,7 @@ def _press(c, xi, nx, nz, inverse, form, law, out, tangent):
 def _rub(
     c, xi, nx, nz, inverse, slip, mean, distance, slip_n, form, law, overlap0, spring, limits, fixed, out, tangent
 ):
-    """Closed contact with friction; returns normal and tangential force, and by which force a kept status is wrong.
+    """Closed contact with friction; returns normal and tangential force.
 
     ``slip`` : of the increment; ``mean / distance``, ``slip_n`` : its derivatives along tangent and normal;
     ``spring`` : that before the increment.
@@ -214,7 +230,7 @@ def _rub(
     fn = elastic_force(law, xi, form)
     share = _closed_part(overlap0[c], xi)
     limit = law.friction * fn if limits is None else limits[c]
-    ft, s, sense, wrong = _returned(spring + share * slip, limit, law.tangential_stiffness, _item(fixed, c))
+    ft, s, sense, _ = _returned(spring + share * slip, limit, law.tangential_stiffness, _item(fixed, c))
     out.status[c] = SLIDING if sense != 0.0 else STICKING
     if tangent is not None:
         k = stiffness(law, xi, form)
@@ -228,7 +244,7 @@ def _rub(
     out.normal[c] = fn
     out.tangential[c] = ft
     out.spring[c] = s
-    return fn, ft, wrong
+    return fn, ft
 
 
 @kernel(forceinline=True)
@@ -253,57 +269,23 @@ def _returned(spring, limit, stiffness, kept):
 
 
 @kernel(forceinline=True)
-def _wrongly_open(fixed, c, xi, form, law):
-    """Force by which a contact that is kept open presses, or one that is kept closed pulls."""
-    if fixed is None or xi == 0.0 or (fixed[c] == OPEN) == (xi < 0.0):
-        return 0.0
-    return elastic_force(law, abs(xi), form)
-
-
-@kernel(forceinline=True)
 def _is_open(fixed, c, xi):
     if fixed is None:
         return xi <= 0.0
     return fixed[c] == OPEN
 
 
-@kernel(forceinline=True)
-def _slip_of_curved_way(q, q0, ahead, n, pairs, c):
-    """Slip of pair ``c`` along a curved way, less mean distance times turn.
-
-    On its way from ``q0`` to ``q`` a pair sets out as by ``ahead`` (dof,), the displacement were the rates those of the
-    start, and the rest of its displacement grows as the square of the part done. With a the relative displacement by
-    ``ahead``, w the whole, p the separation and d its length, the integral of distance over angle exceeds mean distance
-    times turn by (a x w) / 6 d - (p x a) ((p x a)^2 + 2 (p . a)^2) / 12 d^5, to third order in the displacement.
-    """
-    i = pairs.first[c]
-    j = pairs.second[c]
-    px = pairs.dx[c] + q0[i] - q0[j]
-    pz = pairs.dz[c] + q0[n + i] - q0[n + j]
-    wx = q[i] - q0[i] - (q[j] - q0[j])
-    wz = q[n + i] - q0[n + i] - (q[n + j] - q0[n + j])
-    ax = ahead[i] - ahead[j]
-    az = ahead[n + i] - ahead[n + j]
-    part = 1.0 / pairs.distance[c]
-    along_n = (px * ax + pz * az) * part
-    along_t = (px * az - pz * ax) * part
-    turned = along_t * (along_t * along_t + 2.0 * along_n * along_n)
-    return (ax * wz - az * wx - 0.5 * turned * part) * part / 6.0
-
-
 # Shapes are arguments of their own, beside the contacts that hold them: only of an argument does the compiler know
 # that it is None.
 @kernel
 def contacts(
-    q, q0, ahead, n, radius, pairs, pair_shape, walls, wall_shape, overlap0, pair_spring, wall_spring, limits, fixed,
-    out, tangent, force,
+    q, q0, n, radius, pairs, pair_shape, walls, wall_shape, overlap0, pair_spring, wall_spring, limits, fixed, out,
+    tangent, force,
 ):  # fmt: skip
     """Forces of m + w listed contacts at ``q``, one increment after ``q0``, and their local tangents.
 
     Parameters
     ----------
-    ahead : (dof,) displacement were the rates those at ``q0``, where the slip of pairs that stick along their curved
-        way is to be counted; else None.
     pairs, walls : :class:`Pairs` and :class:`Walls`, and their ``shape``.
     overlap0 : (m + w,) at ``q0``.
     pair_spring, wall_spring : (m + w,) at ``q0``, None where the contacts have no friction.
@@ -312,25 +294,19 @@ def contacts(
         None for the return map.
     out : :class:`Response`, filled, and ``tangent`` (m + w, 3, 3), if not None.
     force : (dof,) generalised contact force, added to.
-
-    Returns
-    -------
-    Longest part of a spring that a curved way has made, and the largest force by which contacts with kept statuses
-    differ from those by the return map.
     """
     m = pairs.first.size
-    bend, worst = 0.0, 0.0
     law = pairs.law
     for c in range(m):
         i, j, ux, uz, dx, dz, d, xi = _pair_at(q, n, pairs, c)
         out.overlap[c] = xi
         form = _item(pair_shape, c)
-        worst = max(worst, _wrongly_open(fixed, c, xi, form, law))
+        nx = dx / d
+        nz = dz / d
+        out.nx[c], out.nz[c] = nx, nz
         if _is_open(fixed, c, xi):
             _open(c, pair_spring, out, tangent)
             continue
-        nx = dx / d
-        nz = dz / d
         if pair_spring is None:
             fn = _press(c, xi, nx, nz, 1.0 / d, form, law, out, tangent)
             force[i] += fn * nx
@@ -338,10 +314,6 @@ def contacts(
             force[j] -= fn * nx
             force[n + j] -= fn * nz
         else:
-            spring = pair_spring[c]
-            if ahead is not None and fixed[c] == STICKING:
-                spring += _slip_of_curved_way(q, q0, ahead, n, pairs, c)
-                bend = max(bend, abs(spring - pair_spring[c]))
             wx = ux - (q0[i] - q0[j])
             wz = uz - (q0[n + i] - q0[n + j])
             px = dx - wx
@@ -350,11 +322,10 @@ def contacts(
             turn = _angle(px * wz - pz * wx, px * dx + pz * dz)
             mean = 0.5 * (before + d)
             roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
-            fn, ft, wrong = _rub(
+            fn, ft = _rub(
                 c, xi, nx, nz, 1.0 / d, mean * turn - roll, mean, d, 0.5 * turn,
-                form, law, overlap0, spring, limits, fixed, out, tangent,
+                form, law, overlap0, pair_spring[c], limits, fixed, out, tangent,
             )  # fmt: skip
-            worst = max(worst, wrong)
             fx = fn * nx - ft * nz
             fz = fn * nz + ft * nx
             force[i] += fx
@@ -368,8 +339,8 @@ def contacts(
         i, nx, nz, xi = _wall_at(q, n, walls, k)
         c = m + k
         out.overlap[c] = xi
+        out.nx[c], out.nz[c] = nx, nz
         form = _item(wall_shape, k)
-        worst = max(worst, _wrongly_open(fixed, c, xi, form, at_wall))
         if _is_open(fixed, c, xi):
             _open(c, wall_spring, out, tangent)
             continue
@@ -379,15 +350,13 @@ def contacts(
         else:
             slip = (q[n + i] - q0[n + i]) * nx - (q[i] - q0[i]) * nz
             slip -= radius[i] * (q[2 * n + i] - q0[2 * n + i])
-            fn, ft, wrong = _rub(
+            fn, ft = _rub(
                 c, xi, nx, nz, 0.0, slip, 1.0, 1.0, 0.0, form, at_wall, overlap0, wall_spring[c], limits, fixed, out,
                 tangent,
             )  # fmt: skip
-            worst = max(worst, wrong)
             force[2 * n + i] -= radius[i] * ft
         force[i] += fn * nx - ft * nz
         force[n + i] += fn * nz + ft * nx
-    return bend, worst
 
 
 @kernel

@@ -69,7 +69,7 @@ class BandLU:
         """(n,) diagonal of U."""
         return self._rows[:, self._b]
 
-    @property
+    @cached_property
     def negative_pivots(self) -> int:
         """Pivots below zero: where their number changes a real eigenvalue has passed zero.
 

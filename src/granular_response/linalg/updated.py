@@ -8,6 +8,8 @@ determinant is that of K times that of the capacitance matrix ``C = 1 + Q^T K^-1
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,63 +22,60 @@ LEAST = 1e-7
 
 
 class Updated:
-    """A factorised matrix (n, n) and what has changed since, by keys; up to ``most`` columns of P and Q.
+    """A factorised matrix (n, n) and what has changed since: up to ``most`` columns of P and Q.
 
-    A column has ``entries`` numbers that are not zero.
+    ``made`` (k,) says of each key, such as a contact, what it was when the matrix was factorised; a change of it has
+    columns of ``entries`` numbers that are not zero.
     """
 
-    def __init__(self, factor: Eliminated, n: int, most: int, entries: int):
-        self.factor = factor
+    def __init__(self, factor: Eliminated, n: int, most: int, entries: int, made: np.ndarray):
+        self.factor, self.made = factor, made
         self._solved = np.zeros((most, n))
         self._places = np.zeros((most, entries), np.int64)
         self._right = np.zeros((most, entries))
-        #: by key: what the change was, and its columns
-        self._columns: dict[int, tuple[int, list[int]]] = {}
-        self._free = list(range(most))
+        self._now = made.copy()  #: (k,) what the columns make of each key
+        self._owner = np.full(most, -1)  #: key of each column; -1 where it is free
         self._known: tuple[FloatArray, FloatArray] | None = None
         self._close()
 
-    def update(self, wanted: dict[int, int], change) -> bool:
-        """Make the changes those of ``wanted``, which says of each key what it is; False where there is no room.
+    def update(self, wanted: np.ndarray, change: Callable[[NDArray[np.int64]], tuple]) -> bool:
+        """Make each key what it is ``wanted`` to be (k,); False where there is no room.
 
         ``change(keys)`` gives, for each column that changes add, the key (r,), and places (r, e) and numbers of columns
         of P and Q, (r, e) each.
         """
-        for key in [key for key, (what, _) in self._columns.items() if wanted.get(key) != what]:
-            self._free += self._columns.pop(key)[1]
-        new = [key for key in wanted if key not in self._columns]
-        if not new:
-            self._close()
+        differs = wanted != self._now
+        keys = np.flatnonzero(differs)
+        if not len(keys):
             return True
-        owner, places, left, right = change(new)
-        if len(owner) > len(self._free):
-            return False
-        columns = [self._free.pop() for _ in owner]
-        for key in new:
-            of_key = [column for column, its in zip(columns, owner.tolist(), strict=True) if its == key]
-            self._columns[key] = wanted[key], of_key
-        if columns:
-            sparse = np.zeros((len(columns), self._solved.shape[1]))
-            np.add.at(sparse, (np.arange(len(columns))[:, None], places), left)
-            self._solved[columns] = self.factor.solve(sparse)
-            self._places[columns], self._right[columns] = places, right
+        self._owner[differs[self._owner]] = -1  # that of a free column may be the last key: it stays free
+        self._now[keys] = self.made[keys]
+        new = keys[wanted[keys] != self.made[keys]]
+        if len(new):
+            owner, places, left, right = change(new)
+            columns = np.flatnonzero(self._owner < 0)[: len(owner)]
+            if len(columns) < len(owner):
+                return False
+            self._now[new] = wanted[new]
+            if len(columns):
+                sparse = np.zeros((len(columns), self._solved.shape[1]))
+                np.add.at(sparse, (np.arange(len(columns))[:, None], places), left)
+                self._solved[columns] = self.factor.solve(sparse)
+                self._places[columns], self._right[columns], self._owner[columns] = places, right, owner
         self._close()
         return True
 
     def _close(self) -> None:
-        columns = [column for _, columns in self._columns.values() for column in columns]
-        self._order: NDArray[np.int64] = np.array(columns, np.int64)
-        self._capacitance = np.zeros((len(self._order), len(self._order)))
-        self._negative, smallest, largest = _factorise(
+        self._order = np.flatnonzero(self._owner >= 0)
+        self._capacitance = np.empty((len(self._order), len(self._order)))
+        self._weights = np.empty(len(self._order))
+        negative, smallest, largest = _factorise(
             self._order, self._places, self._right, self._solved, self._capacitance
         )
+        #: Of the factorisation and of ``C``: where their number changes a real eigenvalue may have passed zero.
+        self.negative_pivots = self.factor.negative_pivots + negative
         #: whether solutions keep half of their digits: not where a change takes hold of what nothing held before
         self.accurate = smallest > LEAST and largest < 1.0 / LEAST
-
-    @property
-    def negative_pivots(self) -> int:
-        """Of the factorisation and of ``C``: where their number changes a real eigenvalue may have passed zero."""
-        return self.factor.negative_pivots + self._negative
 
     def solve(self, right: FloatArray) -> FloatArray:
         """(n,) the solution for one right-hand side (n,)."""
@@ -90,8 +89,7 @@ class Updated:
 
     def _corrected(self, x: FloatArray) -> FloatArray:
         if len(self._order):
-            weights = np.empty(len(self._order))
-            _correct(x, self._order, self._places, self._right, self._solved, self._capacitance, weights)
+            _correct(x, self._order, self._places, self._right, self._solved, self._capacitance, self._weights)
         return x
 
 

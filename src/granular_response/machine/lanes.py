@@ -103,6 +103,21 @@ for _operator, _defined in _BINARY.items():
 _define(operator.neg, LANES, ir.IRBuilder.fneg, (LANES,))
 
 
+def _define_for_masks(operation, instruction):
+    """Let an operator work on masks, as it does on truth values."""
+
+    @infer_global(operation)
+    class Typing(AbstractTemplate):
+        def generic(self, args, kws):
+            return signature(MASK, MASK, MASK) if args == (MASK, MASK) else None
+
+    lower_builtin(operation, MASK, MASK)(lambda context, builder, sig, args: instruction(builder, *args))
+
+
+_define_for_masks(operator.and_, ir.IRBuilder.and_)
+_define_for_masks(operator.or_, ir.IRBuilder.or_)
+
+
 def _kind(like):
     return LANES if like in (LANES, MASK) else types.float64
 

@@ -15,8 +15,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from ..kernels import statics
+from ..kernels import events, kept, statics
 from ..linalg import REMEMBERED, elimination
+from ..machine.lanes import WIDTH
 from ..state import OPEN, SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
 from .close_pairs import close_pairs
 from .pattern import pattern
@@ -24,6 +25,8 @@ from .problem import Problem
 
 #: Local tangents that were not asked for.
 NO_TANGENT = np.empty((0, 3, 3))
+#: Ties that a load counts as: more than any disk has freedoms, so that a loaded disk is no rattler.
+LOADED = 4
 #: Part of a distance by which rounding may part two disks that touch.
 TOUCHING = 1e-12
 
@@ -59,6 +62,7 @@ class Trial:
     normal: FloatArray  #: (m + w,)
     tangential: FloatArray  #: (m + w,)
     status: np.ndarray  #: (m + w,)
+    normals: tuple[FloatArray, FloatArray]  #: (m + w,) each: directions of the normal forces on the first bodies
     tangent: FloatArray  #: (m + w, 3, 3); (0, 3, 3) where it was not asked for
     rolled: Rolled | None = None
     bend: float = 0.0  #: largest part of a spring that the curved way of a contact has made
@@ -87,7 +91,7 @@ class Equations:
     """Static equations of ``problem`` around the positions and candidate contacts of ``state``."""
 
     def __init__(self, problem: Problem, state: State):
-        self.problem = problem
+        self.problem, self.dof = problem, problem.n * problem.freedoms
         self.reference = state.position.copy()
         self.angle0 = state.angle.copy()
         self.first = state.pairs.first.astype(np.int64)
@@ -109,6 +113,11 @@ class Equations:
         self.walls = statics.Walls(
             self.wall_disk, self.wall_normals, wall_gap, problem.wall_shapes(self.wall_disk), problem.wall_law
         )
+        #: (m, 2) disks of the pairs, and room for what kernels sum up and count
+        self.disks = np.stack([self.first, self.second], axis=1)
+        self._room, self.count = np.zeros(2 * WIDTH), np.zeros((3, problem.n), np.int64)
+        self.loaded = np.zeros(problem.n, np.int64)
+        self.loaded[problem.load_disk] = LOADED
         self.rolls = self._rolls() if problem.rolls else None
         self.held = problem.held.unknowns(problem.n)
         # one order of elimination for all states of a large lattice
@@ -125,10 +134,6 @@ class Equations:
         friction = np.repeat([0.0 if one is None else one.friction for one in kinds], sizes)
         return statics.Rolls(arm, friction, np.repeat([0.0 if one is None else one.stiffness for one in kinds], sizes))
 
-    @property
-    def dof(self) -> int:
-        return self.problem.n * self.problem.freedoms
-
     @cached_property
     def friction(self) -> FloatArray:
         """(m + w,) coefficient of each candidate."""
@@ -139,6 +144,14 @@ class Equations:
         """Coulomb limits of a trial, and those of rolling after them where there is any."""
         sliding = self.friction * trial.normal
         return sliding if self.rolls is None else np.concatenate([sliding, self.rolls.friction * trial.normal])
+
+    def idle(self, trial: Trial, sense: np.ndarray) -> NDArray[np.int64]:
+        """Unknowns that change no force with signed statuses ``sense``: angles of disks of which no contact sticks."""
+        if not self.problem.rotations:
+            return np.empty(0, np.int64)
+        self.count[:] = 0
+        events.count_ties(self.pairs, self.walls, self.rolls, sense, trial.normal, 0.0, self.count)
+        return 2 * self.problem.n + np.flatnonzero(self.count[2] == 0)
 
     def coupled(self, sense: np.ndarray) -> np.ndarray:
         """Signed statuses of which those along the rolling, if any, are open where the contact is, else not."""
@@ -197,29 +210,48 @@ class Equations:
         *,
         limits: FloatArray | None = None,
         fixed: np.ndarray | None = None,
-        ahead: FloatArray | None = None,
-        tangent: bool = True,
     ) -> Trial:
         """Forces at ``q``, one increment after ``known``; none on what is held, where the reaction balances all.
 
         ``limits`` (m + w,) fixes the Coulomb limits in place of ``mu f_n``; ``fixed`` (m + w,) the statuses, as of
-        :func:`signed_status`, in place of the return map; both go on along the rolling where there is any. ``ahead``
-        (dof,), with ``fixed`` : the displacement were the rates those at ``known``, for the slip along a way that
-        curves from there; walls do not turn. ``tangent`` : whether local tangents are asked for.
+        :func:`signed_status`, in place of the return map; both go on along the rolling where there is any.
+        """
+        problem, count = self.problem, len(self.first) + len(self.wall_disk)
+        force, local = np.zeros(self.dof), np.empty((count, 3, 3))
+        out = statics.Response.empty(count)
+        statics.contacts(
+            q, known.q, problem.n, problem.packing.radius, self.pairs, self.pairs.shape, self.walls, self.walls.shape,
+            known.overlap, known.spring if problem.pair_friction else None,
+            known.spring if problem.wall_friction else None, limits, fixed, out, local, force,
+        )  # fmt: skip
+        return self._tried(known, q, limits, fixed, out, local, force)
+
+    def kept(
+        self, known: Configuration, q: FloatArray, sense: np.ndarray, velocity: FloatArray, length: float
+    ) -> Trial:
+        """As :meth:`trial` with statuses fixed to ``sense``, without tangents.
+
+        ``velocity`` (dof,) : rates at ``known``, by which displacements would have grown for a ``length``; the slip
+        along the way that curves from there is counted. Walls do not turn.
         """
         problem, count = self.problem, len(self.first) + len(self.wall_disk)
         force = np.zeros(self.dof)
         out = statics.Response.empty(count)
-        local = np.empty((count, 3, 3)) if tangent else None
-        bend, contradiction = statics.contacts(
-            q, known.q, ahead, problem.n, problem.packing.radius, self.pairs, self.pairs.shape, self.walls,
+        np.abs(sense[:count], out=out.status)
+        bend, contradiction = kept.kept_contacts(
+            q, known.q, velocity, length, problem.n, problem.packing.radius, self.pairs, self.pairs.shape, self.walls,
             self.walls.shape, known.overlap, known.spring if problem.pair_friction else None,
-            known.spring if problem.wall_friction else None, limits, fixed, out, local, force,
+            known.spring if problem.wall_friction else None, sense.astype(float), self.disks, self._room, out, force,
         )  # fmt: skip
-        roll, rolled = None, None
+        return self._tried(known, q, None, sense, out, None, force, bend, contradiction)
+
+    def _tried(self, known, q, limits, fixed, out, local, force, bend=0.0, contradiction=0.0) -> Trial:
+        """A trial, with the resistance to rolling that there is."""
+        roll, rolled, problem = None, None, self.problem
         if self.rolls is not None:
+            count = len(out.normal)
             found = statics.RollingResponse.empty(count)
-            couple = np.zeros((count, 3)) if tangent else None
+            couple = None if local is None else np.zeros((count, 3))
             along_rolling = statics.rolling(
                 q, known.q, problem.n, self.pairs, self.walls, self.rolls, out, known.overlap, known.roll, limits,
                 fixed, found, couple, force,
@@ -227,10 +259,11 @@ class Equations:
             contradiction = max(contradiction, along_rolling)
             couples = NO_TANGENT[:, 0] if couple is None else couple
             roll, rolled = found.spring, Rolled(found.force, found.status, couples)
-        force[self.held] = 0.0
+        if self.held.size:
+            force[self.held] = 0.0
         return Trial(
             Configuration(q, out.spring, out.overlap, roll), force, out.normal, out.tangential, out.status,
-            NO_TANGENT if local is None else local, rolled, bend, contradiction,
+            (out.nx, out.nz), NO_TANGENT if local is None else local, rolled, bend, contradiction,
         )  # fmt: skip
 
     def _stiffness(self, trial: Trial) -> FloatArray:

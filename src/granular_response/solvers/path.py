@@ -65,8 +65,12 @@ class PathOptions:
     #: Force of a spring from the bend of its contact's way within an increment, above which that is shortened; what is
     #: left of it is smaller, and falls as the third power of the length.
     bent: float = 1e-8
-    #: Unbalanced force that is left at an event: the next increment takes it up. More of it makes more points.
-    passing: float = 1e-10
+    #: Unbalanced force that is left at an event. The next increment takes it up, so that it does not add up. In the
+    #: slabs of the benchmarks events are off by 5e-10 in the median, and wall forces at the end by 3e-10 at most.
+    passing: float = 1e-8
+    #: Newton steps of a landing above which the next rates have a factorisation of their own. Those of an old one miss
+    #: events, and a landing is then tried again; a lower number asks for more factorisations than that spares.
+    outdated: int = 2
     #: Newton steps of an increment; with the 3/2 law, whose stiffness changes on the way, up to 12 were needed.
     newton: int = 40
     #: Times that an increment is shortened: to an event that came before the one expected, or to half of its length
@@ -317,6 +321,7 @@ class _Path:
         turned, moved = state.angle - self.start.angle, state.position - self.start.position
         self.origin = np.concatenate([moved.T.ravel(), turned])[: self.system.dof]
         self.suspect = 0  #: negative pivots at the last point
+        self.steps = 0  #: of the last landing
         self.unstable = None
         return Point(state.load_factor, trial, trial.sense, trial.sense)
 
@@ -424,6 +429,8 @@ class _Path:
                 left, length = part * abs(factor - point.factor), np.inf
                 continue
             self.record.work.increments += 1
+            if self.steps > OPTIONS.outdated:
+                self.system.outdate(rates.factor)
             if abs(factor - point.factor) * self.unit > self.rates.force:
                 self.jump, self.beyond = OPTIONS.jump / self.unit, OPTIONS.beyond / self.unit
             due = then.due(self.rates.force)
@@ -487,9 +494,9 @@ class _Path:
         by, velocity, system = rates.factor, rates.velocity, self.system
         q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
         before, enough, stalled = np.inf, NEWTON.enough if event is None else OPTIONS.passing, False
+        self.steps = 0
         for done in range(OPTIONS.newton):
-            ahead = abs(factor - point.factor) * rates.velocity
-            trial = system.trial(known, q, fixed=rates.sense, ahead=ahead, tangent=False)
+            trial = system.kept(known, q, rates.sense, rates.velocity, abs(factor - point.factor))
             force = trial.contact_force + external_force(self.problem, factor)
             size = float(np.abs(force).max(initial=0.0))
             left, rate = (0.0, 0.0) if event is None else self.rates.until(trial, *event, velocity)
@@ -511,6 +518,7 @@ class _Path:
                 if event is not None:
                     _, rate = self.rates.until(trial, *event, velocity)
             before = size
+            self.steps += 1
             step = system.deinterleave(by.solve(system.interleave(force)))
             step[rates.idle] = 0.0  # it would be the rounding of a torque over next to no stiffness
             longest = float(np.abs(step[: 2 * self.problem.n]).max(initial=0.0))

@@ -182,36 +182,36 @@ class Problem:
             wall_rolling=_rolling(scene.resolved_wall),
         )
 
-    @property
+    @cached_property
     def n(self) -> int:
         return len(self.packing.radius)
 
     def __repr__(self) -> str:
         return f"Problem({self.n} disks, loads on disks {self.load_disk.tolist()}, scene={self.scene!r})"
 
-    @property
+    @cached_property
     def stiffness(self) -> float:
         """Of the normal springs between disks, at a normal force of one mean disk weight: the scale of stiffnesses."""
         return self.pair_law.normal_stiffness
 
-    @property
+    @cached_property
     def pair_friction(self) -> bool:
         return self.pair_law.friction > 0.0
 
-    @property
+    @cached_property
     def wall_friction(self) -> bool:
         return self.wall_law.friction > 0.0
 
-    @property
+    @cached_property
     def rolls(self) -> bool:
         """Whether some contact resists rolling."""
         return self.pair_rolling is not None or self.wall_rolling is not None
 
-    @property
+    @cached_property
     def rotations(self) -> bool:
         return self.pair_friction or self.wall_friction
 
-    @property
+    @cached_property
     def freedoms(self) -> int:
         """Degrees of freedom of one disk: 3 with rotations, else 2."""
         return 3 if self.rotations else 2
@@ -259,7 +259,7 @@ class Problem:
         pair, wall = self.pair_law.without_friction(), self.wall_law.without_friction()
         return replace(self, pair_law=pair, wall_law=wall, pair_rolling=None, wall_rolling=None)
 
-    @property
+    @cached_property
     def load_size(self) -> float:
         """Mean disk weights of one unit of the load factor: a torque counts as a force at one radius, a displacement
         as what it takes to press it into a contact."""
@@ -288,7 +288,7 @@ class Problem:
         total[self.held.axis, self.held.disk] = 0.0
         return total.ravel()
 
-    @property
+    @cached_property
     def slides_freely(self) -> bool:
         """Whether nothing holds the packing as a whole along x: no side walls, a smooth floor, no displacement."""
         return self.packing.periodic and not self.wall_friction and not (self.held.axis == 0).any()

@@ -12,7 +12,6 @@ that can neither stay open nor stick slides.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -36,9 +35,6 @@ class RateOptions:
 
 OPTIONS = RateOptions()
 
-#: Ties that a load counts as: more than any disk has freedoms, so that a loaded disk is no rattler.
-LOADED = 4
-
 
 @dataclass(frozen=True)
 class Changes:
@@ -50,7 +46,7 @@ class Changes:
     what: np.ndarray
     left: FloatArray  #: force until then (mean weights)
     rate: FloatArray  #: of its fall
-    sticking: np.ndarray  #: (n,) contacts of each disk that stick, along the tangent or the rolling
+    now: int  #: contacts that are within the force of the rate problem of their change
 
     def first(self) -> tuple[int, float]:
         """The contact that changes first and after which growth of the load factor; infinity where none does."""
@@ -69,14 +65,14 @@ def next_changes(
 
     ``sense`` (m + w,) : signed statuses; ``force``, ``negligible`` : a force and a rate of a force that are none.
     """
-    count = np.zeros((3, system.problem.n), np.int64)
-    count[0, system.problem.load_disk] = LOADED
-    found = Changes(np.empty(len(sense), np.int8), np.empty(len(sense)), np.empty(len(sense)), count[2])
-    events.next_changes(
-        trial.configuration.q, velocity, *_contacts(system, trial), sense, force, negligible, count, found.what,
-        found.left, found.rate,
+    what, left, rate = np.empty((3, len(sense)))
+    rolling, pairs = None if trial.rolled is None else trial.rolled.force, system.pairs
+    due = events.next_changes(
+        velocity, system.problem.n, system.problem.packing.radius, pairs, pairs.shape, system.walls, system.rolls,
+        *trial.normals, trial.normal, trial.tangential, rolling, trial.configuration.overlap, sense.astype(float),
+        force, negligible, system.loaded, system.disks, system.count, what, left, rate,
     )  # fmt: skip
-    return found
+    return Changes(what, left, rate, due)
 
 
 def _contacts(system: StaticSystem, trial: Trial) -> tuple:
@@ -105,11 +101,7 @@ class Rates:
     velocity: FloatArray  #: (dof,)
     changes: Changes
 
-    @cached_property
-    def idle(self) -> np.ndarray:
-        """Unknowns that change no force: angles of disks of which no contact sticks."""
-        n = len(self.changes.sticking)
-        return 2 * n + np.flatnonzero(self.changes.sticking == 0) if len(self.velocity) > 2 * n else np.empty(0, int)
+    idle: np.ndarray  #: unknowns that change no force: angles of disks of which no contact sticks
 
 
 class RateProblem:
@@ -168,9 +160,9 @@ class RateProblem:
                 if not np.isfinite(velocity).all():
                     break
                 found = self.changes(trial, velocity, now)
+                if not found.now:
+                    return Rates(now, factor, velocity, found, self.system.idle(trial, now))
                 due = found.due(self.force)
-                if not len(due):
-                    return Rates(now, factor, velocity, found)
                 if worst:
                     rates = found.rate[due]
                     due = due[rates >= OPTIONS.as_bad * rates.max()]

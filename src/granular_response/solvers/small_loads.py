@@ -136,5 +136,5 @@ def sticking(problem: Problem, state: State, sliding: str) -> tuple[StaticSystem
         )
     system = StaticSystem(problem, state)
     known = system.start(state)
-    never = np.full_like(system.limits(system.trial(known, known.q, tangent=False)), np.inf)
+    never = np.full_like(system.limits(system.trial(known, known.q)), np.inf)
     return system, system.trial(known, known.q, limits=never)

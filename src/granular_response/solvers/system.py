@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 
 from ..kernels import events
 from ..linalg import Eliminated, Factor, Sequence
@@ -47,7 +48,7 @@ class StaticSystem(Equations):
         super().__init__(problem, state)
         self.storage = self.pattern.storage
         self._kept: tuple[np.ndarray, Factor] | None = None
-        self._updated: tuple[Updated, np.ndarray] | None = None
+        self._updated: Updated | None = None
         self.renewals = 0  #: factorisations made by :meth:`renewed_factor`
         self._steps = Sequence(self.storage, same=OPTIONS.same_shift * problem.stiffness)
 
@@ -92,36 +93,40 @@ class StaticSystem(Equations):
 
         One that was made before, and what has changed since; made anew where that is too much.
         """
-        if self._updated is not None:
-            updated, made = self._updated
-            wanted = {int(c): int(sense[c]) for c in np.flatnonzero(sense != made)}
+        updated = self._updated
+        if updated is None or np.count_nonzero(sense != updated.made) > OPTIONS.most_changed:
+            return self.renewed_factor(known, sense)
 
-            def change(contacts: list[int]) -> tuple[np.ndarray, np.ndarray, FloatArray, FloatArray]:
-                most = 2 * len(contacts)
-                owner, places = np.zeros(most, np.int64), np.zeros((most, 6), np.int64)
-                left, right = np.zeros((2, most, 6))
-                rows = events.changed_stiffness(
-                    np.array(contacts, np.int64), made, sense, known.q, self.problem.n, self.problem.packing.radius,
-                    self.problem.freedoms, self.pairs, self.walls, self.rolls, self.pattern.place, owner, places, left,
-                    right,
-                )  # fmt: skip
-                if self.held.size:
-                    held = np.isin(self.pattern.interleaved[places], self.held)
-                    left[held], right[held] = 0.0, 0.0
-                return owner[:rows], places[:rows], left[:rows], right[:rows]
+        def change(contacts: NDArray[np.int64]) -> tuple[np.ndarray, np.ndarray, FloatArray, FloatArray]:
+            most = 2 * len(contacts)
+            owner, places = np.zeros(most, np.int64), np.zeros((most, 6), np.int64)
+            left, right = np.zeros((2, most, 6))
+            rows = events.changed_stiffness(
+                contacts, updated.made, sense, known.q, self.problem.n, self.problem.packing.radius,
+                self.problem.freedoms, self.pairs, self.walls, self.rolls, self.pattern.place, owner, places, left,
+                right,
+            )  # fmt: skip
+            if self.held.size:
+                held = np.isin(self.pattern.interleaved[places], self.held)
+                left[held], right[held] = 0.0, 0.0
+            return owner[:rows], places[:rows], left[:rows], right[:rows]
 
-            if len(wanted) <= OPTIONS.most_changed and updated.update(wanted, change) and updated.accurate:
-                return updated
+        if updated.update(sense, change) and updated.accurate:
+            return updated
         return self.renewed_factor(known, sense)
+
+    def outdate(self, factor: Updated) -> None:
+        """Let the next :meth:`updated_factor` be made anew, if ``factor`` is still the one that it would update."""
+        if self._updated is factor:
+            self._updated = None
 
     def renewed_factor(self, known: Configuration, sense: np.ndarray) -> Updated:
         """The same, made anew."""
         self._updated = None
         self.renewals += 1
         matrix = self._regularised(self.trial(known, known.q, fixed=sense))
-        updated = Updated(self.factorise(matrix), self.dof, OPTIONS.most_changed, 6)
-        self._updated = updated, sense
-        return updated
+        self._updated = Updated(self.factorise(matrix), self.dof, OPTIONS.most_changed, 6, sense)
+        return self._updated
 
     def answers(self, trial: Trial, *, transposed: bool = False) -> Callable[[FloatArray], FloatArray]:
         """What gives the (dof,) displacements that take small forces (dof,) up, to the last digits.
