@@ -28,7 +28,7 @@ extensions = [
     "pictures_of_pages",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "_generated", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/**/*.zip", "gallery/**/*.json"]
+exclude_patterns = ["_build", "_generated", *(f"gallery/**/*.{end}" for end in ("ipynb", "py", "zip", "json"))]
 
 myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 3
