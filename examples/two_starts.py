@@ -3,8 +3,8 @@
     python examples/two_starts.py --polydispersity 0.01 --realizations 20
 
 Slabs without friction settle from a lattice of two mean radii, on which large disks overlap, or from one on which the
-largest just touch. Then a force of 15 mg acts. Tasks run on all cores of this machine, or on a Dask cluster if --scheduler
-or DASK_SCHEDULER_ADDRESS names one. With --checkpoint an interrupted sweep continues.
+largest just touch. Then a force of 15 mg acts. Tasks run on all cores of this machine, or on a Dask cluster if
+--scheduler or DASK_SCHEDULER_ADDRESS names one. With --checkpoint an interrupted sweep continues.
 """
 
 import argparse
@@ -43,7 +43,7 @@ def measure(task: tuple[Scene, float | str, int]) -> dict[str, np.ndarray | floa
 
 
 def scene(polydispersity: float, **packing: int) -> Scene:
-    """The paper's slab without friction, with settings for a fast fall; the static finish makes the equilibrium exact."""
+    """The paper's slab without friction, with settings for a fast fall and a static finish."""
     return Scene().updated(
         {
             "packing.polydispersity": polydispersity,

@@ -108,7 +108,7 @@ def test_the_starts_of_a_disordered_slab_differ_as_the_notes_say():
     horizontal, oblique = "horizontal, of those on a lattice", "oblique, of those on a lattice"
     assert touching[horizontal][0] < 0.6 * literal[horizontal][0]
     assert touching[oblique][0] > literal[oblique][0]
-    assert touching["contacts per disk"][0] < literal["contacts per disk"][0]
+    assert touching["coordination number"][0] < literal["coordination number"][0]
     assert all(row["response"][0].shape == example["X"].shape for row in table.values())
 
 
