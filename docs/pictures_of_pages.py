@@ -13,7 +13,7 @@ import os
 import re
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import gallery_look
 import matplotlib.pyplot as plt
@@ -23,18 +23,28 @@ FOLDER = "_drawn"
 PARTS = re.compile(r"```python\n(?P<code>.*?)```|<!-- picture: (?P<text>[^>]*) -->", re.DOTALL)
 
 
-def drawn(page: str, text: str, folder: Path) -> str:
-    """``text`` with images in place of its comments; their files are in ``folder``.
+class Drawn(NamedTuple):
+    """A page with images in place of its comments, and what each of its blocks printed."""
+
+    text: str
+    printed: list[str]
+
+
+def drawn(page: str, text: str, folder: Path) -> Drawn:
+    """Run the blocks of a page; the files of its images go to ``folder``.
 
     Raises RuntimeError, with the page's name, if its code fails or a comment stands where nothing was drawn.
     """
     names: dict[str, Any] = {"__name__": "__main__"}
+    printed: list[str] = []
     count = 0
 
     def replaced(part: re.Match[str]) -> str:
         nonlocal count
         if part["code"] is not None:
-            exec(compile(part["code"], page, "exec"), names)
+            with contextlib.redirect_stdout(io.StringIO()) as said:
+                exec(compile(part["code"], page, "exec"), names)
+            printed.append(said.getvalue())
             return part[0]
         lines = []
         for number in plt.get_fignums():
@@ -50,7 +60,7 @@ def drawn(page: str, text: str, folder: Path) -> str:
     plt.close("all")
     gallery_look.apply({}, page)
     try:
-        return PARTS.sub(replaced, text)
+        return Drawn(PARTS.sub(replaced, text), printed)
     except Exception as error:
         raise RuntimeError(f"{page}: {error}") from error
     finally:
@@ -58,16 +68,17 @@ def drawn(page: str, text: str, folder: Path) -> str:
 
 
 def draw(app: Any, page: str, source: list[str]) -> None:
-    """The handler of Sphinx's event ``source-read``. What the code writes and prints is not kept."""
+    """The handler of Sphinx's event ``source-read``. Files that the code writes are not kept."""
     if "<!-- picture: " not in source[0]:
         return
     folder = Path(app.srcdir) / FOLDER
     folder.mkdir(exist_ok=True)
     here = os.getcwd()
-    with tempfile.TemporaryDirectory() as scratch, contextlib.redirect_stdout(io.StringIO()):
+    with tempfile.TemporaryDirectory() as scratch:
+        os.symlink(folder.parents[1] / "examples", Path(scratch, "examples"))
         os.chdir(scratch)
         try:
-            source[0] = drawn(page, source[0], folder)
+            source[0] = drawn(page, source[0], folder).text
         finally:
             os.chdir(here)
 
