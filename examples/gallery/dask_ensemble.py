@@ -46,4 +46,4 @@ if __name__ == "__main__":  # the processes of the cluster read this file, too
     ax.plot(places, response.values.T, color="0.85", linewidth=0.6)
     ax.fill_between(places, mean - error, mean + error, alpha=0.3)
     ax.plot(places, mean)
-    ax.set(xlabel="x / R", ylabel="floor response per length")
+    ax.set(xlabel="x / R", ylabel="smoothed floor response")

@@ -288,7 +288,7 @@ def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
         assert simulation.simulate("example", workers=1) == Path("data/example.nc")
         assert Path("figures/example/example.png") in drawing.draw("example")
         said = json.loads(Path("figures/example/captions.json").read_text())["example"]
-        assert said["caption"].startswith("Floor response per applied force") and "k_T/k_N = 0.8" in said["caption"]
+        assert said["caption"].startswith("Normalized floor response") and "k_T/k_N = 0.8" in said["caption"]
         assert (said["figure"], said["panels"], said["parameters"]["friction"]) == (None, [], [0.0, 0.5])
         measured = json.loads(measuring.measure("example").read_text())
         assert set(measured) == {"largest response, friction 0", "largest response, friction 0.5"}
