@@ -50,6 +50,15 @@ def test_the_python_of_a_page_draws_and_prints_what_it_says(page, tmp_path, monk
     assert [rounded(one) for one in found.printed] == [rounded(one) for one in quoted]
 
 
+def test_the_readme_prints_what_it_says(tmp_path, monkeypatch, capsys):
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    ((code, printed),) = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", text, re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {})
+    assert rounded(capsys.readouterr().out) == rounded(printed)
+    assert (tmp_path / "response.png").stat().st_size > 1000
+
+
 def rounded(text: str) -> str:
     """Without the digits of rounding errors."""
     return re.sub(r"\d\.\de-\d\d", "#", text)

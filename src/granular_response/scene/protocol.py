@@ -75,8 +75,8 @@ class Protocol(Description):
     load_factors: LoadFactors = Field(
         default=(1.0,),
         description="Load programme: factors of the loads at which states are stored, in turn; [0.5, 1, 0.5, 0] loads "
-        "and unloads. Each load continues from the previous state. Dynamics instead starts from the initial equilibrium "
-        "until the programme first reverses, as in the paper.",
+        "and unloads. Each load continues from the previous state. Dynamics instead starts from the initial "
+        "equilibrium until the programme first reverses, as in the paper.",
     )
     integrator: Integrator = Field(
         default="beeman",
@@ -102,8 +102,8 @@ class Protocol(Description):
     friction_law: Literal["cut", "literal", "unloading"] = Field(
         default="cut",
         description="At the Coulomb limit, cut: force of spring and dashpot are cut to the limit, and the spring takes "
-        "the value of the cut force; literal, as printed in the paper: the spring is frozen beyond the limit and the force is not "
-        "cut; unloading: the same, but slip may shorten the spring. The last two are for dynamics only.",
+        "the value of the cut force; literal, as printed in the paper: the spring is frozen beyond the limit and the "
+        "force is not cut; unloading: the same, but slip may shorten the spring. The last two are for dynamics only.",
     )
     tensile_dashpot: Flag = Field(
         default=True, description="Whether the normal force may be tensile while a contact opens fast, as in the paper."
