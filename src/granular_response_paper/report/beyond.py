@@ -1,4 +1,4 @@
-"""Tables of ``docs/extensions.md`` that are made from the stored datasets of their groups, so that they are never old."""
+"""Tables of ``docs/extensions.md``, made from the stored datasets of their groups."""
 
 from __future__ import annotations
 
