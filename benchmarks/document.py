@@ -1,4 +1,5 @@
-"""`docs/benchmarks.md`, its pictures, `summary.json` with its goals, and the lines of the README that quote them.
+"""`docs/benchmarks.md`, its pictures, `summary.json` with its goals, the table of costs of the user guide, and the
+lines of the README that quote them.
 
 Tables and pictures come from the other JSON files alone.
 
@@ -25,65 +26,72 @@ HERE = Path(__file__).resolve().parent
 TEXTS = {
     "precision": (
         "Run time against error",
-        "Error: largest difference of the normalized floor response from the quasi-static limit. Times include the "
-        "fall under gravity, until the kinetic energy per disk is 1e-13 to 1e-7; with friction the equilibrium depends "
-        "on this.",
+        "The error is the largest difference of the normalized floor response from the quasi-static limit. Times "
+        "include the fall under gravity, which ends at a kinetic energy of 1e-13 to 1e-7 per disk. With friction the "
+        "equilibrium depends on this energy.",
     ),
     "exactness": (
         "Accuracy of the path",
-        "Against increments with the return map that end at each event of the path, and every 0.001 mg, or 1/250 of "
-        "the load if that is longer (1/1000 for the nine points with friction 0.2 and 1). Error: largest difference of "
-        "a force of the floor or a wall, per load.",
+        "The path is compared with increments that use the return map. These end at each event of the path, and "
+        "every 0.001 mg, or 1/250 of the load if that is longer (1/1000 for the ordered slabs with friction 0.2 and "
+        "1). The error is the largest difference of a force of the floor or a wall, relative to the load. Where an "
+        "equilibrium is lost, inertia decides which one follows, so the two methods may end in different ones.",
     ),
     "convergence": (
         "Convergence of dynamics to the path",
-        "Lines: symmetric part of the difference, which falls like one over the ramp time; dotted: all of it.",
+        "Dynamics approaches the path as the load ramp becomes slower. Lines are the symmetric part of the "
+        "difference, which is inversely proportional to the ramp time. Dotted lines are the whole difference.",
     ),
     "trajectory": (
         "Order of the integrators",
-        "In a fall, contacts that open, close or begin to slide limit the order to one.",
+        "Each integrator has its formal order in smooth motion. In a fall, contacts that open, close or begin to slide "
+        "limit the order to one.",
     ),
     "kernel": (
         "Time of a step",
-        "Slabs in equilibrium, with time step and dashpots of `pair_style gran/hooke/history`.",
+        "Slabs in equilibrium, with the time step and dashpots of `pair_style gran/hooke/history`.",
     ),
     "arena": (
         "Comparison with other codes: a step",
-        "Friction 0.2; same start, contact law and time step, interleaved; processor time. LIGGGHTS runs `gran "
-        "model hooke/stiffness tangential history`, YADE `Law2_ScGeom_ViscElPhys_Basic`.",
+        "Friction 0.2. All codes have the same initial state, contact law and time step. Runs are interleaved; "
+        "processor time on one core. LIGGGHTS runs `gran model hooke/stiffness tangential history`, YADE "
+        "`Law2_ScGeom_ViscElPhys_Basic`.",
     ),
     "responses": (
         "Comparison with other codes: a response",
-        "Scenes and errors as above; errors below 1e-7 are drawn there. The other codes ramp the load between two "
-        "equilibria.",
+        "Scenes and errors are those of *Run time against error*. Errors below 1e-7 are drawn at 1e-7. The other codes "
+        "ramp the load between two equilibria. Processor time on one core.",
     ),
     "bounces": (
         "Single collisions with a frictional wall",
-        "Friction 0.5. From the closed form of a disk that slides throughout (dotted) `fix wall/gran hooke/history` of "
-        "LAMMPS of 2025 deviates ([lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007)). With the paper's "
-        "dashpots YADE lets no contact pull, and YADE and LIGGGHTS keep less energy of a grazing disk.",
+        "Friction 0.5. The dotted line is the closed form of a disk that slides throughout. `fix wall/gran "
+        "hooke/history` of LAMMPS of 2025 deviates from it "
+        "([lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007)). With the paper's dashpots YADE excludes "
+        "tensile contact forces, and YADE and LIGGGHTS dissipate more energy of a grazing disk.",
     ),
     "limits": (
         "Roofline",
-        "The goals compare kernels of a step of 908 disks with a loop of independent operations of the same mix, "
-        "and factorisations with LAPACK's matrix product (`limits.json`).",
+        "Kernels of a step of 908 disks are compared with a loop of independent operations of the same mix, and "
+        "factorisations with LAPACK's matrix product (`limits.json`).",
     ),
     "linear": (
         "Factorisations of the tangent stiffness",
-        "Numeric, by band and fronts, beside LAPACK, SuperLU and PARDISO (`linear.json`).",
+        "Numerical factorisations by band and by fronts are compared with LAPACK, SuperLU and PARDISO (`linear.json`).",
     ),
     "skipping": (
         "Cost of work that is skipped",
-        "Rotations without friction, neighbour searches in a network that does not change, wall tests for every disk.",
+        "A step leaves out rotations without friction, neighbour searches in a network that does not change, and wall "
+        "tests for disks far from a wall. The picture shows what each would cost.",
     ),
     "scale": (
         "Large systems",
-        "`granular-response run` from scene file to stored result, on two threads. Slabs are four times as "
-        "wide as deep, and stiffness grows with their size. Open symbols: another processor, and older code.",
+        "`granular-response run` from scene file to stored result; wall time on two threads. Slabs are four times as "
+        "wide as deep, and stiffness is proportional to their size. Open symbols: another processor and older code.",
     ),
     "depth": (
         "The teardrop in deep slabs",
-        "Open region without friction (Fig. 5); stiffness grows with the size. Open symbols: it has reached the floor.",
+        "The region of open contacts without friction (Fig. 5); stiffness is proportional to the size. Open symbols: "
+        "the region has reached the floor.",
     ),
     "shares": (
         "Profile",
@@ -97,6 +105,16 @@ TEXTS = {
         "The pipeline",
         "Every group from nothing, with compiled kernels, on all cores.",
     ),
+}
+
+#: How the page names what the files call otherwise.
+NAMED = {
+    "nine points": "ordered slabs (3 frictions, 3 loads)",
+    "small": "small random scenes",
+    "slabs": "disordered slabs",
+    "jump": "dynamic jump",
+    "increments: jump": "dynamic jump of the increments only",
+    "stepped over": "passed with a fixed friction bound",
 }
 
 
@@ -147,13 +165,17 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
     """The tables of a benchmark."""
     if benchmark == "exactness":
         columns = {
-            "kind": "packings", "equilibria": "equilibria lost", "scenes": "scenes", "events": "events",
+            "kind": "packings", "equilibria": "equilibrium lost by", "scenes": "scenes", "events": "events",
             "exact": "error at most 1e-8", "error": "largest error",
         }  # fmt: skip
         done = {kind: len(pick(metrics["runs"], kind=kind)) for kind in metrics["planned"]}
-        words = ", ".join(f"{done[kind]} of {planned} {kind}" for kind, planned in metrics["planned"].items())
+        words = ", ".join(
+            f"{done[kind]} of {planned} {NAMED.get(kind, kind)}" for kind, planned in metrics["planned"].items()
+        )
         words += "; times beside other computations" if metrics["busy"] else ""
-        return [table(metrics["groups"], columns, f"Measured: {words}.")]
+        rows = [{**row, **{key: NAMED.get(row[key], row[key]) for key in ("kind", "equilibria")}}
+                for row in metrics["groups"]]  # fmt: skip
+        return [table(rows, columns, f"Measured: {words}.")]
     if benchmark == "depth":
         columns = {
             "layers": "layers", "from_force": "from force [mg]", "to_force": "to force [mg]",
@@ -216,9 +238,9 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
     kernel = found.get("kernel", {}).get("runs", [])
     friction = [row for row in kernel if row["friction"] > 0]
     row = next(iter(pick(friction, disks=908)), {})
-    add("kernel", "Speed over LAMMPS, friction, 908 disks", row.get("over_lammps"), 10.0, None, times)
+    add("kernel", "Speed of a step over LAMMPS, friction, 908 disks", row.get("over_lammps"), 10.0, None, times)
     row = max(friction, key=lambda row: row["disks"], default={})
-    add("kernel", "The same, 100,000 disks", row.get("over_lammps"), 4.0, None, times)
+    add("kernel", "Speed of a step over LAMMPS, friction, 100,000 disks", row.get("over_lammps"), 4.0, None, times)
     for scene, least, what in (
         ("friction", 50.0, "friction 0.2, force 15, error 1e-5"),
         ("frictionless", 1000.0, "no friction, force 4, error 1e-6"),
@@ -231,10 +253,10 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
         add("precision", what, value or bound, least, None, times, above)
     points = pick(found.get("exactness", {}).get("runs", []), kind="nine points")
     row = next(iter(pick(points, friction=0.2, load=15.0)), {})
-    what = "Path from the initial equilibrium, friction 0.2, force 15, processor time"
+    what = "Processor time of a path to 15 mg, friction 0.2, 908 disks"
     add("exactness", what, row.get("seconds"), None, 0.15, lambda v: f"{v:.2g} s")
     ratio = max((row["seconds"] / row["dynamics_seconds"] for row in points if "dynamics_seconds" in row), default=None)
-    what = "The same over the least time of dynamics, at whatever error; slowest of nine points"
+    what = "Processor time of a path over that of the fastest dynamics of any error, slowest of nine slabs"
     add("exactness", what, ratio, None, 1.0, times)
     those = found.get("exactness", {}).get("groups", [])
     error = max((row["error"] for row in those if row["equilibria"] == "none lost"), default=None)
@@ -242,22 +264,21 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
     runs = found.get("scale", {}).get("runs", [])
     for method, disks, limit, what in (
         ("path", 100_000, 60.0, "100,000 disks with friction"),
-        ("minimise", 1_000_000, 480.0, "1,000,000 disks without"),
+        ("minimise", 1_000_000, 480.0, "1,000,000 disks without friction"),
         ("path", 1_000_000, 3600.0, "1,000,000 disks with friction, prepared without"),
     ):
         row = next((row for row in runs if row["method"] == method and row["disks"] >= disks), {})
-        add("scale", f"Response of {what}", row.get("seconds"), None, limit, seconds)
+        add("scale", f"Response of {what}, wall time on two threads", row.get("seconds"), None, limit, seconds)
         memory = row.get("peak_gibibytes")
-        add("scale", "Its memory", memory, None, 16.0, lambda v: f"{v:.2g} GiB")
+        add("scale", f"Memory of the response of {what}", memory, None, 16.0, lambda v: f"{v:.2g} GiB")
     for method, what in (("minimise", "without friction"), ("path", "with friction")):
         row = next(iter(pick(found.get("scale", {}).get("exponents", []), method=method)), {})
         extent = f", {row['from_disks']:,} to {row['to_disks']:,}" if row else ""
         what = f"Exponent of processor time in the number of disks, {what}{extent}"
         add("scale", what, row.get("exponent_of_cpu_seconds"), None, 1.5, lambda v: f"{v:.2f}")
     residuals = [row["force_residual"] for row in runs if row["method"] != "dynamics"]
-    add(
-        "scale", "Unbalanced force of static results", max(residuals, default=None), None, 1e-9, lambda v: f"{v:.1g} mg"
-    )
+    what = "Largest unbalanced force of static results of the benchmark of large systems"
+    add("scale", what, max(residuals, default=None), None, 1e-9, lambda v: f"{v:.1g} mg")
     totals = {row["collection"]: row["seconds"] for row in found.get("pipeline", {}).get("totals", [])}
     add("pipeline", "The paper from nothing (`make reproduce`), 2 cores", totals.get("paper"), None, 300.0, seconds)
     limits = found.get("limits", {})
@@ -313,44 +334,58 @@ def text(found: dict[str, Metrics]) -> str:
     return page.render(goals=goals(found), parts=parts, usual=usual, missing=missing, machine=found.get("machine"))
 
 
-#: Goals that the README quotes, after what the arena has measured.
-QUOTED = (
-    "Response of 100,000 disks with friction",
-    "Response of 1,000,000 disks without",
-    "Response of 1,000,000 disks with friction, prepared without",
-)
+#: Disks and methods of the large systems that the README and the user guide name.
+LARGE = ((100_000, "path", "with friction"), (1_000_000, "minimise", "without friction"))
+SIZES = ((900, "path"), (14_000, "path"), (57_000, "path"), (100_000, "path"), (1_000_000, "minimise"))
 
 #: Errors of responses at which the README compares, by scene.
 COMPARED = {
-    "friction": ("0.0001", "friction 0.2, force 15, error 1e-4"),
-    "frictionless": ("0.01", "no friction, force 4, error 1e-2"),
+    "friction": ("0.0001", "friction 0.2, 15 mg, error below 1e-4"),
+    "frictionless": ("0.01", "no friction, 4 mg, error below 1e-2"),
 }
 
 
 def over_others(found: dict[str, Metrics]) -> list[dict[str, str]]:
-    """How many times faster than other codes, of one step and of a response; the fastest run of each code counts."""
-    rows: list[dict[str, str]] = []
-    steps = found.get("arena", {}).get("runs", [])
-    for disks in dict.fromkeys(row["disks"] for row in steps):
-        times: dict[str, float] = {}
-        for row in pick(steps, disks=disks):
-            code = family(row["code"])
-            times[code] = min(times.get(code, float("inf")), row["times_ours"])
-        said = ", ".join(f"{code} {value:.0f}" for code, value in times.items() if code != OURS)
-        if said:
-            what = f"A step of {disks:,} disks with friction, times ours"
-            rows.append({"what": what, "measured": said})
+    """Times of other codes over those of this one, for a step and a response; the fastest run of each code counts."""
+    times: dict[str, float] = {}
+    for row in pick(found.get("arena", {}).get("runs", []), disks=908):
+        code = family(row["code"])
+        times[code] = min(times.get(code, float("inf")), row["times_ours"])
+    responses = []
     for scene, (error, words) in COMPARED.items():
         least: dict[str, float] = {}
         for row in pick(found.get("responses", {}).get("reached", []), scene=scene):
             if row[error] is not None:
                 code = family(row["code"])
                 least[code] = min(least.get(code, float("inf")), row[error])
-        said = ", ".join(f"{code} {value / least[OURS]:.0f}" for code, value in least.items() if code != OURS)
-        if said:
-            what = f"A response of 908 disks ({words}), times ours"
-            rows.append({"what": what, "measured": said})
-    return rows
+        if said := ratios({code: value / least[OURS] for code, value in least.items()}):
+            responses.append(f"{words}: {said}")
+    rows = [
+        {"what": "One time step, friction 0.2; this package = 1", "measured": ratios(times)},
+        {"what": "One response; this package = 1", "measured": "; ".join(responses)},
+    ]
+    return [row for row in rows if row["measured"]]
+
+
+def ratios(times: dict[str, float]) -> str:
+    return ", ".join(f"{code} {value:.3g}" for code, value in times.items() if code != OURS)
+
+
+def of_size(found: dict[str, Metrics], disks: int, method: str) -> dict[str, Any]:
+    """The smallest large system of at least so many disks, empty if there is none."""
+    runs = pick(found.get("scale", {}).get("runs", []), method=method)
+    return min((row for row in runs if row["disks"] >= disks), key=lambda row: row["disks"], default={})
+
+
+def costs(found: dict[str, Metrics]) -> str:
+    """The table of costs of the user guide."""
+    lines = ["| disks | friction | wall time, two threads | memory | processor |", "|---|---|---|---|---|"]
+    for row in filter(None, (of_size(found, *size) for size in SIZES)):
+        lines.append(
+            f"| {row['disks']:,} | {row['friction']:g} | {seconds(row['seconds'])} | {row['peak_gibibytes']:.2g} GiB "
+            f"| {row['measured_on']} |"
+        )
+    return "\n".join(lines)
 
 
 #: The name of this package among the codes.
@@ -364,9 +399,16 @@ def family(code: str) -> str:
 
 def quoted(found: dict[str, Metrics]) -> str:
     """The lines of the README."""
-    rows = {row["what"]: row for row in goals(found)}
-    quotes = [*over_others(found), *(rows[what] for what in QUOTED)]
-    return "\n".join(["| | measured |", "|---|---|", *(f"| {row['what']} | {row['measured']} |" for row in quotes)])
+    quotes = over_others(found)
+    large = [(row, words) for disks, method, words in LARGE if (row := of_size(found, disks, method))]
+    if large:
+        said = "; ".join(
+            f"{row['disks']:,} disks {words} {seconds(row['seconds'])} ({row['measured_on']})" for row, words in large
+        )
+        quotes.append({"what": "From scene file to stored result, on two threads", "measured": said})
+    return "\n".join(
+        ["| what | measured |", "|---|---|", *(f"| {row['what']} | {row['measured']} |" for row in quotes)]
+    )
 
 
 def main() -> None:
@@ -376,6 +418,7 @@ def main() -> None:
             style.save(draw(found[benchmark]), benchmark, HERE / "figures", formats=("png",))
     write(str(HERE / "summary.json"), {"goals": goals(found)}, measured=False)
     atomic.write_bytes(HERE.parent / "docs" / "benchmarks.md", text(found).encode())
+    atomic.write_bytes(HERE.parent / "docs" / "_generated" / "costs.md", f"{costs(found)}\n".encode())
     generated.renew(HERE.parent / "README.md", "speed", quoted(found))
 
 

@@ -25,9 +25,10 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
     "sphinx_gallery.gen_gallery",
+    "pictures_of_pages",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/**/*.zip", "gallery/**/*.json"]
+exclude_patterns = ["_build", "_generated", *(f"gallery/**/*.{end}" for end in ("ipynb", "py", "zip", "json"))]
 
 myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 3

@@ -2,7 +2,7 @@
 
     python examples/bidisperse_slab.py examples/bidisperse_slab.csv
 
-Where the disks lie matters little as long as none overlap: they fall under gravity before the load comes.
+The exact places matter little as long as no disks overlap, since they settle under gravity before the load acts.
 """
 
 import csv

@@ -1,10 +1,10 @@
-"""A sweep of your own: what the start of a disordered packing decides, over many realizations of the radii.
+"""A sweep of your own: the effect of the initial lattice on a disordered packing, over many realizations of the radii.
 
     python examples/two_starts.py --polydispersity 0.01 --realizations 20
 
-Slabs without friction fall from a lattice of two mean radii, on which large disks overlap, or from one on which the
-largest just touch; then comes a force of 15. Tasks run on all cores here, or on a Dask cluster if --scheduler or
-DASK_SCHEDULER_ADDRESS names one; with --checkpoint, what is finished outlives an interruption.
+Slabs without friction settle from a lattice of two mean radii, on which large disks overlap, or from one on which the
+largest just touch. Then a force of 15 mg acts. Tasks run on all cores of this machine, or on a Dask cluster if
+--scheduler or DASK_SCHEDULER_ADDRESS names one. With --checkpoint an interrupted sweep continues.
 """
 
 import argparse
@@ -34,16 +34,16 @@ def measure(task: tuple[Scene, float | str, int]) -> dict[str, np.ndarray | floa
     in_row = packing.row[pairs[:, 0]] == packing.row[pairs[:, 1]]
     result = to_dataset(solution)
     return {
-        "contacts per disk": coordination_number(rest),
-        "the same, away from boundaries": coordination_number(rest, bulk_disks(rest, packing.width)),
-        "horizontal, of those on a lattice": (rest.pairs.touching & horizontal).sum() / in_row.sum(),
-        "oblique, of those on a lattice": (rest.pairs.touching & ~horizontal).sum() / (~in_row).sum(),
+        "coordination number": coordination_number(rest),
+        "coordination number away from boundaries": coordination_number(rest, bulk_disks(rest, packing.width)),
+        "horizontal contacts over those of the lattice": (rest.pairs.touching & horizontal).sum() / in_row.sum(),
+        "oblique contacts over those of the lattice": (rest.pairs.touching & ~horizontal).sum() / (~in_row).sum(),
         "response": smoothed_response(X, result["x"].values, result["floor_response"].values[-1], 3.0),
     }
 
 
 def scene(polydispersity: float, **packing: int) -> Scene:
-    """The paper's slab without friction, and settings that bring it to rest fast; the static finish does the rest."""
+    """The paper's slab without friction, with settings for a fast fall and a static finish."""
     return Scene().updated(
         {
             "packing.polydispersity": polydispersity,
@@ -58,7 +58,7 @@ def scene(polydispersity: float, **packing: int) -> Scene:
 
 
 def compare(base: Scene, realizations: int, **sweep) -> dict[float | str, dict[str, tuple[np.ndarray, np.ndarray]]]:
-    """Mean over realizations and its standard error of everything measured, for each start."""
+    """Mean over realizations and its standard error of everything measured, for each initial lattice."""
     tasks = [(base, start, realization) for start in STARTS for realization in range(realizations)]
     found = map_tasks(measure, tasks, **sweep)
     table = {}
@@ -87,7 +87,7 @@ def main() -> None:
         checkpoint=options.checkpoint,
     )
     for start, row in table.items():
-        print(f"start: {start}")
+        print(f"initial lattice: {start}")
         response, error = row.pop("response")
         for name, (mean, standard_error) in row.items():
             print(f"  {name}: {mean:.3f} +- {standard_error:.3f}")

@@ -1,4 +1,4 @@
-"""Renews the tables of the survey in docs/reproduction-notes.md from what is stored: python document.py."""
+"""Renews the tables of the survey in docs/_generated/survey.md from what is stored: python document.py."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import xarray as xr
 from granular_response.store import generated
 
 ROOT = Path(__file__).resolve().parents[1]
-NOTES = ROOT / "docs" / "reproduction-notes.md"
+NOTES = ROOT / "docs" / "_generated" / "survey.md"
 #: Name of the generated lines.
 BLOCK = "survey"
 FOUND, BELOW, ABOVE = 0, 1, 2
@@ -56,7 +56,7 @@ def number(value: float) -> str:
 def starts(datasets: Mapping[str, xr.Dataset]) -> list[str]:
     """A line for each initial lattice: contacts without friction, and the dips with and without it."""
     data = datasets["starts"]
-    heads = ["lattice constant", "coordination number", "horizontal part of the missing ones"]
+    heads = ["lattice constant", "coordination number", "horizontal fraction of the missing contacts"]
     heads += ["dip, µ = 0", "dip, µ = 0.2"]
     lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
     pairs = zip(data["distance"].values.tolist(), data["friction"].values.tolist(), strict=True)
@@ -89,7 +89,7 @@ def text(datasets: Mapping[str, xr.Dataset]) -> str:
             "",
             *crossovers(datasets),
             "",
-            "Initial lattices at δ = 0.01, with half the width of the 95 % interval; contacts with walls, dips under"
+            "Initial lattices at δ = 0.01, with half the width of the 95 % interval; contacts with walls counted, dips under"
             " 15 mg smoothed with w = 3:",
             "",
             *starts(datasets),

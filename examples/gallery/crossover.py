@@ -1,9 +1,9 @@
 """
-Where one peak becomes two
-==========================
+Crossover from one peak to two
+==============================
 
-An event along the load is found by bisection: here the force at which the response under the load stops being the
-largest one, without friction (Sec. IV).
+``gr.find_event`` finds an event along the load by bisection. Here it is the force at which the response is no longer
+largest below the load, without friction (Sec. IV of the paper).
 """
 
 import granular_response as gr
@@ -30,7 +30,7 @@ bracket = gr.find_event(scene, two_peaks, LOW, HIGH, tolerance=0.01)
 print(f"one peak at {bracket.low:.3f} mg, two at {bracket.high:.3f}")
 
 # %%
-# The response on both sides.
+# The response on both sides of the crossover.
 
 result = gr.solve(scene, load_factors=[bracket.low, bracket.high, 2.0 * bracket.high])
 gr.plot.response(result)

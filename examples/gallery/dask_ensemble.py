@@ -2,8 +2,8 @@
 An ensemble on Dask
 ===================
 
-Realizations of a disordered packing on a Dask cluster: the mean floor response and the band of its standard error. The
-cluster is made here, on this machine; with the address of any other one nothing else changes.
+Realizations of a disordered packing are solved on a Dask cluster. The picture shows the mean floor response with its
+standard error. The cluster is started here, on this machine; give the address of another cluster to use that one.
 """
 
 import matplotlib.pyplot as plt
@@ -29,7 +29,7 @@ places = np.arange(-12.0, 12.5, 0.5)
 
 
 def smoothed(result: gr.Result) -> xr.DataArray:
-    """The response over two radii: floor disks are at other places in each realization."""
+    """The response smoothed over two radii, since floor disks are at other places in each realization."""
     at_places = [result.response_at(x, smooth=2.0).isel(load=-1) for x in places]
     return xr.concat(at_places, "x").rename("response")
 
@@ -46,4 +46,4 @@ if __name__ == "__main__":  # the processes of the cluster read this file, too
     ax.plot(places, response.values.T, color="0.85", linewidth=0.6)
     ax.fill_between(places, mean - error, mean + error, alpha=0.3)
     ax.plot(places, mean)
-    ax.set(xlabel="place from the load", ylabel="floor response per length")
+    ax.set(xlabel="x / R", ylabel="smoothed floor response")

@@ -2,9 +2,9 @@
 Force against displacement
 ==========================
 
-A disk that is moved, not pushed, as in experiments with a localized displacement: the middle disk of the bottom row is
-raised, let down again, and raised once more. The force that this takes is the answer. It is another one on the way
-back, because contacts that slid or opened do not return.
+A disk is displaced in place of being pushed, as in some experiments. The middle disk of the bottom row is raised,
+lowered, and raised once more. The force that this takes differs on the way back, because contacts that slid or opened
+do not return.
 """
 
 import matplotlib.pyplot as plt
@@ -29,7 +29,7 @@ result = gr.solve(scene)
 print(result)
 
 # %%
-# The reaction is the force on the disk, in mg, that holds it where it is.
+# The reaction is the force, in mg, that holds the disk at its prescribed displacement.
 
 force = np.concatenate([[0.0], result.reaction.sel(axis="z").squeeze("load_point").values])
 height = 100.0 * RAISED * np.concatenate([[0.0], result.load_factors])
@@ -42,11 +42,11 @@ for part, look, label in (
     (slice(back, None), "^:", "up again"),
 ):
     ax.plot(height[part], force[part], look, markersize=3, label=label)
-ax.set(xlabel="height above rest, in hundredths of a mean radius", ylabel="force, in mg")
+ax.set(xlabel="displacement / (0.01 R)", ylabel="reaction / mg")
 ax.legend()
 
 # %%
-# How far the disks of each row have been raised with it: the response to a displacement. Rows from the third on.
+# The vertical displacement of the disks of each row, from the third row on: the response to a displacement.
 
 data = result.to_dataset()
 raised = (data["position"].isel(state=top) - data["position"].isel(state=0)).sel(axis="z").values / RAISED
@@ -56,5 +56,5 @@ figure, ax = plt.subplots(figsize=(5, 3.2), layout="constrained")
 for row in range(2, LAYERS, 2):
     here = data["row"].values == row
     ax.plot(x[here], raised[here], ".-", label=f"row {row + 1}")
-ax.set(xlabel="place from the raised disk", ylabel="raised, over the disk's own height")
+ax.set(xlabel="x / R", ylabel="displacement / that of the raised disk")
 ax.legend()

@@ -1,9 +1,9 @@
 """
-Beside an elastic slab
-======================
+Comparison with an elastic slab
+===============================
 
-A small force on a lattice without friction is answered as by an elastic slab, in the end: this is how near fifteen
-layers come (Sec. II of the paper). The elastic constants are those of the lattice.
+A small force on a lattice without friction gives nearly the response of an elastic slab. The picture shows how close
+fifteen layers come (Sec. II of the paper). The elastic constants are those of the lattice.
 """
 
 import granular_response as gr

@@ -2,8 +2,8 @@
 A first response
 ================
 
-The paper's slab: 15 rows of 61 and 60 disks with friction 0.2 fall onto a floor, and the middle disk of the top row is
-pushed down with fifteen times the weight of a disk. What does the floor feel?
+The paper's slab has 15 rows of 61 and 60 disks with friction 0.2. It settles on the floor, and then 15 mg push the
+middle disk of the top row down. How does this force arrive at the floor?
 """
 
 import granular_response as gr
@@ -21,13 +21,13 @@ result = gr.solve(scene)
 print(result)
 
 # %%
-# Each state says what is left unbalanced in it and whether it is stable. The response is a labelled array: what the
-# load adds to the force on each floor disk, per applied force. Over the floor it sums to one.
+# Each state reports its residual and whether it is stable. The response is a labelled array: the incremental vertical
+# force on each floor disk over the applied force. Its sum over the floor is one.
 
 print(float(result.floor_response.sum()))
 gr.plot.response(result)
 
 # %%
-# Everything on one page: the response, the forces that the load adds, the contacts that open and slide, the stress.
+# One page shows the response, the incremental forces, the contacts that open and slide, and the stress.
 
 gr.plot.page(result)

@@ -2,8 +2,8 @@
 One peak becomes two
 ====================
 
-Without friction, contacts open below the load as it grows, and when the region of open contacts is large enough the
-single peak of the response splits (Figs. 3 and 4 of the paper). One initial equilibrium serves every load.
+Without friction contacts below the load open as it grows. When the region of open contacts is large enough, the single
+peak of the response splits (Figs. 3 and 4 of the paper). One initial equilibrium serves all loads.
 """
 
 import matplotlib.pyplot as plt
@@ -24,7 +24,7 @@ result = gr.solve(scene, load_factors=FORCES)
 gr.plot.response(result)
 
 # %%
-# The contacts of each loaded state, beside the initial ones. Every picture takes ``ax``.
+# Contacts of each loaded state compared with the initial equilibrium. Every picture takes ``ax``.
 
 figure, panels = plt.subplots(2, 2, figsize=(9, 4.5), layout="constrained")
 for k, ax in enumerate(panels.flat):

@@ -2,8 +2,8 @@
 Loading and unloading
 =====================
 
-With friction, the way back is another one: at half the load the response under the load is smaller after the full load
-than before it, because contacts that opened and slid do not return. The load programme says which way to go.
+With friction a packing does not return along its loading path. At half the load the response below the load is smaller
+after the full load than before it, because contacts have slid.
 """
 
 import matplotlib.pyplot as plt
@@ -25,7 +25,7 @@ result = gr.solve(scene)
 print(result)
 
 # %%
-# What the load adds to the force on the floor below it, along the programme.
+# The incremental floor force below the load, along the load programme.
 
 data = result.to_dataset()
 centre = abs(data["x"].values).argmin()
@@ -37,10 +37,10 @@ turn, back = 4, 8
 ax.plot([0.0, *force[:turn]], [0.0, *added[:turn]], "o-", label="loading")
 ax.plot(force[turn - 1 : back], added[turn - 1 : back], "s--", label="unloading")
 ax.plot(force[back - 1 :], added[back - 1 :], "^:", label="loading again")
-ax.set(xlabel="force on the top, in mg", ylabel="added floor force at x = 0")
+ax.set(xlabel="F / mg", ylabel="incremental floor force at x = 0 / mg")
 ax.legend()
 
 # %%
-# Without load, these contacts still slide or have opened.
+# These contacts still slide or are open after unloading.
 
 gr.plot.contacts(result, state=back)

@@ -2,9 +2,9 @@
 The paper at a glance
 =====================
 
-A slab under a growing force, without and with friction: what the force adds at the contacts, the contacts that it
-opens, and what the floor feels, all per applied force. What moves is not linear in the force: without friction one
-peak becomes two.
+A slab under a growing force, with friction 0, 0.2 and 1. The animation shows the incremental contact forces, the
+contacts that have opened, and the normalized floor response. Without friction one peak becomes two; the changes of the
+normalized response show where it is not linear.
 """
 
 import granular_response as gr
@@ -24,6 +24,6 @@ for friction in (0.0, 0.2, 1.0):
     results[f"friction {friction:g}"] = gr.solve(scene, load_factors=FORCES)
 
 # %%
-# A frame for each load. ``output="growing.gif"`` writes a file, .webp and .html too.
+# One frame for each load. ``output="growing.gif"`` writes a file; .webp and .html work too.
 
 animation = gr.plot.animate(results, half_width=30.0, fps=4)

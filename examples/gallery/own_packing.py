@@ -2,8 +2,8 @@
 A packing of your own
 =====================
 
-Arrays of x, z and radius are a packing, in one unit of length. Here, large and small disks at random places of a loose
-lattice, which fall into a disordered packing.
+Arrays of x, z and radius, in any one unit of length, define a packing. Here large and small disks lie at random places
+of a loose lattice and settle into a disordered packing.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ x = spacing * (np.arange(COLUMNS) + 0.5 + 0.5 * (np.arange(ROWS)[:, None] % 2))
 z = np.broadcast_to(spacing * (0.5 + 0.5 * np.sqrt(3.0) * np.arange(ROWS))[:, None], x.shape)
 
 # %%
-# A packing without order is settled fastest by Verlet's integrator with the longest step that is stable.
+# A disordered packing settles fastest with Verlet's integrator and the largest stable time step.
 
 scene = gr.Scene.from_arrays(
     x.ravel(),
@@ -35,8 +35,7 @@ result = gr.solve(scene)
 print(result)
 
 # %%
-# The initial equilibrium, its disks coloured by their size, and the incremental forces: black where they press the
-# disks together, red where they take compression away.
+# The initial equilibrium with disks coloured by their radius, and the incremental forces.
 
-gr.plot.packing(result, state=0, values=result.to_dataset()["radius"], label="radius over mean radius")
+gr.plot.packing(result, state=0, values=result.to_dataset()["radius"], label="radius / mean radius")
 gr.plot.forces(result)

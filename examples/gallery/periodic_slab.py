@@ -2,8 +2,8 @@
 A slab without side walls
 =========================
 
-With periodic sides the slab has no walls that could carry part of the load: every disk of the top row is as good as
-every other, and the response only moves along.
+Periodic sides replace the walls, which could carry part of the load. All disks of the top row are then equivalent: a
+load on another disk moves the response and does not change it.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ result = gr.solve(scene)
 shifted = gr.solve(scene.updated({"loads.0.disk": {"row": "top", "offset": DISKS // 2 - 1}}))
 
 # %%
-# The same response from a disk near the end of the row, whose contacts reach across the sides.
+# The response to a load on a disk near the end of the row, whose contacts reach across the sides, has the same values.
 
 ordered = [np.sort(one.floor_response.values) for one in (result, shifted)]
 print("largest difference:", abs(ordered[0] - ordered[1]).max())

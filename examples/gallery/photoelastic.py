@@ -2,9 +2,9 @@
 Photoelastic disks
 ==================
 
-Experiments see the forces in a packing by disks that turn the plane of polarised light where they are strained. The
-stress in a disk follows from its contact forces in closed form, so any state can be looked at in this way: here a slab
-under 150 mg, as much as in such experiments (Sec. II.B of the paper).
+Experiments make forces visible with disks that rotate the plane of polarised light where they are strained. The stress
+in a disk follows from its contact forces in closed form, so that every state can be shown in this way. Here a slab
+carries 150 mg, as in such experiments (Sec. II.B of the paper).
 """
 
 import granular_response as gr
@@ -24,7 +24,7 @@ result = gr.solve(scene)
 gr.plot.photoelastic(result, half_width=20.0)
 
 # %%
-# The same with the forces of the initial equilibrium, more sensitive: ``fringe`` is the difference of the principal
-# stresses from one fringe to the next, in mg per radius.
+# The initial equilibrium, with higher sensitivity: ``fringe`` is the difference of the principal stresses from one
+# fringe to the next, in mg/R.
 
 gr.plot.photoelastic(result, state=0, half_width=20.0, fringe=20.0)

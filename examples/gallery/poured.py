@@ -2,8 +2,8 @@
 A disordered packing
 ====================
 
-Disks of two sizes poured into a box, one after the other, each rolling down to the first hollow; then gravity acts on
-all of them, and one is pushed.
+Disks of two sizes are poured into a box one after the other, and each rolls down to the first hollow. Then gravity acts
+on all of them, and a force on one.
 """
 
 import granular_response as gr
@@ -20,7 +20,7 @@ result = gr.solve(scene)
 print(result)
 
 # %%
-# The packing under gravity, its disks coloured by their size, and the forces that the load adds.
+# The initial equilibrium with disks coloured by their radius, and the incremental forces.
 
-gr.plot.packing(result, state=0, values=result.to_dataset()["radius"], label="radius over mean radius")
+gr.plot.packing(result, state=0, values=result.to_dataset()["radius"], label="radius / mean radius")
 gr.plot.forces(result)

@@ -2,8 +2,8 @@
 A map of stress
 ===============
 
-The stress is coarse-grained from the contact forces with a Gaussian (Sec. V.C). ``Result.stress`` gives the tensor on
-any grid, ``gr.plot.stress`` draws a component of it.
+The stress is coarse-grained from the contact forces with a Gaussian (Sec. V.C of the paper). ``Result.stress`` gives
+the tensor on any grid, ``gr.plot.stress`` draws one component.
 """
 
 import matplotlib.pyplot as plt
@@ -18,7 +18,7 @@ result = gr.solve(scene)
 gr.plot.stress(result)
 
 # %%
-# Over every line across the slab the vertical stress that the load adds sums to the load: 4 mg.
+# The incremental vertical stress, integrated over any horizontal line, equals the load of 4 mg.
 
 x = np.arange(-80.0, 80.0, 0.25)
 z = np.arange(4.0, 1.6 * LAYERS, 2.0)

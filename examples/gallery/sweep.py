@@ -2,8 +2,8 @@
 A sweep with an error band
 ==========================
 
-Every combination of values of any keys, on all cores, as one labelled dataset. Here, slabs with radii that differ by a
-tenth: what the floor feels under the load, over several realizations of the radii.
+A sweep solves a scene with every combination of parameter values, on all cores, and returns one labelled dataset. Here
+it measures the floor response near the load for slabs with polydispersity 0.1, over several realizations of the radii.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 Pictures in OVITO
 =================
 
-Results export to OVITO and ParaView. Here, what the file holds: one frame for each state, disks with radius,
-angle, coordination number and the change of the contact forces on them.
+Results are exported for OVITO and ParaView. This example shows what the file contains: one frame for each state, and
+for each disk radius, angle, coordination number and incremental net contact force.
 """
 
 import tempfile
@@ -23,7 +23,7 @@ result = gr.solve(scene)
 path = result.export(folder / "result.xyz")  # or .gsd, which keeps the contacts as bonds
 
 # %%
-# On the command line the same is ``granular-response export result.nc -o result.xyz``. The last frame begins so:
+# The command line does the same: ``granular-response export result.nc -o result.xyz``. The last frame begins with:
 
 lines = path.read_text().splitlines()
 count = int(lines[0])
@@ -36,4 +36,4 @@ print(frame[1])
 
 columns = np.array([line.split()[1:] for line in frame[1:]], float)
 position, change = columns[:, :3], np.linalg.norm(columns[:, 6:9], axis=1)
-gr.plot.packing(result, values=change, label="change of the contact forces on a disk, in mg")
+gr.plot.packing(result, values=change, label="incremental net contact force / mg")

@@ -176,7 +176,7 @@ def reproduce(
 
 
 @commands.command(
-    "report", "report -o page.html", "report --notes docs/reproduction-notes.md --figures docs/figures.md"
+    "report", "report -o page.html", "report --notes docs/_generated/readings.md --figures docs/_generated/figures.md"
 )
 def report(
     output: Annotated[Path, output_option(help="Page to make (HTML).")] = Path("figures/report.html"),

@@ -29,22 +29,24 @@ def test_the_stored_page_is_the_one_made_from_the_stored_numbers(document):
     found = document.read()
     assert (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8") == document.text(found)
     assert document.quoted(found) in (ROOT / "README.md").read_text(encoding="utf-8")
+    costs = (ROOT / "docs" / "_generated" / "costs.md").read_text(encoding="utf-8")
+    assert costs == f"{document.costs(found)}\n" and costs.count("\n") == 2 + len(document.SIZES)
 
 
 def test_a_missed_goal_and_a_missing_benchmark_are_said(document):
     found = copy.deepcopy(document.read())
     rows = {row["what"]: row for row in document.goals(found)}
-    kept = rows["Speed over LAMMPS, friction, 908 disks"]
+    kept = rows["Speed of a step over LAMMPS, friction, 908 disks"]
     assert kept["goal"] == "at least 10.0 times" and kept["met"] in (True, False)
     for run in found["kernel"]["runs"]:
         run["over_lammps"] = 1.5
     rows = {row["what"]: row for row in document.goals(found)}
-    assert rows["Speed over LAMMPS, friction, 908 disks"]["met"] is False
+    assert rows["Speed of a step over LAMMPS, friction, 908 disks"]["met"] is False
     assert "1.5 times — **missed**" in document.text(found)
     del found["kernel"]
     assert "Not measured yet" in document.text(found)
     rows = {row["what"]: row for row in document.goals(found)}
-    assert rows["Speed over LAMMPS, friction, 908 disks"]["measured"] == "not measured"
+    assert rows["Speed of a step over LAMMPS, friction, 908 disks"]["measured"] == "not measured"
 
 
 @pytest.mark.parametrize(
@@ -63,7 +65,8 @@ def test_a_section_says_what_it_was_measured_on(document, file, rows, said):
 
 def test_the_page_says_what_its_sections_were_measured_on(document):
     found = document.read()
-    assert "Measured on " in document.text({"machine": found["machine"], "scale": found["scale"]})
+    text = document.text({"machine": found["machine"], "scale": found["scale"]})
+    assert f"The processor is {document.measured_on(found['scale'])} unless the section names another." in text
 
 
 def test_what_was_measured_is_written_with_the_processor(script, tmp_path):
@@ -216,7 +219,10 @@ def test_the_fastest_version_and_style_of_a_code_is_quoted(document):
         "arena": {"runs": [{"disks": 908, "code": code, "times_ours": times} for code, times in steps]},
         "responses": {"reached": [{"scene": "friction", "code": code, "0.0001": time} for code, time in reached]},
     }
-    assert [row["measured"] for row in document.over_others(found)] == ["LAMMPS 11, YADE 53", "LAMMPS 9"]
+    assert [row["measured"] for row in document.over_others(found)] == [
+        "LAMMPS 11.4, YADE 53",
+        "friction 0.2, 15 mg, error below 1e-4: LAMMPS 9",
+    ]
 
 
 @pytest.mark.parametrize("friction", [0.2, 0.0])

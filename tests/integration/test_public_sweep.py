@@ -249,8 +249,8 @@ def test_load_factors_that_are_none_are_one_line_before_anything_is_solved(facto
 
 
 def test_the_sweep_of_the_notes_runs_as_a_script_with_workers(tmp_path):
-    text = (ROOT / "docs" / "own-scenes.md").read_text()
-    code = re.search(r"## Many scenes.*?```python\n(.*?)```", text, re.DOTALL)[1]
+    text = (ROOT / "docs" / "many-scenes.md").read_text()
+    code = re.search(r"```python\n(.*?)```", text, re.DOTALL)[1]
     smaller = 'gr.Scene().updated({"packing.layers": 4, "packing.disks_per_row": 9})'
     for old, new in {
         "gr.Scene()": smaller,

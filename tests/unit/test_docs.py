@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import pkgutil
 import re
 from functools import cache
@@ -28,8 +29,41 @@ def test_named_modules_and_links_exist(page):
     places = [ROOT, ROOT / "src", ROOT / "src" / "granular_response"]
     missing = [name for name in modules if not any((place / name).exists() for place in places)]
     links = re.findall(r"\]\((?!https?:|#|mailto:)([^)#]+)", text)
+    links += re.findall(r"```{include} (.*)", text)
     missing += [link for link in links if not (page.parent / link).exists()]
     assert not missing
+
+
+#: Pages whose blocks of Python run in turn, when the site is built and here.
+RUN = sorted(page.stem for page in PAGES if "<!-- picture: " in page.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("page", RUN)
+def test_the_python_of_a_page_draws_and_prints_what_it_says(page, tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "docs")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+    found = importlib.import_module("pictures_of_pages").drawn(page, text, tmp_path)
+    pictures = re.findall(r"```{image} _drawn/(\S+)", found.text)
+    assert len(pictures) >= text.count("<!-- picture: ") and "<!-- picture: " not in found.text
+    assert all((tmp_path / name).stat().st_size > 1000 for name in pictures)
+    quoted = re.findall(r"```python\n(?:.*?)```(?:\n\n```text\n(.*?)```)?", text, re.DOTALL)
+    assert [rounded(one) for one in found.printed] == [rounded(one) for one in quoted]
+
+
+def test_the_readme_prints_what_it_says(tmp_path, monkeypatch, capsys):
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    ((code, printed),) = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", text, re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {})
+    assert rounded(capsys.readouterr().out) == rounded(printed)
+    assert (tmp_path / "response.png").stat().st_size > 1000
+
+
+def rounded(text: str) -> str:
+    """Without the digits of rounding errors."""
+    return re.sub(r"\d\.\de-\d\d", "#", text)
 
 
 def test_every_page_is_on_the_site():
@@ -52,9 +86,8 @@ def texts_of_the_sources() -> str:
 
 
 def quoted_messages() -> list[str]:
-    text = (ROOT / "docs" / "own-scenes.md").read_text(encoding="utf-8")
-    section = text.partition("## Troubleshooting")[2].partition("\n## ")[0]
-    return [" ".join(message.split()) for message in re.findall(r"^\* \*([^*]+)\*", section, re.MULTILINE)]
+    text = (ROOT / "docs" / "troubleshooting.md").read_text(encoding="utf-8")
+    return re.findall(r"^\| \*([^*]+)\* \|", text, re.MULTILINE)
 
 
 @pytest.mark.parametrize("message", quoted_messages())
@@ -68,9 +101,9 @@ def test_several_messages_are_quoted():
 
 
 def test_the_reference_of_the_scene_keys_is_current():
-    page = (ROOT / "docs" / "scene-reference.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "_generated" / "scene-keys.md").read_text(encoding="utf-8")
     fresh = generated.replace(page, scene_reference.BLOCK, scene_reference.lines())
-    assert fresh == page, "granular-response keys --page docs/scene-reference.md"
+    assert fresh == page, "granular-response keys --page docs/_generated/scene-keys.md"
 
 
 def paths_of(data: object, place: str = "") -> set[str]:
@@ -122,7 +155,7 @@ def test_units_are_given_for_keys_that_exist():
 
 
 def test_laboratory_units_are_as_the_page_says():
-    text = (ROOT / "docs" / "own-scenes.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "packings.md").read_text(encoding="utf-8")
     code = re.search(r"## Laboratory units.*?```python\n(.*?)```", text, re.DOTALL)
     assert code
     names: dict = {}

@@ -274,7 +274,7 @@ QUANTITIES = ("place, radius", "mass", "width, sides", "angle", "contact forces"
 
 def carried() -> dict[str, dict[str, str]]:
     """The table of the user guide: for each ending of a name its columns."""
-    guide = (ROOT / "docs" / "own-scenes.md").read_text(encoding="utf-8")
+    guide = (ROOT / "docs" / "export.md").read_text(encoding="utf-8")
     head, _, *rows = re.search(r"^\| file \| states \|(?:.*\n\|)*.*", guide, re.MULTILINE)[0].splitlines()
     cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in (head, *rows)]
     return {

@@ -32,12 +32,13 @@ from granular_response_paper.report import against, benchmarks, explorer, pictur
 from granular_response_paper.report.typeset import typeset
 
 FORCES = (0.0, 1.0, 4.0, 90.0)
-#: The documents with generated lines, by their kind.
+#: The files with generated lines, by their name.
 DOCUMENTS = {
-    "notes": "docs/reproduction-notes.md",
-    "figures": "docs/figures.md",
-    "beyond": "docs/beyond.md",
-    "data": "data/README.md",
+    "readings": "docs/_generated/readings.md",
+    "figures": "docs/_generated/figures.md",
+    "hysteresis": "docs/_generated/hysteresis.md",
+    "crossover_scaling": "docs/_generated/crossover_scaling.md",
+    "datasets": "data/README.md",
 }
 
 
@@ -300,7 +301,7 @@ def test_the_notes_get_the_table_and_are_the_same_every_time(tmp_path):
 def test_the_documents_hold_what_is_stored(kind, block):
     if missing := [group for group in groups.NAMES if not (ROOT / "data" / f"{group}.nc").exists()]:
         pytest.skip(f"not simulated yet: {', '.join(missing)}")
-    text = (ROOT / DOCUMENTS[kind]).read_text()
+    text = (ROOT / DOCUMENTS[block]).read_text()
     assert generated.replace(text, block, report.BLOCKS[kind][block](ROOT / "data")) == text, "make quote"
 
 

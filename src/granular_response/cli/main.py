@@ -291,7 +291,7 @@ def plot(
         typer.echo(str(animate))
 
 
-@commands.command("keys", "keys protocol", "keys --page docs/scene-reference.md")
+@commands.command("keys", "keys protocol", "keys --page docs/_generated/scene-keys.md")
 def keys(
     part: Annotated[str, typer.Argument(help="Beginning of the keys, such as contact.")] = "",
     page: Annotated[Path | None, typer.Option(help="Renew the tables in this file in place of printing.")] = None,

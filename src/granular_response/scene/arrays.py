@@ -37,16 +37,16 @@ class ArrayPacking(Sparse, PackingDescription):
     """
 
     kind: Literal["arrays"] = Field(default="arrays", description="Disks given as numbers.")
-    x: Column = Field(repr=False, description="Of each centre, in any unit of length.")
+    x: Column = Field(repr=False, description="Horizontal position of each centre, in any unit of length.")
     z: Column = Field(repr=False, description="Height of each centre.")
-    radius: Column = Field(repr=False, description="Of each disk.")
+    radius: Column = Field(repr=False, description="Radius of each disk.")
     mass: Column | None = Field(
-        default=None, repr=False, description="Of each disk; null takes them in proportion to the square of the radius."
+        default=None, repr=False, description="Mass of each disk; null: proportional to the square of the radius."
     )
     width: Positive | None = Field(
         default=None,
-        description="Distance of the side walls, or the period; null has the right wall touch the disk that reaches "
-        "farthest.",
+        description="Distance of the side walls, or the period; null: the right wall touches the disk that "
+        "reaches farthest.",
     )
     origin: Vector = Field(default=(0.0, 0.0), description="[x, z] of left wall and floor.")
     sides: Sides = "walls"

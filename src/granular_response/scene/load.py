@@ -87,7 +87,8 @@ class Load(Description):
     )
     force: Vector = Field(
         default=(0.0, 0.0),
-        description="Force; z points up. Must be given unless displacement is, and be 0 where that holds the disk.",
+        description="Force; z points up. Required without displacement; must be 0 in directions that "
+        "displacement prescribes.",
     )
     displacement: Displacement | None = Field(
         default=None,

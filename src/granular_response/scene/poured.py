@@ -48,8 +48,10 @@ class PouredPacking(PackingDescription):
     kind: Literal["poured"] = Field(default="poured", description="Disks poured one after the other into a box.")
     disks: Disks = Field(default=500, description="Number of disks.")
     width: Positive = Field(default=50.0, description="Distance of the side walls, or the period.")
-    sizes: Numbers = Field(default=(1.0,), description="Radii among which each disk has one, relative to each other.")
-    fractions: Numbers | None = Field(default=None, description="Share of each of the sizes; null for equal shares.")
+    sizes: Numbers = Field(default=(1.0,), description="Relative radii; each disk has one of them.")
+    fractions: Numbers | None = Field(
+        default=None, description="Fraction of disks with each size; null: equal fractions."
+    )
     polydispersity: Fraction = Field(
         default=0.3,
         description="delta: each radius is multiplied by a random number, uniform in [1 - delta, 1], then all are "

@@ -76,9 +76,9 @@ class Protocol(Description):
     )
     load_factors: LoadFactors = Field(
         default=(1.0,),
-        description="Load programme: factors of the loads at which states are kept, in turn; [0.5, 1, 0.5, 0] loads "
-        "and unloads. Each load continues from the state before, but dynamics starts at the initial equilibrium until "
-        "the programme first turns, as in the paper.",
+        description="Load programme: factors of the loads at which states are stored, in turn; [0.5, 1, 0.5, 0] loads "
+        "and unloads. Each load continues from the previous state. Dynamics instead starts from the initial "
+        "equilibrium until the programme first reverses, as in the paper.",
     )
     integrator: Integrator = Field(
         default="beeman",
@@ -87,8 +87,7 @@ class Protocol(Description):
     )
     time_step: TimeStep | None = Field(
         default=None,
-        description="auto takes the largest one that is safe. Left out, it is the paper's 5e-4 where that is stable, "
-        "and auto else.",
+        description="auto: 0.6 of the stability limit. null: the paper's 5e-4 if that is stable, otherwise auto.",
     )
     ramp_time: NonNegative = Field(default=20.0, description="Time over which the loads grow linearly to their values.")
     stop_kinetic_energy: Positive = Field(
@@ -96,23 +95,22 @@ class Protocol(Description):
     )
     stop_rule: Literal["instantaneous", "envelope"] = Field(
         default="instantaneous",
-        description="instantaneous: the kinetic energy is below the limit once, as in the paper; envelope: over a slow "
-        "swing.",
+        description="instantaneous: the kinetic energy is below the limit once, as in the paper; envelope: it has been "
+        "below the limit for 20 sqrt(R/g), some oscillations of the slowest modes.",
     )
     static_finish: Flag = Field(
-        default=True, description="Solve the equations of equilibrium where the dynamics stopped."
+        default=True, description="Whether Newton's method solves the equations of equilibrium after dynamics."
     )
     friction_law: Literal["cut", "literal", "unloading"] = Field(
         default="cut",
         description="At the Coulomb limit, cut: force of spring and dashpot are cut to the limit, and the spring takes "
-        "what is left; literal, as printed in the paper: the spring is frozen beyond the limit and the force is not "
-        "cut; unloading: the same, but slip may shorten the spring. The last two are for dynamics alone.",
+        "the value of the cut force; literal, as printed in the paper: the spring is frozen beyond the limit and the "
+        "force is not cut; unloading: the same, but slip may shorten the spring. The last two are for dynamics only.",
     )
     tensile_dashpot: Flag = Field(
-        default=True, description="Whether the normal force may pull while a contact opens fast, as in the paper."
+        default=True, description="Whether the normal force may be tensile while a contact opens fast, as in the paper."
     )
     maximum_steps: Count = Field(
         default=5_000_000,
-        description="Most time steps for gravity, for each load, and on a path for each motion from a lost equilibrium "
-        "to the next.",
+        description="Maximum number of time steps for gravity, for each load, and on a path for each dynamic jump.",
     )

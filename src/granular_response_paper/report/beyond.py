@@ -1,4 +1,4 @@
-"""Tables of ``docs/beyond.md`` that are made from the stored datasets of their groups, so that they are never old."""
+"""Tables of ``docs/extensions.md``, made from the stored datasets of their groups."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NOTHING = 1e-8
 #: Within which most loops balance.
 BALANCED = 1e-4
 
-CONFINED = {"constant": "constant", "walls": "the paper's walls", "as weight": "as weight"}
+CONFINED = {"constant": "constant", "walls": "the paper's walls", "as weight": "proportional to weight"}
 
 
 def crossovers(datasets: Datasets) -> str:
@@ -38,7 +38,7 @@ def crossovers(datasets: Datasets) -> str:
         one = powers.isel(series=series)
         here = slabs["series"].values == str(one["series"].values)
         layers, stored = slabs["layers"].values[here], slabs["surveyed"].values[here] > 0
-        deep = f", from {layers[stored].min()} on the survey's" if stored.any() else ""
+        deep = f", from {layers[stored].min()} on survey data" if stored.any() else ""
         cells = [
             f"{float(one['friction']):g}, {CONFINED[str(one['confined'].values)]}",
             f"{layers.min()} to {layers.max()}{deep}",
@@ -56,8 +56,8 @@ def crossovers(datasets: Datasets) -> str:
 def loops(datasets: Datasets) -> str:
     """A line for each packing of the group ``hysteresis``, of disorder median, least and largest; and the balance."""
     measured, events = datasets["loops"], datasets["events"]
-    heads = ["packing", "first opening", "linear up to", "reversible up to", "F", "left on the floor"]
-    heads += ["dissipated, first loop", "second loop"]
+    heads = ["packing", "first opening", "linear up to", "reversible up to", "F", "residual floor forces"]
+    heads += ["dissipation, first loop", "second loop"]
     rows = []
     off: dict[str, list[FloatArray]] = {"lattices": [], "disorder": []}
     count = 0
@@ -92,7 +92,7 @@ def loops(datasets: Datasets) -> str:
         if every.size:
             close = (every < BALANCED).mean()
             lines.append(
-                f"Work, stored energy and what sliding takes balance within {every.max():.0e} of the work of the first "
+                f"Work, stored energy and dissipation balance within {every.max():.0e} of the work of the first "
                 f"loading in all loops of {name}, in {100.0 * close:.0f} % of them within {BALANCED:.0e}."
             )
     return "\n".join(lines)
@@ -118,7 +118,7 @@ def _range(brackets: FloatArray) -> str:
         least = f"{low[0]:.3g}"
         return most if least == most else f"{least} to {most}"
     middle = float(np.median(np.where(np.isnan(high), np.inf, 0.5 * (low + high))))
-    half = f"{middle:.3g}" if np.isfinite(middle) else "not half of them"
+    half = f"{middle:.3g}" if np.isfinite(middle) else "in fewer than half"
     return f"{half} ({low.min():.3g} to {most})"
 
 
