@@ -89,8 +89,8 @@ def text(datasets: Mapping[str, xr.Dataset]) -> str:
             "",
             *crossovers(datasets),
             "",
-            "Initial lattices at δ = 0.01, with half the width of the 95 % interval; contacts with walls counted, dips under"
-            " 15 mg smoothed with w = 3:",
+            "Initial lattices at δ = 0.01, with half the width of the 95 % interval; contacts with walls counted, dips"
+            " under 15 mg smoothed with w = 3:",
             "",
             *starts(datasets),
         ]
