@@ -23,6 +23,7 @@ commands = CommandLine(
 Group = Annotated[str, typer.Argument(help="Figure group.", autocompletion=lambda: list(NAMES))]
 #: Folders and files that several commands take.
 LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
+SUMMARY = Path("extensions/summary.nc")
 GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
 
 
@@ -71,46 +72,25 @@ def simulate(
     typer.echo(str(path))
 
 
-@commands.command("draw pile_dip", "draw pile_dip --measure", "draw pile_dip --data other.nc -o other-figures")
+@commands.command("draw pile_dip", "draw pile_dip --data other.nc -o other-figures")
 def draw(
     group: Group,
     data: GroupData = None,
     output: Annotated[Path | None, output_option(help="Folder of the figures; figures/GROUP if not given.")] = None,
-    measured: Annotated[
-        bool, typer.Option("--measure", help="Write its numbers too, to figures/metrics/GROUP.json.")
-    ] = False,
 ) -> None:
     """Draw the figures of a group."""
-    from .pipeline import drawing, measuring
+    from .pipeline import drawing
 
     loaded()
-    numbers = [measuring.measure(group, data)] if measured else []  # first: they do not wait for pictures
-    for path in (*drawing.draw(group, data, output), *numbers):
+    for path in drawing.draw(group, data, output):
         typer.echo(str(path))
-
-
-@commands.command("measure pile_dip", "measure pile_dip --data other.nc -o other.json")
-def measure(
-    group: Group,
-    data: GroupData = None,
-    output: Annotated[
-        Path | None, output_option(help="Numbers (JSON); figures/metrics/GROUP.json if not given.")
-    ] = None,
-) -> None:
-    """Write the numbers of a group, as its own datasets have them, for comparing experiments.
-
-    The table of claims (granular-response-paper claims) needs the datasets of all groups.
-    """
-    from .pipeline import measuring
-
-    loaded()
-    typer.echo(str(measuring.measure(group, data, output)))
 
 
 @commands.command("claims", "claims --list", "claims --readme README.md")
 def claims(
     data: Annotated[Path, typer.Option(help="Folder of the datasets.")] = Path("data"),
     output: Annotated[Path, output_option(help="Table of claims (JSON).")] = Path("figures/claims.json"),
+    others: Annotated[Path, typer.Option(help="Summary of other preparations; left out if it is not there.")] = SUMMARY,
     readme: Annotated[Path | None, typer.Option(help="Renew the counts that this file quotes.")] = None,
     every: Annotated[bool, typer.Option("--list", help="Print the stored table; judge nothing anew.")] = False,
 ) -> None:
@@ -118,17 +98,30 @@ def claims(
     from .claims import stored, table
 
     loaded()
-    found = stored.read(output) if every else table.write(output, data, keep=[readme] if readme else [])
+    keep = [readme] if readme else []
+    found = stored.read(output) if every else table.write(output, data, others, keep)
     if readme is not None:
         stored.renew(readme, found)
     for row in found["table"] if every else ():
-        kind = f" [{row['interval_kind']}]" if row["interval_kind"] else ""
-        typer.echo(f"{row['id']:4} {row['verdict']:22} {row['ours'] or '-'}{kind}")
-        typer.echo(f"{'':27} Paper, {row['place']}: {row['paper']}")
-        typer.echo(f"{'':27} {row['reason']}")
-        if row["robustness_reason"]:
-            typer.echo(f"{'':27} Variants ({row['robustness']}): {row['robustness_reason']}")
+        star = "*" if row["star"] else ""
+        typer.echo(f"{row['id']:4} {row['verdict'] + star:15} {row['here']}")
+        typer.echo(f"{'':20} {row['source'].capitalize()}, {row['place']}: {row['paper']}")
+        for text in (row["cases"], row["preparations"] and f"Other preparations: {row['preparations']}"):
+            if text:
+                typer.echo(f"{'':20} {text}")
     typer.echo(f"{output}: {stored.quoted(found)}")
+
+
+@commands.command("summary", "summary --data elsewhere/preparation.nc")
+def summary(
+    data: Annotated[Path, typer.Option(help="Datasets of the group preparation.")] = Path("data/preparation.nc"),
+    output: Annotated[Path, output_option(help="Summary (netCDF).")] = SUMMARY,
+) -> None:
+    """Write what the claims read of other preparations of the slab: the forces of its events."""
+    from .claims import summary as writing
+
+    loaded()
+    typer.echo(str(writing.write(data, output)))
 
 
 @commands.command("groups")

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from granular_response_paper.groups.explorer.numbers import numbers
 
 from granular_response.observe.floor import smoothed_response
-from granular_response_paper.groups.explorer.numbers import numbers
 
 
 @pytest.fixture(scope="module")

@@ -2,9 +2,9 @@
 
 import numpy as np
 import reduced
+from granular_response_paper.groups.overview.numbers import numbers
 from PIL import Image
 
-from granular_response_paper.groups.overview.numbers import numbers
 from granular_response_paper.pipeline import drawing
 
 

@@ -41,7 +41,7 @@ def test_intervals_hold_the_power(datasets):
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "verdict"), [("B6", 1.0, "reproduced"), ("B6", 0.5, "contradicted"), ("B7", 0.76, "undecided")]
+    ("name", "value", "verdict"), [("B6", 1.0, "supported"), ("B6", 0.5, "not supported"), ("B7", 0.76, "cannot tell")]
 )
 def test_the_claims_follow_the_powers(datasets, name, value, verdict):
     changed = {key: data.copy() for key, data in datasets.items()}

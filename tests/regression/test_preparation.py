@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import reduced
+from granular_response_paper.groups.preparation.numbers import numbers
 
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state
@@ -10,7 +11,6 @@ from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import State
 from granular_response_paper.groups.preparation import draw as figures
 from granular_response_paper.groups.preparation import simulate as study
-from granular_response_paper.groups.preparation.numbers import numbers
 from granular_response_paper.groups.preparation.parameters import Parameters
 from granular_response_paper.groups.preparation.simulate import taps
 from granular_response_paper.slab_response import LoadPath, Measures

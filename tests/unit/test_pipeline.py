@@ -15,7 +15,7 @@ from granular_response.scene import SceneError
 from granular_response.store import files as store
 from granular_response_paper import groups, pipeline
 from granular_response_paper.groups import NAMES
-from granular_response_paper.pipeline import drawing, measuring, simulation
+from granular_response_paper.pipeline import drawing, simulation
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C, where PyYAML has it: every process reads these files
 
@@ -33,8 +33,7 @@ STARTS = {
     "simulate": SIMULATION,
     "draw": [
         "granular_response_paper.pipeline.drawing",
-        "granular_response_paper.pipeline.measuring",
-        *(f"granular_response_paper.groups.{{}}.{module}" for module in ("parameters", "draw", "claims", "numbers")),
+        *(f"granular_response_paper.groups.{{}}.{module}" for module in ("parameters", "draw")),
     ],
     "claims": [
         "granular_response_paper.claims.table",
@@ -44,14 +43,10 @@ STARTS = {
 }
 
 
-#: Modules that a group has if it has something for them.
-OPTIONAL = ("claims", "numbers")
-
-
 def starts(kind, group):
-    """Modules at which a single stage starts."""
+    """Modules at which a single stage starts; not every group has claims of a function."""
     modules = [start.format(group) for start in STARTS[kind]]
-    return [name for name in modules if file_of(name) or name.rpartition(".")[2] not in OPTIONAL]
+    return [name for name in modules if file_of(name) or not name.endswith(".claims")]
 
 
 def groups_of(kind):
@@ -176,10 +171,9 @@ def test_stages_have_the_agreed_form(kind, group, definition):
         assert definition["outs"] == [f"data/{group}.nc"]
         assert definition["params"] == ["common", group]
     elif kind == "draw":
-        assert definition["cmd"] == f"granular-response-paper draw {group} --measure"
+        assert definition["cmd"] == f"granular-response-paper draw {group}"
         assert definition["outs"] == [{f"figures/{group}": {"cache": False}}]
         assert "params" not in definition
-        assert definition["metrics"] == [{f"figures/metrics/{group}.json": {"cache": False}}]
         assert f"data/{group}.nc" in definition["deps"]
     else:  # nothing is written that is not declared: no file named beside the outputs
         assert definition["cmd"] == f"granular-response-paper {kind}"
@@ -290,9 +284,6 @@ def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
         said = json.loads(Path("figures/example/captions.json").read_text())["example"]
         assert said["caption"].startswith("Floor response per applied force") and "k_T/k_N = 0.8" in said["caption"]
         assert (said["figure"], said["panels"], said["parameters"]["friction"]) == (None, [], [0.0, 0.5])
-        measured = json.loads(measuring.measure("example").read_text())
-        assert set(measured) == {"largest response, friction 0", "largest response, friction 0.5"}
-        assert len(set(measured.values())) == 2 and min(measured.values()) > 0.0
     finally:
         for name in [name for name in sys.modules if name.startswith("granular_response_paper.groups.example")]:
             del sys.modules[name]

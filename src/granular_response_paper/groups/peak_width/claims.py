@@ -2,51 +2,39 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 import xarray as xr
 
-from ...claims import asked
-from ...claims.claim import Claims, Data, Finding, Kind, Quantity, Reading
-from ...claims.words import Bounds
+from granular_response_paper.claims import bounds
+from granular_response_paper.claims.claim import Data, Kind, Measure, Quantity, Test
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
 
-GROUP = "peak_width"
-CLAIMS = Claims(GROUP)
-#: Power of depth with which the width of an elastic response grows; force that diffuses has half of it, so that
-#: "about" it, within a quarter, is nearer to it than to that.
-ELASTIC = 1.0
-#: The two definitions of the width.
-WIDTHS = {"half_maximum": "half maximum", "half_force": "half of the force"}
+CLAIMS = Claims(__package__)
+
+#: Power of depth with which the width of an elastic response grows, and the two definitions of the width.
+ELASTIC, WIDTHS = 1.0, {"half_maximum": "half maximum", "half_force": "half of the force"}
 
 
-def _growth(data: Data, words: Bounds, name: str, what: str) -> Finding:
-    study = data.get(GROUP, name)
-    readings, elastic, found = [], [], []
-    for case in range(study.sizes["case"]):
-        one = study.isel(case=case)
-        by = {words_of_it: one.sel(definition=definition) for definition, words_of_it in WIDTHS.items()}
-        readings.append(
-            Reading(
-                material(one),
-                *(asked.near(f"{what}, {width}", power(these), words, "about", ELASTIC) for width, these in by.items()),
-                change="gravity" if str(one["gravity"].values) == "frictionless" else "",
-            )
-        )
-        found += [condition.found for condition in readings[-1].conditions]
-        elastic += [float(these["elastic_power"].values[0]) for these in by.values()]
-    values = [quantity.value for quantity in found]
-    return Finding(
-        f"the width grows as the power {min(values):.2g} to {max(values):.2g}, by the same code {min(elastic):.2g} to "
-        f"{max(elastic):.2g} in elastic slabs of the same heights; no interval goes below "
-        f"{min(quantity.low for quantity in found):.2g}",
-        readings,
-    )
+def growth(name: str) -> Measure:
+    def measure(data: Data, words: Words) -> list[Test]:
+        study, tests = data.get("peak_width", name), []
+        for case in range(study.sizes["case"]):
+            one = study.isel(case=case)
+            other = "prepared without friction" if str(one["gravity"].values) == "frictionless" else ""
+            for definition, text in WIDTHS.items():
+                bound = bounds.near(words, "about", ELASTIC)
+                tests.append(
+                    Test(f"power, {text}", power(one.sel(definition=definition)), bound, material(one), "", other)
+                )
+        return tests
+
+    return measure
 
 
 #: On lines inside the highest slab of each case, and on the floors of slabs of growing height.
-CLAIMS.measures("B6")(partial(_growth, name="inside", what="power of the depth"))
-CLAIMS.measures("B7")(partial(_growth, name="floors", what="power of the height"))
+CLAIMS.measures("B6")(growth("inside"))
+CLAIMS.measures("B7")(growth("floors"))
 
 
 def power(found: xr.Dataset) -> Quantity:
@@ -61,8 +49,7 @@ def power(found: xr.Dataset) -> Quantity:
 def material(one: xr.Dataset) -> str:
     """A case in words."""
     delta, force = float(one["polydispersity"]), float(one["force"])
-    prepared = ", prepared without friction" if str(one["gravity"].values) == "frictionless" else ""
     return (
-        f"{f'δ = {delta:g}' if delta else 'lattice'}, friction {float(one['friction']):g}{prepared}, "
+        f"{f'δ = {delta:g}' if delta else 'lattice'}, friction {float(one['friction']):g}, "
         f"{f'force of {force:g} at 20 layers' if force else 'small force'}"
     )
