@@ -8,12 +8,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from granular_response.store import generated
+from granular_response.store import atomic
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTES = ROOT / "docs" / "_generated" / "survey.md"
-#: Name of the generated lines.
-BLOCK = "survey"
 FOUND, BELOW, ABOVE = 0, 1, 2
 #: Of the smoothing, as in Fig. 22; the polydispersity of which the paper states what contacts are missing.
 WIDTH, STATED = 6.0, 0.01
@@ -107,7 +105,7 @@ def measured() -> dict[str, xr.Dataset]:
 
 
 def main() -> None:
-    generated.renew(NOTES, BLOCK, text(measured()))
+    atomic.write_bytes(NOTES, f"{text(measured())}\n".encode())
 
 
 if __name__ == "__main__":

@@ -35,6 +35,7 @@ CollectionName = Annotated[
 ]
 #: Folders and files that several commands take.
 LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
+SUMMARY = Path("extensions/summary.nc")
 GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
 
 
@@ -99,28 +100,44 @@ def draw(
         typer.echo(str(path))
 
 
-@commands.command("claims", "claims --list", "claims --readme README.md")
+@commands.command("claims", "claims --list", "claims --list --figure 17")
 def claims(
     data: Annotated[Path, typer.Option(help="Folder of the datasets.")] = Path("data"),
     output: Annotated[Path, output_option(help="Table of claims (JSON).")] = Path("figures/claims.json"),
-    readme: Annotated[Path | None, typer.Option(help="Renew the counts that this file quotes.")] = None,
+    others: Annotated[Path, typer.Option(help="Summary of other preparations; left out if it is not there.")] = SUMMARY,
+    name: CollectionName = PAPER.name,
     every: Annotated[bool, typer.Option("--list", help="Print the stored table; judge nothing anew.")] = False,
+    figure: Annotated[
+        int | None, typer.Option(help="With --list: the claims of one figure of the paper alone.")
+    ] = None,
 ) -> None:
-    """Compare the paper's claims with the stored datasets."""
+    """Compare the claims with the stored datasets."""
     from .claims import stored, table
 
     loaded()
-    found = stored.read(output) if every else table.write(output, data, keep=[readme] if readme else [])
-    if readme is not None:
-        stored.renew(readme, found)
+    found = stored.read(output) if every else table.write(output, data, others, collection=collection(name))
     for row in found["table"] if every else ():
-        kind = f" [{row['interval_kind']}]" if row["interval_kind"] else ""
-        typer.echo(f"{row['id']:4} {row['verdict']:22} {row['ours'] or '-'}{kind}")
-        typer.echo(f"{'':27} Paper, {row['place']}: {row['paper']}")
-        typer.echo(f"{'':27} {row['reason']}")
-        if row["robustness_reason"]:
-            typer.echo(f"{'':27} Variants ({row['robustness']}): {row['robustness_reason']}")
+        if figure is not None and figure not in row["figures"]:
+            continue
+        star = "*" if row["star"] else ""
+        typer.echo(f"{row['id']:4} {row['verdict'] + star:15} {row['here']}")
+        typer.echo(f"{'':20} {row['source'].capitalize()}, {row['place']}: {row['paper']}")
+        for text in (row["cases"], row["preparations"] and f"Other preparations: {row['preparations']}"):
+            if text:
+                typer.echo(f"{'':20} {text}")
     typer.echo(f"{output}: {stored.quoted(found)}")
+
+
+@commands.command("summary", "summary --data elsewhere/preparation.nc")
+def summary(
+    data: Annotated[Path, typer.Option(help="Datasets of the group preparation.")] = Path("data/preparation.nc"),
+    output: Annotated[Path, output_option(help="Summary (netCDF).")] = SUMMARY,
+) -> None:
+    """Write what the claims read of other preparations of the slab: the forces of its events."""
+    from .claims import summary as writing
+
+    loaded()
+    typer.echo(str(writing.write(data, output)))
 
 
 @commands.command("groups", "groups --collection extensions")
@@ -163,7 +180,7 @@ def reproduce(
     root: Annotated[Path, typer.Option(help="Folder of the checkout.")] = Path("."),
     force: Annotated[bool, typer.Option("--force", help="Run every stage, up to date or not.")] = False,
     keep_times: Annotated[
-        bool, typer.Option("--keep-times", help="Store the seconds of all stages in benchmarks/stages.json.")
+        bool, typer.Option("--keep-times", help="Store the seconds of all stages in benchmarks/pipeline.json.")
     ] = False,
 ) -> None:
     """Run every stage of a collection that is not up to date, and say how far it is."""
@@ -175,30 +192,26 @@ def reproduce(
         raise typer.Exit(status)
 
 
-@commands.command(
-    "report", "report -o page.html", "report --notes docs/_generated/readings.md --figures docs/_generated/figures.md"
-)
+@commands.command("report", "report --self-contained -o page.html", "report --fragments docs/_generated")
 def report(
     output: Annotated[Path, output_option(help="Page to make (HTML).")] = Path("figures/report.html"),
     root: Annotated[Path, typer.Option(help="Folder with figures/ and data/.")] = Path("."),
-    notes: Annotated[Path | None, typer.Option(help="Renew the table of interpretations in this file.")] = None,
-    figures: Annotated[
-        Path | None, typer.Option(help="Renew the table of the captions' parameters in this file.")
+    name: CollectionName = PAPER.name,
+    embedded: Annotated[
+        bool, typer.Option("--self-contained", help="Put the pictures into the page, which otherwise shows the files.")
+    ] = False,
+    fragments: Annotated[
+        Path | None, typer.Option(help="Write the tables that documents include into this folder too.")
     ] = None,
-    beyond: Annotated[
-        Path | None, typer.Option(help="Renew the tables of groups beyond the paper in this file.")
-    ] = None,
-    data: Annotated[Path | None, typer.Option(help="Renew the table of stored datasets in this file.")] = None,
 ) -> None:
-    """Make the page that shows verdicts, figures and benchmarks. It needs no network."""
+    """Make the page that shows results, figures and verdicts. It needs no network."""
     from . import report as reporting
 
     loaded()
-    options = {"notes": notes, "figures": figures, "beyond": beyond, "data": data}
-    documents = {kind: file for kind, file in options.items() if file is not None}
-    typer.echo(str(reporting.write(output, root, keep=[*documents.values()])))
-    for kind, file in documents.items():
-        reporting.renew(kind, file, root)
+    one = collection(name)
+    typer.echo(str(reporting.write(output, root, collection=one, embedded=embedded)))
+    for path in reporting.write_fragments(fragments, root, collection=one) if fragments else ():
+        typer.echo(str(path))
 
 
 @commands.command("archive", "archive -o slabs.zip")

@@ -24,7 +24,7 @@ from granular_response.observe.floor import floor_disks, floor_response, interio
 from granular_response.observe.teardrop import OpenRegion, teardrop
 from granular_response.observe.widths import last_passage
 from granular_response.scene import Packing, Scene
-from granular_response.scene.lattice import TOUCHING_LARGEST
+from granular_response.scene.lattice import TOUCHING_LARGEST, SlabPacking
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
@@ -44,6 +44,7 @@ LINEARITY = 0.01
 
 #: What counts as an event.
 FIRST_OPENING = "a contact of disks in the central third of the slab is open that touches at rest"
+ANY_OPENING = "a contact of disks anywhere in the slab is open that touches at rest"
 TWO_PEAKS = "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0"
 REACHES_FLOOR = "the region of opened contacts below the load contains a contact of the bottom row"
 
@@ -246,10 +247,10 @@ class Measures:
         """How far the response at x = 0 is below the lower maximum beside it, per largest response."""
         return peaks.central_dip(self.x, self.response(state), interior=self.interior)
 
-    def opened(self, state: State) -> int:
-        """Number of contacts of disks that the load opened in the central third."""
+    def opened(self, state: State, anywhere: bool = False) -> int:
+        """Number of contacts of disks that the load opened in the central third, or ``anywhere`` in the slab."""
         rest, state, near = self._matched(state)
-        return int(np.count_nonzero(network.contact_changes(rest.pairs, state.pairs).opened & near))
+        return int(np.count_nonzero(network.contact_changes(rest.pairs, state.pairs).opened & (near | anywhere)))
 
     def double_peaked(self, state: State) -> bool:
         """Whether the response has two peaks in the sense of the paper's crossover."""
@@ -359,9 +360,10 @@ def locate(
     return [Event(name, friction, *path.first(forces, what, width), what.definition) for name, what in asked.items()]
 
 
-def first_opening(measures: Measures) -> Happening:
-    """The first contact opens."""
-    return Happening(lambda state: measures.opened(state) > 0, FIRST_OPENING, of_contacts=True)
+def first_opening(measures: Measures, anywhere: bool = False) -> Happening:
+    """The first contact opens, in the central third of the slab or ``anywhere`` in it."""
+    text = ANY_OPENING if anywhere else FIRST_OPENING
+    return Happening(lambda state: measures.opened(state, anywhere) > 0, text, of_contacts=True)
 
 
 def reaches_floor(measures: Measures) -> Happening:
@@ -481,6 +483,15 @@ def measured_along(dimension: str, measured: Sequence[xr.Dataset]) -> xr.Dataset
     ends = np.cumsum([0, *(one.sizes["state"] for one in measured)]).tolist()
     parts = [(slice(*place), one) for place, one in zip(pairwise(ends), measured, strict=True)]
     return measured_dataset((dimension,), parts, (ends[-1],))
+
+
+def equal_rows(layers: int, disks: int) -> Packing:
+    """An ordered packing between walls with as many ``disks`` in every row, each second one shifted by a radius.
+
+    The paper has "15 layers of 60 particles each", which rows that alternate between 61 and 60 disks do not have.
+    """
+    packing = SlabPacking(layers=layers, disks_per_row=disks, sides="periodic").build()
+    return replace(packing, width=packing.width + 1.0, periodic=False)
 
 
 def disordered(stop_kinetic_energy: float) -> dict[str, float | str]:

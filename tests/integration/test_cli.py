@@ -165,14 +165,9 @@ def test_stored_claims_are_listed_and_not_judged_anew():
     assert table.read_bytes() == before
     rows = json.loads(table.read_text())["table"]
     assert re.match(r"A1   [a-z ]+ +\S", lines[0])
-    said = [
-        text
-        for row in rows
-        for text in (row["ours"] or "-", row["paper"], row["reason"], row["robustness_reason"])
-        if text
-    ]
-    assert len(lines) == len(said) + 3 and all(text in line for text, line in zip(said, lines, strict=False))
-    assert re.search(r"Of \d+ claims of the paper that were measured", lines[-3]) and "halved or doubled" in lines[-1]
+    said = [text for row in rows for text in (row["here"], row["paper"], row["cases"], row["preparations"]) if text]
+    assert len(lines) == len(said) + 4 and all(text in line for text, line in zip(said, lines, strict=False))
+    assert re.search(r"Of \d+ statements on ordered slabs", lines[-4]) and "halved or doubled" in lines[-1]
 
 
 def test_claims_without_datasets_leave_the_table_alone(tmp_path):

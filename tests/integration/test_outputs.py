@@ -21,6 +21,7 @@ from granular_response.store import files as store
 from granular_response.store.files import StoreError
 from granular_response_paper import cli as paper
 from granular_response_paper.archive import crate
+from granular_response_paper.claims import summary
 
 TABLE = "packing: {kind: file, path: disks.nc, width: 6}\ncontact: {friction: 0.0}\n"
 #: For each command that writes: arguments, and those of its inputs that an output can be confused with.
@@ -29,6 +30,7 @@ COMMANDS = {
     "continue": (["continue", "result.nc", "--to", "2"], ["result.nc"]),
     "simulate": (["simulate", "theory", "--params", "params.yaml"], ["params.yaml"]),
     "draw": (["draw", "theory", "--data", "theory/fig01_predictions.png"], ["theory"]),
+    "summary": (["summary", "--data", "preparation.nc"], ["preparation.nc"]),
     "export": (["export", "result.nc"], ["result.nc"]),
     "plot": (["plot", "result.pdf"], ["result.pdf"]),
     "archive": (["archive"], ["params.yaml", "LICENSE"]),
@@ -50,6 +52,10 @@ def inputs(tmp_path_factory) -> Path:
     for name in ("data", "figures", "theory"):
         (folder / name).mkdir()
     store.write(folder / "data" / "torque.nc", xr.Dataset())
+    events = xr.Dataset({name: ("event", ["first_opening"]) for name in summary.COLUMNS})
+    for name, one in events.variables.items():
+        one.attrs = {"long_name": name, "units": "1"}
+    store.write(folder / "preparation.nc", {"events": events}, {"group": "preparation"})
     for path in ("figures/claims.json", "README.md", "notes.md"):
         (folder / path).write_text("{}")
     for name in set(crate.ALSO) - {"README.md"}:

@@ -5,10 +5,10 @@ import xarray as xr
 import yaml
 from places import ROOT
 
-from granular_response.state import SLIDING, STICKING
+from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response_paper.groups.theory import simulate as theory
 
-FORCES = np.unique(np.concatenate([0.1 * 1.05 ** np.arange(141), [15.0, 50.0]]))
+FORCES = np.unique(np.concatenate([0.1 * 1.05 ** np.arange(141), [4.0, 5.0, 15.0, 25.0, 40.0, 50.0]]))
 X = np.linspace(-60.0, 60.0, 61)
 STARTS = ["touching-largest", "2.0"]
 
@@ -41,6 +41,11 @@ def by_friction(*rows):
 ELASTIC = 0.07 * np.exp(-((X / 20.0) ** 2))
 
 
+#: Forces of the stored states, and names of the sizes of the open region.
+STATES = (0.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 30.0)
+SIZES = ("opened_contacts", "teardrop_depth", "teardrop_width")
+
+
 def friction_study():
     floor = [3.5, 19.0, 10.9]
     depth = [np.minimum(24.0, 24.0 * FORCES / f) for f in (3.5, 19.0, 19.0)]
@@ -58,35 +63,48 @@ def friction_study():
         teardrop_width=by_friction(*depth),
         reaches_floor=by_friction(*(f < FORCES for f in floor)),
         opened_contacts=by_friction(opened, 0.2 * opened, 0.2 * opened),
-        floor_response=(("friction", "force", "floor_disk"), np.broadcast_to(ELASTIC, (3, FORCES.size, X.size))),
+        floor_response=(
+            ("friction", "force", "floor_disk"),
+            ELASTIC * (1.0 + 0.5 * (FORCES > 20.0) * np.array([[0.0], [1.0], [0.0]]))[:, :, None],
+        ),
     )
     one_side = np.where(X > 0.0, 0.08, 0.01)
     profiles = np.stack([np.exp(-((X / 20.0) ** 2)) * 0.07] * 2 + [one_side, one_side[::-1]])
+    profiles = np.concatenate([profiles, profiles[-1:], profiles[-1:]])
     large = dataset(
-        {"force": [90.0, 91.0, 93.0, 95.0], "x": ("floor_disk", X), "margin": [0.01, 0.05]},
-        asymmetry=("force", [0.001, 0.001, 1.5, 1.5]),
-        asymmetry_sign=("force", [1, 1, 1, -1]),
-        network_asymmetry=("force", [0.0, 0.0, 0.02, 0.02]),
-        mobilised_contacts=(("force", "margin"), np.array([[10, 20], [10, 20], [1, 2], [1, 2]])),
+        {"force": [90.0, 91.0, 93.0, 95.0, 150.0, 500.0], "x": ("floor_disk", X), "margin": [0.01, 0.05]},
+        asymmetry=("force", [0.001, 0.001, 1.5, 1.5, 1.2, 1.0]),
+        asymmetry_sign=("force", [1, 1, 1, -1, -1, -1]),
+        network_asymmetry=("force", [0.0, 0.0] + [0.02] * 4),
+        mobilised_contacts=(("force", "margin"), np.array([[10, 20]] * 2 + [[1, 2]] * 4)),
         floor_response=(("force", "floor_disk"), profiles),
     )
-    away = np.array([0.8, 0.3, 0.1, 0.05])[:, None]
+    away = np.array([0.8, 0.3, 0.1, 0.05, 0.0])[:, None]
     axis = dataset(
-        {"friction": [0.0, 0.1, 0.2, 1.0]},
-        central_dip=("friction", [0.9, 0.5, -0.01, -0.03]),
+        {"friction": [0.0, 0.1, 0.2, 1.0, 2.0]},
+        central_dip=("friction", [0.9, 0.5, -0.01, -0.03, -0.03]),
+        sliding_contacts=("friction", [0.0, 300.0, 200.0, 100.0, 50.0]),
         floor_response=(("friction", "floor_disk"), (1.0 - away) * ELASTIC),
-        **{n: ("friction", [110.0, 80.0, 40.0, 0.0]) for n in ("opened_contacts", "teardrop_depth", "teardrop_width")},
+        **{n: ("friction", [110.0, 80.0, 40.0, 20.0, 0.0]) for n in SIZES},
     )
-    # a column of disks below the loaded one, whose contacts slide one after the other
-    column = np.stack([np.zeros(9), -2.0 * np.arange(9.0)], axis=1)
+    # a column of disks below the loaded one, whose contacts slide one after the other, and three disks beside it
+    column = np.stack([np.zeros(14), -2.0 * np.arange(14.0)], axis=1)
+    beside = column[3:6] + np.array([2.0, 0.0])
+    slides = np.zeros((len(STATES), 16), bool)
+    for force, upper, level in zip(STATES, (0, 1, 2, 2, 3, 5, 1, 3), (0, 0, 0, 0, 0, 0, 3, 1), strict=True):
+        slides[STATES.index(force), :upper] = slides[STATES.index(force), 13 : 13 + level] = True
     states = dataset(
-        {"force": ("state", [0.0, 2.0, 4.0, 6.0])},
-        position=(("state", "disk", "axis"), np.stack([column] * 4)),
-        contact_disk=("contact", np.arange(8)),
-        contact_partner=("contact", np.arange(1, 9)),
-        contact_status=(("state", "contact"), np.where(np.arange(8) < [[0], [1], [3], [5]], SLIDING, STICKING)),
+        {"force": ("state", list(STATES))},
+        position=(("state", "disk", "axis"), np.stack([np.concatenate([column, beside])] * len(STATES))),
+        contact_disk=("contact", [*range(13), 3, 4, 5]),
+        contact_partner=("contact", [*range(1, 14), 14, 15, 16]),
+        contact_status=(("state", "contact"), np.where(slides, SLIDING, STICKING)),
         loaded_disk=((), 0),
     )
+    few = np.full((2, 8), STICKING)
+    few[1, 0], few[1, 1:5] = OPEN, SLIDING
+    status = np.full((7, 8), STICKING)
+    status[3:, :6] = OPEN
     table = events(
         ("first_opening", 0.0, 0.67, 0.69),
         ("first_opening", 0.2, 3.9, 3.92),
@@ -94,7 +112,11 @@ def friction_study():
         ("linear_range", 0.0, 0.88, 0.9),
         ("linear_range", 0.2, 5.4, 5.5),
         ("linear_range", 1.0, 7.2, 7.3),
+        ("first_opening_anywhere", 0.0, 0.66, 0.68),
+        ("first_opening_anywhere", 0.2, 3.8, 3.82),
+        ("first_opening_anywhere", 1.0, 5.5, 5.52),
         ("crossover", 0.2, 20.1, 20.2),
+        ("crossover", 1.0, 90.0, np.nan),
         ("reaches_floor", 0.0, 3.5, 3.6),
         ("reaches_floor", 0.2, 19.0, 19.1),
         ("reaches_floor", 1.0, 10.9, 11.0),
@@ -104,9 +126,14 @@ def friction_study():
     return {
         "response": response,
         "large_forces": large,
+        "large_force_states": dataset(
+            {"force": ("state", [0.0, *large["force"].values])}, contact_status=(("state", "contact"), status)
+        ),
         "friction_axis": axis,
         "states_mu_0.2": states,
+        "states_mu_1": dataset({"force": ("state", [0.0, 90.0])}, contact_status=(("state", "contact"), few)),
         "events": table,
+        "events_equal_rows": table.copy(deep=True),
     }
 
 
@@ -117,28 +144,17 @@ def breaking_study():
         ramp_time=("event", [20.0, 100.0]),
         time_step=("event", [5e-4, 5e-4]),
     )
-    return {"brackets": brackets, "copies": dataset(asymmetry_sign=("copy", [1.0, -1.0]))}
-
-
-def sensitivity_study():
-    peak = np.exp(-((X / 15.0) ** 2))
-    names = ["reference", "slow_gravity", "ramp_80", "path", "literal_friction"]
-    one = dataset(
-        {"variant": names},
-        x=("floor_disk", X),
-        floor_response=(("variant", "floor_disk"), np.stack([peak] * len(names))),
-    )
-    return {"mu_0.2": one, "mu_1": one.copy(deep=True)}
+    return {"brackets": brackets, "equal_rows": events(("loss_of_symmetry", 1.0, 91.1, 91.9))}
 
 
 def preparation_study():
     """Gravity at once, grown slowly and without friction first; in each, events where the claims want them."""
     ways = [("at-once", 100.0, 0.5), ("slow", 20.0, 0.5), ("frictionless", 100.0, 0.5), ("at-once", 100.0, 0.25)]
-    cases = [(0.0, 0.0, ways[0]), *((mu, 0.0, way) for mu in (0.2, 1.0) for way in ways), (1.0, 1.0, ways[1])]
+    cases = [(0.0, 0.0, ways[0]), *((mu, 0.0, way) for mu in (0.2, 1.0) for way in ways), (1.0, 1.0, ways[0])]
     comes = {
         "first_opening": {0.0: (0.67, 0.69), 0.2: (3.9, 3.92), 1.0: (5.6, 5.62)},
         "linear_range": {0.0: (0.88, 0.9), 0.2: (5.4, 5.5), 1.0: (7.2, 7.3)},
-        "crossover": {0.0: (3.0, 3.1), 0.2: (20.1, 20.2), 1.0: (50.0, np.nan)},
+        "crossover": {0.0: (3.0, 3.1), 0.2: (20.1, 20.2), 1.0: (90.0, np.nan)},
         "reaches_floor": {0.0: (3.5, 3.6), 0.2: (19.0, 19.1), 1.0: (10.9, 11.0)},
         "third_peak": {0.0: (50.0, np.nan), 0.2: (38.0, 38.1), 1.0: (50.0, np.nan)},
         "loss_of_symmetry_path": {0.0: (50.0, np.nan), 0.2: (50.0, np.nan), 1.0: (91.2, 92.0)},
@@ -149,18 +165,12 @@ def preparation_study():
         return by_row(dimension, names, [(friction, wall, *way) for friction, wall, way in rows])
 
     rows = [(case, name) for case in cases for name in comes]
+    rough = np.array([0.5 if case[1] else 1.0 for case, _ in rows])  # beside rough walls everything comes sooner
     table = dataset(
         name=("event", [name for _, name in rows]),
-        low=("event", [comes[name][case[0]][0] for case, name in rows]),
-        high=("event", [comes[name][case[0]][1] for case, name in rows]),
+        low=("event", rough * [comes[name][case[0]][0] for case, name in rows]),
+        high=("event", rough * [comes[name][case[0]][1] for case, name in rows]),
         **labels("event", [case for case, _ in rows]),
-    )
-    force = np.array([1.0, 15.0, 30.0, 50.0])
-    turns = {0.0: 3.1, 0.2: 20.2, 1.0: np.inf}
-    response = dataset(
-        {"force": force},
-        double_peaked=(("case", "force"), np.array([force > turns[mu] for mu, _, _ in cases], float)),
-        **labels("case", cases),
     )
     # four preparations of one slab: the more mobilized contacts, the sooner everything happens
     part = np.array([0.0, 0.0, 0.3, 0.6])
@@ -171,7 +181,7 @@ def preparation_study():
         **{name: ("case", np.full(4, value)) for name, value in {
             "polydispersity": 0.0, "friction": 0.2, "wall_friction": 0.0}.items()},
     )  # fmt: skip
-    return {"response": response, "events": table, "mobilized": mobilized}
+    return {"events": table, "mobilized": mobilized}
 
 
 def ratio_study():
@@ -191,9 +201,10 @@ def ratio_study():
 
 
 def fields_study():
-    x, z = np.arange(-10.0, 11.0, 2.0), np.arange(0.0, 21.0, 2.0)
+    x, z = np.arange(-40.0, 41.0, 2.0), np.arange(0.0, 21.0, 2.0)
     grid = ("friction", "z", "x")
     ones = np.ones((3, z.size, x.size))
+    dipped = profile(np.array([0.5, -0.1, -0.1])[:, None], x)[:, None] + 0.0 * ones
     return {
         "stress": dataset(
             {"friction": [0.0, 0.2, 1.0], "x": x, "z": z},
@@ -204,7 +215,8 @@ def fields_study():
             antisymmetric_near=("friction", [0.0, 0.01, 0.03]),
             antisymmetric_near_mean=("friction", [0.0, 0.01, 0.02]),
             stress_xx=(grid, ones),
-            stress_zz=(grid, ones),
+            stress_zz=(grid, dipped),
+            stress_zz_lattice=(("z", "x"), dipped[1]),
             stress_xz=(grid, 0.03 * ones),
             stress_zx=(grid, -0.03 * ones),
             load_height=20.0,
@@ -333,6 +345,7 @@ def frictionless_study():
             {"force": forces, **depths},
             disks_per_row=("slab", [61, 122, 61, 122]),
             crossover_bracket=crossover,
+            open_at_rest=("slab", [0] * 4),
         ),
         "regions": dataset(
             {"force": forces, **depths},
@@ -340,7 +353,12 @@ def frictionless_study():
             teardrop_width=(("slab", "force"), wide),
             reaches_floor=(("slab", "force"), np.zeros((4, 3), int)),
         ),
-        "widths": dataset(depths, disks_per_row=("slab", [61, 62, 61, 62]), crossover_bracket=crossover),
+        "widths": dataset(
+            depths,
+            disks_per_row=("slab", [61, 62, 61, 62]),
+            crossover_bracket=crossover,
+            open_at_rest=("slab", [0] * 4),
+        ),
         "stiffness": dataset(
             {"force": forces, "normal_stiffness": stiffness, "dip": [0.0, 0.01]},
             response_at_centre=(axes, np.array([[0.05] * 3, [0.0693] * 3, [0.07] * 3, [0.07] * 3, [0.07] * 3])),
@@ -373,7 +391,7 @@ DRAWS = np.linspace(0.95, 1.05, 41)
 def phases_study():
     cases = disordered_cases()
     rng = np.random.default_rng(0)
-    grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 9.0], [0.5, 2.0, 4.0], [12.0, 40.0]]
+    grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 9.0], [0.5, 2.0, 4.0], [2.5, 12.0]]
     force = np.array([f for row in grid for f in row])
     interval = np.stack([0.95 * force, force, 1.05 * force], axis=-1)
     draws = force[:, None] * DRAWS
@@ -432,7 +450,8 @@ def phases_study():
             largest_step_interval=(("width", "case", "level"), np.tile([0.08, 0.1, 0.12], (2, n, 1))),
         ),
         "realizations": dataset(
-            {**cases, **levels},
+            {**cases, **levels, "realizations": ("case", [few] * n)},
+            collapse_force=(("case", "realization"), np.tile(np.where(np.arange(few) < 4, 20.0, np.nan), (n, 1))),
             shape=(("width", "case", "realization", "step"), np.stack([each] * 2)),
             asymmetry=(("width", "case", "realization", "step"), np.full((2, n, few, 3), 0.1)),
             difference=(("width", "case", "realization", "step"), np.full((2, n, few, 3), 0.2)),
@@ -465,6 +484,24 @@ def phases_study():
             applied_force=(("case", "step"), np.tile(small, (len(linear), 1))),
         ),
     }  # fmt: skip
+
+
+def means_study():
+    """Symmetrical means of five, and contacts along the directions of the lattice."""
+    angle = np.radians(np.arange(2.5, 180.0, 5.0))
+    density = 1.0 + np.cos(6.0 * angle)
+    cases = {"polydispersity": ("case", [0.1, 0.25]), "friction": ("case", [0.0, 0.0])}
+    x = np.linspace(-10.0, 10.0, 21)
+    return {
+        "averages": dataset(
+            {"width": [6.0], **cases},
+            mean_of_few=(("width", "case", "step", "x"), np.broadcast_to(np.exp(-(x**2)), (1, 2, 3, 21))),
+        ),
+        "packings": dataset(
+            {**cases, "angle": angle},
+            contact_angle_density=(("case", "realization", "angle"), np.broadcast_to(density, (2, 4, angle.size))),
+        ),
+    }
 
 
 def superposition_study():
@@ -622,6 +659,7 @@ def rolling_study():
             low=(dims, np.broadcast_to(ends, (2, 2, 2))),
             high=(dims, np.broadcast_to(ends + 0.02, (2, 2, 2))),
             floor_dip=(dims, np.full((2, 2, 2), -0.01)),
+            loose_disks=(dims, np.full((2, 2, 2), 2.0)),
         ),
         "piles": dataset(
             {"layers": [5, 11], "case": ["supported", "free", "resisting"]},
@@ -694,7 +732,6 @@ def everything():
         "friction_linear_range": friction_study(),
         "symmetry_breaking": breaking_study(),
         "preparation": preparation_study(),
-        "sensitivity": sensitivity_study(),
         "slab_comparison": comparison_study(),
         "stiffness_ratio_crossover": ratio_study(),
         "theory": theory.simulate(theory.Parameters(**yaml.safe_load((ROOT / "params.yaml").read_text())["theory"])),
@@ -702,6 +739,7 @@ def everything():
         "pile_dip": pile_study(),
         "torque": torque_study(),
         "phase_diagram": phases_study(),
+        "polydisperse_averages": means_study(),
         "superposition": superposition_study(),
         "numerics": numerics_study(),
         "hysteresis": hysteresis_study(),

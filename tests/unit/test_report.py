@@ -27,6 +27,7 @@ from granular_response_paper import groups, report
 from granular_response_paper.claims import table as claims
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.stored import ClaimsError
+from granular_response_paper.claims.verdict import MEANINGS
 from granular_response_paper.groups.sensitivity import simulate as sensitivity
 from granular_response_paper.report import against, benchmarks, explorer, pictures, readings
 from granular_response_paper.report.typeset import typeset
@@ -138,7 +139,7 @@ def root(tmp_path_factory):
     (folder / "benchmarks" / "summary.json").write_text(json.dumps({"goals": [goal]}))
     (folder / "requirements.lock").write_text("# pinned\nnumpy==2.9.1\nsome-other==1.0\n")
     data = Data({"friction_linear_range": friction_study()})
-    (folder / "figures" / "claims.json").write_text(json.dumps(claims.document(data, claims.evaluate(data))))
+    (folder / "figures" / "claims.json").write_text(json.dumps(claims.document(claims.evaluate(data))))
     return folder
 
 
@@ -174,14 +175,22 @@ def test_one_row_for_every_claim_with_its_verdict(judged, page):
     assert rows == [f"claim-{row['id']}" for row in judged["table"]]
     chips = [span["class"] for span in elements.named("span") if span.get("class", "").startswith("chip")]
     assert chips == [f"chip {row['verdict'].replace(' ', '_')}" for row in judged["table"]]
-    tiles = re.findall(r'<div class="tile (\w+)"><b>(\d+)</b>', page)
-    assert {verdict: int(number) for verdict, number in tiles} == {
-        verdict: number for verdict, number in judged["counts"].items() if verdict not in ("total", "beyond")
-    }
-    degrees = re.findall(r'<b class="robustness">(\d+)</b> ([\w ]+)[,.]', page)
-    assert {kind.replace(" ", "_"): int(number) for number, kind in degrees} == judged["robustness"]
-    shown = [span["class"] for span in elements.named("span") if span.get("class", "").startswith("robustness chip")]
-    assert shown == [f"robustness chip {row['robustness']}" for row in judged["table"] if row["robustness_reason"]]
+    for part in ("ordered", "disorder"):
+        tiles = page.partition(f'id="tiles-{part}"')[2].partition("<p ")[0]
+        found = {verdict: int(number) for verdict, number in re.findall(r'<div class="tile (\w+)"><b>(\d+)</b>', tiles)}
+        assert found == {verdict: number for verdict, number in judged["counts"][part].items() if number}
+    for sentence in judged["scheme"]:
+        assert f"<li>{sentence}</li>" in page
+
+
+def test_a_row_has_its_quote_and_what_was_found(judged, page):
+    """With whose sentence it is, the star of a threshold and the second column."""
+    for row in judged["table"]:
+        part = page.partition(f'<tr id="claim-{row["id"]}"')[2].partition("</tr>")[0]
+        assert ("not the paper; " in part) == (row["source"] != "paper")
+        assert ("is halved or doubled" in part) == bool(row["star"])
+        assert ('class="elsewhere"' in part) == (row["elsewhere"] != "not tried")
+        assert part.count("<li>") == len(row["tests"])
 
 
 def test_the_page_needs_no_network_and_no_other_file(page):
@@ -236,14 +245,14 @@ def test_claims_and_figures_lead_to_each_other(judged, page):
     assert re.findall(r'<li><a href="#claim-(\w+)">', listed('<figure id="picture-numerics"')) == expected != []
 
 
-def test_the_summary_names_what_is_contradicted(judged, tmp_path):
+def test_the_summary_names_what_is_not_supported(judged, tmp_path):
     whole = copy.deepcopy(judged)
-    own = [row for row in whole["table"] if not row["beyond"]]
-    own[1]["verdict"] = own[4]["verdict"] = "contradicted"
+    own = [row for row in whole["table"] if row["part"] != "extension"]
+    own[1]["verdict"] = own[4]["verdict"] = "not supported"
     (tmp_path / "figures").mkdir()
     (tmp_path / "figures" / "claims.json").write_text(json.dumps(whole))
-    part = report.page(tmp_path).partition('<ul id="contradicted">')[2].partition("</ul>")[0]
-    expected = [row["id"] for row in own if row["verdict"] == "contradicted"]
+    part = report.page(tmp_path).partition('<ul id="failing">')[2].partition("</ul>")[0]
+    expected = [row["id"] for row in own if row["verdict"] == "not supported"]
     assert re.findall(r'href="#claim-(\w+)"', part) == expected and len(expected) >= 2
 
 
@@ -448,15 +457,15 @@ def test_explorer_and_summary_come_before_the_figures_and_the_table_after_them(p
     assert places == sorted(places)
 
 
-def test_what_goes_beyond_the_paper_is_named_and_not_counted(judged, page):
-    beyond = [row["id"] for row in judged["table"] if row["beyond"]]
-    assert judged["counts"]["beyond"] == len(beyond) == page.count("Beyond the paper; ") > 0
-    assert f"{judged['counts']['total']} claims of the paper" in page
+def test_the_parts_of_the_table_stand_apart(judged, page):
+    for part in ("ordered", "disorder", "extension"):
+        body = page.partition(f'<tbody id="part-{part}">')[2].partition("</tbody>")[0]
+        expected = [row["id"] for row in judged["table"] if row["part"] == part]
+        assert re.findall(r'<tr id="claim-(\w+)"', body) == expected != []
     assert f'<label for="only-all">all <b>{len(judged["table"])}</b></label>' in page
-    assert f'<label for="only-beyond">beyond the paper <b>{len(beyond)}</b></label>' in page
-    for kind, count in judged["counts"].items():
-        if kind not in ("total", "beyond"):
-            assert re.search(rf'<label for="only-{kind}">[\w ]+ <b>{count}</b></label>', page)  # as the tiles
+    for kind in (key["verdict"] for key in judged["verdicts"]):
+        count = sum(row["verdict"] == kind for row in judged["table"])
+        assert f'<label for="only-{kind.replace(" ", "_")}">{kind} <b>{count}</b></label>' in page
 
 
 def test_the_page_says_its_size(page):
@@ -465,7 +474,7 @@ def test_the_page_says_its_size(page):
 
 def test_there_is_a_filter_for_every_kind_of_verdict(page):
     kinds = [row["id"] for row in Elements(page).named("input") if row.get("name") == "only"]
-    assert kinds[0] == "only-all" and len(kinds) == 2 + len(re.findall(r'<div class="tile ', page))
+    assert kinds[0] == "only-all" and len(kinds) == 1 + len(MEANINGS)
     for kind in kinds[1:]:
         assert f"#{kind}:checked ~ table .claim:not(.{kind.removeprefix('only-')}, :target)" in page
 
@@ -611,7 +620,7 @@ def test_a_table_that_lacks_a_part_is_one_line(judged, tmp_path):
     (tmp_path / "figures").mkdir()
     row = whole["table"][0]
     partial = [{**whole, "table": [{k: v for k, v in row.items() if k != key}]} for key in ("group", "id")]
-    partial += [{**whole, "table": 3}, {**whole, "verdict_kinds": [{}]}, {**whole, "counts": {}}]
+    partial += [{**whole, "table": 3}, {**whole, "verdicts": [{}]}, {**whole, "counts": {}}]
     for found in partial:
         (tmp_path / "figures" / "claims.json").write_text(json.dumps(found))
         with pytest.raises((ClaimsError, report.ReportError), match="is not a whole table of claims") as caught:
@@ -687,10 +696,10 @@ def test_a_browser_shows_all_of_it(judged, opened, width, scheme):
     assert tab.run("getComputedStyle(document.body).backgroundColor") == (
         "rgb(255, 255, 255)" if scheme == "light" else "rgb(20, 24, 29)"
     )
-    for kind in ("not_measured", "derivation", "beyond"):
-        tab.run(f"document.getElementById('only-{kind}').click()")
+    for kind in ("not measured", "derivation", "in part"):
+        tab.run(f"document.getElementById('only-{kind.replace(' ', '_')}').click()")
         rows = "Array.from(document.querySelectorAll('tr.claim')).filter(row => row.offsetHeight).length"
-        assert tab.run(rows) == judged["counts"][kind]
+        assert tab.run(rows) == sum(row["verdict"] == kind for row in judged["table"])
 
 
 def test_a_link_unfolds_what_it_leads_to(opened):

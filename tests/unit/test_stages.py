@@ -21,7 +21,7 @@ from granular_response.sweeps.resources import Resources, current
 from granular_response_paper import cli as paper
 from granular_response_paper import pipeline
 from granular_response_paper.captions import Caption
-from granular_response_paper.pipeline import drawing, measuring, simulation
+from granular_response_paper.pipeline import drawing, simulation
 
 LABEL = {"long_name": "square", "units": "1"}
 
@@ -159,20 +159,6 @@ def test_an_interruption_and_what_goes_on_from_it_are_said(group, monkeypatch, c
     assert not Path("data/.squares.checkpoint").exists()
     paper.simulate(group, workers=1, params=simulation.PARAMETERS)
     assert capsys.readouterr().err == ""
-
-
-def test_metrics_do_not_wait_for_pictures(group, monkeypatch):
-    """A picture that cannot be drawn took the numbers with it."""
-
-    def refused(*_):
-        raise pipeline.GroupError("no picture")
-
-    measured = []
-    monkeypatch.setattr(measuring, "measure", lambda *given: measured.append(given))
-    monkeypatch.setattr(drawing, "draw", refused)
-    with pytest.raises(pipeline.GroupError, match="no picture"):
-        paper.draw(group, measured=True)
-    assert measured == [(group, None)]
 
 
 def test_an_error_at_once_leaves_no_folder(group):

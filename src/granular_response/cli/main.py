@@ -294,7 +294,7 @@ def plot(
 @commands.command("keys", "keys protocol", "keys --page docs/_generated/scene-keys.md")
 def keys(
     part: Annotated[str, typer.Argument(help="Beginning of the keys, such as contact.")] = "",
-    page: Annotated[Path | None, typer.Option(help="Renew the tables in this file in place of printing.")] = None,
+    page: Annotated[Path | None, typer.Option(help="Write all tables to this file (Markdown).")] = None,
     imported: Import = None,
 ) -> None:
     """Print the keys of a scene file: default, what is allowed, unit and meaning."""
@@ -303,7 +303,9 @@ def keys(
     if page is None:
         typer.echo(scene_reference.plain(part))
     else:
-        scene_reference.renew(page)
+        from ..store import atomic
+
+        atomic.write_bytes(page, f"{scene_reference.lines()}\n".encode())
 
 
 @commands.command(

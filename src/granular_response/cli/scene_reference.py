@@ -5,20 +5,15 @@ What is allowed is not written down a second time either: it is what the message
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple, get_args
 
 from .. import scene
-from ..scene import text as yaml_text
 from ..scene.base import Description, unit_of
 from ..scene.lattice import LatticePacking
 from ..scene.material import KNOWN_LAWS
-from ..store import generated
 
-#: Name of the generated lines.
-BLOCK = "keys"
 #: No key accepts this.
 _WRONG: Any = [[]]
 
@@ -141,11 +136,6 @@ def _paragraphs(section: Section, part: str) -> Iterator[str]:
         unit = f" [{key.unit}]" if key.unit else ""
         default = f"default {key.default}" if key.default else "must be given"
         yield f"  {key.path}{unit}: {default}\n    {key.allowed}\n    {key.meaning}"
-
-
-def renew(file: str | os.PathLike[str]) -> None:
-    """Renew the tables in a page. Raises GeneratedError if it has no place for them."""
-    generated.renew(file, BLOCK, lines())
 
 
 def _spelled(value: Any) -> str:

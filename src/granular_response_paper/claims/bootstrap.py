@@ -19,6 +19,9 @@ Statistic = Callable[..., FloatArray]
 DRAWS, OUTSIDE = 2000, 0.05
 LEVELS = (0.5 * OUTSIDE, 1.0 - 0.5 * OUTSIDE)
 
+#: A part of samples below this is rare: they lie outside of the central 95 %.
+RARE = LEVELS[0]
+
 
 def of_draws(
     value: float, draws: ArrayLike | tuple[FloatArray, FloatArray], test: str, samples: int, method: Any = "linear"
@@ -50,16 +53,24 @@ def over_realizations(values: ArrayLike, statistic: Statistic = np.median) -> Qu
     return of_draws(float(statistic(found, axis=0)), drawn, f"bootstrap of the {statistic.__name__}", found.size)
 
 
-def part_of(hits: ArrayLike) -> Quantity:
+def part_of(hits: ArrayLike, unknown: ArrayLike = False) -> Quantity:
     """The part of realizations that are hits (r,), with its exact binomial interval (Clopper and Pearson): it is open
-    where all or none are. Raises NotMeasured without realizations."""
+    where all or none are.
+
+    Of those that are ``unknown`` (r,) none count as hits for the lower end, and all for the upper one; the value leaves
+    them out. Raises NotMeasured without realizations.
+    """
     found = np.asarray(hits, dtype=bool)
-    number, hit = found.size, int(np.count_nonzero(found))
+    censored = np.broadcast_to(np.asarray(unknown, dtype=bool), found.shape)
+    number, hit = found.size, int(np.count_nonzero(found & ~censored))
+    most = hit + int(np.count_nonzero(censored))
     if not number:
         raise NotMeasured("no realizations")
     low = float(betaincinv(hit, number - hit + 1, LEVELS[0])) if hit else 0.0
-    high = float(betaincinv(hit + 1, number - hit, LEVELS[1])) if hit < number else 1.0
-    return Quantity(hit / number, low, high, "confidence", "exact binomial interval", number)
+    high = float(betaincinv(most + 1, number - most, LEVELS[1])) if most < number else 1.0
+    known = number - (most - hit)
+    value = hit / known if known else float("nan")
+    return Quantity(value, low, high, "confidence", "exact binomial interval", number)
 
 
 def over_brackets(each: Sequence[Quantity]) -> Quantity:

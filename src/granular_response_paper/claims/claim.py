@@ -1,41 +1,37 @@
-"""What a claim of the paper is: stored numbers with their uncertainty, compared with bounds in one or more readings.
+"""A claim, its tests, their bounds and the verdict that follows.
 
-A claim is measured by a function that reads datasets and returns a :class:`Finding`: *readings*, which are
-interpretations of the text or variants of its set-up, each with *conditions*, each a :class:`Quantity` against a bound.
-:mod:`verdict` alone turns them into a verdict and a robustness.
+A claim is one sentence of the paper with one primary test, fixed by the text. Where the text leaves a parameter open,
+the test is made for each of its values (``case``). Tests with the same case hold together. Tests in another preparation
+of the packing (``prepared``) decide nothing but the second column.
 """
 
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Literal
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Literal
 
 import numpy as np
 import xarray as xr
 
 from granular_response.errors import GranularError
-from granular_response.scene import text as yaml
 
-from ..registry import group_path
-from .changes import CHANGES
-from .words import Bounds
+from .words import Words
 
-#: What an interval means: none (a number of one deterministic run); the event lies inside; 95 % of the bootstrap draws;
-#: the smallest to the largest value.
+#: What an interval means: none (one deterministic run); the event lies inside; 95 % of the bootstrap draws; the
+#: smallest to the largest value.
 Kind = Literal["none", "bracket", "confidence", "range"]
 
-#: How a number is set against its bounds if nothing else is said, by the kind of its interval.
-TESTS: dict[Kind, str] = {
+#: How a number is set against its bound if nothing else is said, by the kind of its interval.
+METHODS: dict[Kind, str] = {
     "none": "the number itself",
     "bracket": "both ends of the bracket",
     "confidence": "both ends of the 95 % interval",
     "range": "both ends of the range",
 }
 
-Outcome = Literal["holds", "fails", "open"]
+Outcome = Literal["yes", "no", "cannot tell"]
 
 #: Labels are the same if they differ by less than this part of them.
 _SAME = 1e-9
@@ -47,16 +43,16 @@ class NotMeasured(GranularError):
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number, the interval it lies in, and what kind of interval that is; ``high`` is inf for a lower bound.
+    """A number, the interval in which it lies and the kind of that interval; ``high`` is inf for a lower bound.
 
-    ``test`` names the statistic behind the interval, ``samples`` how many packings it has.
+    ``method`` names the statistic behind the interval, ``samples`` the number of packings.
     """
 
     value: float
     low: float
     high: float
     kind: Kind = "none"
-    test: str = field(default="", compare=False)
+    method: str = field(default="", compare=False)
     samples: int = field(default=1, compare=False)
 
     @classmethod
@@ -76,220 +72,142 @@ class Quantity:
         return cls(found[0] if value is None else value, min(found), max(found), "range")
 
     def per(self, other: Quantity) -> Quantity:
-        """The ratio, with the interval that both intervals leave; both positive. NotMeasured if that is 0."""
+        """The ratio, with the interval that both intervals leave; both positive. NotMeasured if ``other`` is 0."""
         if other.high == 0.0:
             raise NotMeasured("nothing to compare with")
         kind: Kind = other.kind if self.kind == "none" else self.kind
-        low, high = self.low / other.high, self.high / other.low if other.low > 0.0 else float("inf")
+        low = self.low / other.high
+        high = self.high / other.low if other.low > 0.0 else float("inf")
         value = self.value / other.value if other.value else float("nan")
-        return Quantity(value, low, high, kind, self.test or other.test, max(self.samples, other.samples))
+        return Quantity(value, low, high, kind, self.method or other.method, max(self.samples, other.samples))
 
     @property
     def tested(self) -> str:
-        """How it is set against its bounds."""
-        return self.test or TESTS[self.kind]
+        """How it is set against its bound."""
+        return self.method or METHODS[self.kind]
 
     @property
     def happens(self) -> bool:
         return math.isfinite(self.high)
 
     def text(self, unit: str = "") -> str:
-        """For readers; ``unit`` "%" shows parts as per cent."""
-        low, high = _number(self.low, unit), _number(self.high, unit)
+        """For readers; the ``unit`` "%" shows parts as per cent."""
+        low, high = shown(self.low, unit), shown(self.high, unit)
         if self.kind == "none" or (self.happens and low == high):  # in as many digits as are shown
-            return _number(self.value if math.isfinite(self.value) else self.low, unit)
+            return shown(self.value if math.isfinite(self.value) else self.low, unit)
         ends = f"{low} to {high}" if self.happens else f"above {low}"
         if self.kind == "bracket":
             return ends
-        return f"{_number(self.value, unit)} ({ends})" if math.isfinite(self.value) else ends
+        return f"{shown(self.value, unit)} ({ends})" if math.isfinite(self.value) else ends
 
 
-def rounded(value: float) -> float | None:
-    """As it is stored: to six digits, so that the last ones of a machine do not show; None for nan and inf, which JSON
-    lacks."""
-    return float(f"{value:.6g}") if math.isfinite(value) else None
-
-
-def _number(value: float, unit: str) -> str:
+def shown(value: float, unit: str) -> str:
     return f"{100.0 * value:.3g} %" if unit == "%" else f"{value:.4g}{' ' + unit if unit else ''}"
 
 
 @dataclass(frozen=True)
-class Condition:
-    """``found`` must lie from ``least`` to ``most``, or with ``strict`` between them.
+class Bound:
+    """What the text asks of a number: from ``least`` to ``most``, or with ``strict`` between them.
 
-    ``words`` are those of the table that set these bounds.
+    ``word`` is the qualitative term whose threshold set it, if any did. Raises ValueError without an end.
     """
 
-    what: str
-    found: Quantity
     least: float = -math.inf
     most: float = math.inf
-    words: tuple[str, ...] = ()
-    unit: str = ""
+    word: str = ""
     strict: bool = False
 
     def __post_init__(self) -> None:
         if not (self.least > -math.inf or self.most < math.inf):
-            raise ValueError(f"{self.what}: a condition needs a bound")
+            raise ValueError("a bound needs an end")
 
-    @property
-    def outcome(self) -> Outcome:
-        """Holds with the whole interval inside the bounds, fails with all of it outside, open otherwise."""
-        if math.isnan(self.found.low) or math.isnan(self.found.high):
-            raise NotMeasured(f"{self.what}: no number is stored")
-        low, high = self.found.low, self.found.high
+    def outcome(self, found: Quantity) -> Outcome:
+        """Yes with the whole interval inside, no with all of it outside, cannot tell otherwise."""
+        if math.isnan(found.low) or math.isnan(found.high):
+            raise NotMeasured("no number is stored")
+        low, high = found.low, found.high
         if self.strict:
-            if self.least < low and (high < self.most or self.most == math.inf):
-                return "holds"
-            return "fails" if high <= self.least or low >= self.most else "open"
-        if self.least <= low and high <= self.most:
-            return "holds"
-        return "fails" if high < self.least or low > self.most else "open"
+            inside = self.least < low and (high < self.most or self.most == math.inf)
+            outside = high <= self.least or low >= self.most
+        else:
+            inside = self.least <= low and high <= self.most
+            outside = high < self.least or low > self.most
+        return "yes" if inside else "no" if outside else "cannot tell"
 
-    @property
-    def asked(self) -> str:
-        least, most = _number(self.least, self.unit), _number(self.most, self.unit)
+    def text(self, unit: str = "") -> str:
+        least, most = shown(self.least, unit), shown(self.most, unit)
         if not math.isfinite(self.most):
             return f"{'more than' if self.strict else 'at least'} {least}"
         if not math.isfinite(self.least):
             return f"{'less than' if self.strict else 'at most'} {most}"
         return least if self.least == self.most else f"{least} to {most}"
 
-    @property
-    def measured(self) -> str:
-        return f"{self.what}: {self.found.text(self.unit)}"
-
 
 @dataclass(frozen=True)
-class Reading:
-    """An interpretation of the paper's set-up or words, or a variant of its set-up, and what the claim asks for in it.
+class Test:
+    """A number against a bound, for one value of what the text leaves open (``case``).
 
-    ``change`` is what a variant changes, a key of :data:`~granular_response_paper.claims.changes.CHANGES`; an
-    interpretation changes nothing. Raises ValueError without conditions, KeyError for another change.
+    ``prepared`` names the preparation if it is not the paper's.
     """
 
-    name: str
-    conditions: tuple[Condition, ...]
-    change: str = ""
+    what: str
+    found: Quantity
+    bound: Bound
+    case: str = ""
+    unit: str = ""
+    prepared: str = ""
 
-    def __init__(self, name: str, *conditions: Condition, change: str = "") -> None:
-        if not conditions:
-            raise ValueError(f"{name}: a reading needs conditions")
-        if change and change not in CHANGES:
-            raise KeyError(f"{name}: {change} is no change of the set-up")
-        vars(self).update(name=name, conditions=conditions, change=change)
+    __test__: ClassVar = False  # for pytest: no class of tests
 
     @property
     def outcome(self) -> Outcome:
-        outcomes = {condition.outcome for condition in self.conditions}
-        return "fails" if "fails" in outcomes else "open" if "open" in outcomes else "holds"
+        try:
+            return self.bound.outcome(self.found)
+        except NotMeasured as missing:
+            raise NotMeasured(f"{self.what}: {missing}") from None
+
+    def named(self, case: str) -> Test:
+        """The same test for a value of what the text leaves open."""
+        return replace(self, case=case)
 
 
-@dataclass(frozen=True)
-class Finding:
-    """What was measured for a claim; the first reading is an interpretation, the one this project uses.
+Measure = Callable[["Data", Words], Sequence[Test]]
 
-    ``summary`` is for readers; ``quantity`` the number that stands for the claim, by default that of the first
-    condition over all interpretations; ``remark``, if it says numbers too, stands in place of the claim's own.
-    """
-
-    summary: str
-    readings: Sequence[Reading]
-    remark: str = ""
-
-    @property
-    def interpretations(self) -> list[Reading]:
-        return [reading for reading in self.readings if not reading.change]
-
-    @property
-    def variants(self) -> list[Reading]:
-        """In the order of the changes."""
-        order = list(CHANGES)
-        return sorted((r for r in self.readings if r.change), key=lambda reading: order.index(reading.change))
-
-    @property
-    def quantity(self) -> Quantity:
-        """The first condition's number: its own interval, or the range over the interpretations that measure the
-        same."""
-        return range_over(self.interpretations)
-
-
-def range_over(readings: Sequence[Reading]) -> Quantity:
-    """The number of the first condition of the first reading; the range if others measure the same."""
-    first = readings[0].conditions[0]
-    same = [r.conditions[0].found for r in readings if r.conditions[0].what == first.what]
-    if len(same) < 2:
-        return first.found
-    return Quantity(first.found.value, min(q.low for q in same), max(q.high for q in same), "range")
-
-
-Measure = Callable[["Data", Bounds], Finding]
+#: Whose sentence a claim judges.
+Source = Literal["paper", "literature", "hypothesis"]
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of the paper and how it is measured. A ``derivation`` is algebra that no simulation can fail.
+    """A sentence, where it stands, and the function that makes its tests from stored data.
 
-    The ``remark`` is shown beside the verdict.
+    ``here`` is a sentence with the numbers of the first tests in braces; ``modal`` a sentence that says what may be, so
+    that a failed test does not contradict it; ``derivation`` algebra that no simulation can fail; ``disorder`` a
+    statement on disordered packings.
     """
 
     id: str
     place: str
-    measured: str
     paper: str
+    measured: str
     measure: Measure = field(repr=False)
-    figures: tuple[int, ...] = ()
     group: str = ""
+    here: str = ""
+    figures: tuple[int, ...] = ()
+    source: Source = "paper"
+    modal: bool = False
     derivation: bool = False
+    disorder: bool = False
     remark: str = ""
 
     @property
-    def beyond(self) -> bool:
-        """Whether the paper leaves the question to words, so that it is counted apart."""
+    def extension(self) -> bool:
+        """Whether it goes beyond what the paper measured, so that it is counted apart."""
         return self.id.startswith("B")
 
 
-#: Beside a group's ``claims.py``: what the paper says, by the number of the claim.
-TEXTS = "claims.yaml"
-
-
-class Claims(list[Claim]):
-    """The claims of a figure group, each with the function that measures it.
-
-    ``claims.yaml`` beside it has the ``place`` of each in the paper, the ``paper``'s words, what is ``measured``, the
-    ``figures`` that show it unless they are those that the place names, a ``remark``, and whether it is a
-    ``derivation``.
-    """
-
-    def __init__(self, group: str) -> None:
-        self.group = group
-        self._said = yaml.read((group_path(group) / TEXTS).read_text("utf-8"))
-
-    def measures(self, id: str) -> Callable[[Measure], Measure]:
-        """Said above the function that measures a claim. Raises KeyError if its text is missing."""
-        said = {"figures": _figures(self._said[id]["place"]), **self._said[id]}
-
-        def measured(measure: Measure) -> Measure:
-            self.append(Claim(id, measure=measure, group=self.group, **said | {"figures": tuple(said["figures"])}))
-            return measure
-
-        return measured
-
-    def needs(self, there: object, what: str) -> None:
-        """Raises NotMeasured, which says ``what`` the group's datasets hold or lack, unless ``there`` is true."""
-        if not there:
-            raise NotMeasured(f"data/{self.group}.nc: {what}")
-
-
-def _figures(place: str) -> tuple[int, ...]:
-    """The figures in a place of the paper such as "V.F, Fig. 17e, f"."""
-    named = "".join(re.findall(r"Figs?\. (.*)", place))
-    return tuple(int(number) for number in re.findall(r"\d+", named))
-
-
 class Data:
-    """Stored datasets by figure group; asking for what is not there raises NotMeasured.
+    """Stored datasets by figure group; a missing one raises NotMeasured.
 
     ``groups`` maps a figure group to its datasets by name, as ``store.read`` returns them.
     """
@@ -305,25 +223,35 @@ class Data:
             raise NotMeasured(f"data/{group}.nc holds no dataset {name}")
         return self.groups[group][name]
 
-    def event(self, group: str, name: str, friction: float | None = None) -> Quantity:
-        """The bracket of an event; ``friction`` None takes the first event of that name."""
-        events = self.get(group, "events")
-        at = events["name"].values == name
+    def event(self, group: str, name: str, friction: float | None = None, table: str = "events") -> Quantity:
+        """The bracket of an event in a ``table`` of them; ``friction`` None takes the first event of that name."""
+        events = self.get(group, table)
+        here = events["name"].values == name
         if friction is not None and "friction" in events.variables:
-            at = at & (np.abs(events["friction"].values - friction) <= _SAME * abs(friction))
-        if not at.any():
+            here = here & (np.abs(events["friction"].values - friction) <= _SAME * abs(friction))
+        if not here.any():
             with_friction = "" if friction is None else f" at friction {friction:g}"
-            raise NotMeasured(f"data/{group}.nc: events holds no {name}{with_friction}")
-        k = int(np.flatnonzero(at)[0])
+            raise NotMeasured(f"data/{group}.nc: {table} holds no {name}{with_friction}")
+        k = int(np.flatnonzero(here)[0])
         return Quantity.bracket(float(events["low"].values[k]), float(events["high"].values[k]))
 
 
-def at(dataset: xr.Dataset, **labels: float) -> xr.Dataset:
-    """The entries at the given labels, up to rounding; NotMeasured if a label is not stored."""
+def needs(there: object, what: str) -> None:
+    """Raises NotMeasured, which says ``what`` is missing, unless ``there`` is true."""
+    if not there:
+        raise NotMeasured(what)
+
+
+def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
+    """The first entry with all of the given labels, numbers up to rounding; raises NotMeasured if there is none.
+
+    Labels may be of several coordinates along one dimension.
+    """
+    masks: dict[Hashable, np.ndarray] = {}
     for name, label in labels.items():
-        stored = np.asarray(dataset[name].values, dtype=float)
-        near = np.flatnonzero(np.abs(stored - label) <= _SAME * abs(label))
-        if not near.size:
-            raise NotMeasured(f"nothing is stored at {name} = {label:g}")
-        dataset = dataset.isel({name: int(near[0])})
-    return dataset
+        (dimension,) = dataset[name].dims
+        stored = dataset[name].values
+        same = stored.astype(str) == label if isinstance(label, str) else np.isclose(stored, label, _SAME, 0.0)
+        masks[dimension] = masks.get(dimension, True) & same
+        needs(masks[dimension].any(), f"nothing is stored at {name} = {label}")
+    return dataset.isel({dimension: int(np.flatnonzero(mask)[0]) for dimension, mask in masks.items()})

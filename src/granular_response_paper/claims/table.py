@@ -1,7 +1,7 @@
-"""The paper's claims against the stored datasets: the table with a verdict for each, and how firm the counts are.
+"""The claims against the stored datasets: the table with a verdict for each, which ``figures/claims.json`` holds.
 
-``collect`` reads what is stored, ``evaluate`` judges, ``document`` makes the JSON that ``dvc metrics show``, the
-report and the README quote.
+:func:`collect` reads what is stored, :func:`evaluate` judges, :func:`document` makes the JSON that ``dvc metrics
+show``, the page and the README quote. Nothing is judged anywhere else.
 """
 
 from __future__ import annotations
@@ -10,133 +10,117 @@ import json
 import os
 import re
 from collections.abc import Sequence
-from itertools import product
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from granular_response.store import atomic
 from granular_response.store import files as store
 
-from ..registry import PAPER, group_member
-from . import preparations, sentences
-from .changes import CHANGES
-from .claim import Claim, Data, Quantity, rounded
-from .stored import OUTPUT, ClaimsError
-from .verdict import MEANINGS, ROBUSTNESS_MEANINGS, Entry, Verdict, judge, key
-from .words import TABLE, bounds
+from ..registry import PAPER, Collection, collection_of, group_member, group_path
+from . import preparations, summary
+from .claim import Claim, Data, Quantity
+from .declared import TEXTS, Claims
+from .stored import OUTPUT, PARTS, ClaimsError
+from .verdict import MEANINGS, SCHEME, Entry, judge, key, rounded
+from .words import TABLE
 
-#: Kinds of claims by the first letter, in the order of the table.
-_ORDER = "AFRKSPTDUNB"
-
-
-def _place(claim: Claim) -> tuple[int, int, str]:
-    letter, number, part = re.fullmatch(r"([A-Z])(\d+)([a-z]?)", claim.id).groups()  # type: ignore[union-attr]
-    return _ORDER.index(letter), int(number), part
-
-
-def _claims_of(group: str) -> Sequence[Claim]:
-    """The claims of a group; none if it has no ``claims.py``."""
-    return group_member(group, "claims", "CLAIMS", optional=True) or ()
-
-
-#: All claims in the order of the table.
-CLAIMS: tuple[Claim, ...] = tuple(sorted((claim for group in PAPER.groups for claim in _claims_of(group)), key=_place))
-
-#: Figure groups whose datasets the claims read.
-GROUPS: tuple[str, ...] = tuple(
-    sorted({claim.group for claim in CLAIMS} | {preparations.GROUP, preparations.LOADING, sentences.MEANS})
-)
-
-#: How the bounds of words are changed to see how the counts move.
-FACTORS = (0.5, 2.0)
+#: Sections of the paper, in order.
+SECTIONS = ("abstract", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "beyond")
 
 #: Intervals as they are named for readers.
 KINDS = {"bracket": "bracket", "confidence": "95 % confidence", "range": "range"}
 
 
-def collect(folder: str | os.PathLike[str] = "data") -> Data:
-    """The stored datasets that claims read; a group without a file is left out.
+def claims_of(group: str) -> Sequence[Claim]:
+    """The claims of a figure group; none if it has neither ``claims.py`` nor ``claims.yaml``."""
+    found: Sequence[Claim] | None = group_member(group, "claims", "CLAIMS", optional=True)
+    if found is None and (group_path(group) / TEXTS).is_file():
+        return Claims(f"{collection_of(group).package}.{group}")
+    return found or ()
 
-    Raises StoreError if a file that is there cannot be read.
+
+def part_of(claim: Claim) -> str:
+    """The part of the table in which a claim stands."""
+    return "extension" if claim.extension else "disorder" if claim.disorder else "ordered"
+
+
+def _place(claim: Claim) -> tuple[int, int, str, str, int, str]:
+    """Statements on order, then disorder, then what goes beyond; each by section."""
+    section, _, further = re.split(r"[ ,;]", claim.place)[0].partition(".")
+    letter, number, part = re.fullmatch(r"([A-Z])(\d+)([a-z]?)", claim.id).groups()  # type: ignore[union-attr]
+    return list(PARTS).index(part_of(claim)), SECTIONS.index(section), further, letter, int(number), part
+
+
+@cache
+def claims_in(collection: Collection) -> tuple[Claim, ...]:
+    """All claims of a collection in the order of the table."""
+    return tuple(sorted((claim for group in collection.groups for claim in claims_of(group)), key=_place))
+
+
+#: Figure groups whose datasets claims of the paper read beside that of their own.
+SHARED = ("phase_diagram", "polydisperse_averages", "sensitivity")
+
+
+def groups_read(collection: Collection) -> list[str]:
+    """The figure groups whose datasets the claims of a collection read."""
+    own = {claim.group for claim in claims_in(collection)}
+    return sorted(own | set(SHARED) if collection == PAPER else own)
+
+
+def collect(
+    folder: str | os.PathLike[str] = "data",
+    others: str | os.PathLike[str] = summary.OUTPUT,
+    collection: Collection = PAPER,
+) -> Data:
+    """The stored datasets that claims read, and the summary of ``others``, preparations that are not the paper's.
+
+    A file that is not there is left out; raises StoreError if one cannot be read.
     """
-    return Data({path.stem: store.read(path) for path in _paths(folder) if path.exists()})
+    groups = {path.stem: store.read(path) for path in _paths(folder, collection) if path.exists()}
+    if Path(others).exists():
+        groups[preparations.GROUP] = groups.get(preparations.GROUP, {}) | store.read(Path(others))
+    return Data(groups)
 
 
-def _paths(folder: str | os.PathLike[str]) -> list[Path]:
-    return [Path(folder) / f"{group}.nc" for group in GROUPS]
+def _paths(folder: str | os.PathLike[str], collection: Collection) -> list[Path]:
+    return [Path(folder) / f"{group}.nc" for group in groups_read(collection)]
 
 
-def evaluate(data: Data, claims: Sequence[Claim] = CLAIMS) -> list[Entry]:
+def evaluate(data: Data, claims: Sequence[Claim]) -> list[Entry]:
     """The verdict on each claim."""
     return [judge(claim, data) for claim in claims]
 
 
-def counts(verdicts: Sequence[Verdict]) -> dict[str, int]:
-    """How many claims have each verdict."""
-    return {key(verdict): sum(one == verdict for one in verdicts) for verdict in MEANINGS}
-
-
-def sensitivity(data: Data, entries: Sequence[Entry]) -> list[dict[str, Any]]:
-    """For each word with its bound halved and doubled: the counts, and the claims whose verdict changes.
-
-    Only claims with a condition that names the word are judged again.
-    """
-    own = {entry.claim.id: entry for entry in entries if not entry.claim.beyond}
-    verdicts = {name: entry.verdict for name, entry in own.items()}
-    rows = []
-    for word, factor in product(TABLE, FACTORS):
-        changed = bounds(word.name, factor)
-        now = {name: judge(one.claim, data, changed).verdict for name, one in own.items() if word.name in one.words}
-        moved = {name: verdict for name, verdict in now.items() if verdict != verdicts[name]}
-        tally = counts(list((verdicts | now).values()))
-        setting = {"word": word.name, "bound": changed[word.name], "factor": factor}
-        rows.append(setting | {"counts": tally, "changed": moved})
-    return rows
-
-
-def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
-    """Everything about the verdicts, as it is stored.
-
-    ``counts`` and ``robustness`` are scalars for ``dvc metrics show``, which passes over lists.
-    """
-    own = [entry for entry in entries if not entry.claim.beyond]
-    degrees = [entry.robustness for entry in own]
+def document(entries: Sequence[Entry]) -> dict[str, Any]:
+    """Everything about the verdicts, as it is stored; ``counts`` are scalars for ``dvc metrics show``."""
+    counts = {
+        part: {key(kind): sum(e.verdict == kind and part_of(e.claim) == part for e in entries) for kind in MEANINGS}
+        for part in PARTS
+    }
     return {
-        "counts": counts([entry.verdict for entry in own]) | {"total": len(own), "beyond": len(entries) - len(own)},
-        "robustness": {key(kind): degrees.count(kind) for kind in ROBUSTNESS_MEANINGS},
-        "verdict_kinds": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
-        "robustness_kinds": [{"robustness": kind, "meaning": meaning} for kind, meaning in ROBUSTNESS_MEANINGS.items()],
-        "changes": [{"change": change, "sentence": sentence} for change, sentence in CHANGES.items()],
+        "counts": counts,
+        "scheme": list(SCHEME),
+        "verdicts": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
         "words": [{"word": w.name, "bound": w.bound, "sentence": w.sentence} for w in TABLE],
-        "sensitivity": sensitivity(data, entries),
-        "sentences": sentences.looked_at(data),
         "table": [_row(entry) for entry in entries],
     }
 
 
 def _row(entry: Entry) -> dict[str, Any]:
-    claim, finding = entry.claim, entry.finding
-    asked = [c.found for reading in finding.interpretations for c in reading.conditions] if finding else []
-    samples = [one.samples for one in asked]
+    claim = entry.claim
     return {
-        **_named(claim, "id", "place", "measured", "paper"),
-        **_named(entry, "verdict", "reason", "robustness", "robustness_reason"),
-        **_named(claim, "figures", "group", "beyond"),
-        "ours": finding.summary if finding else "",
-        **_interval(finding.quantity if finding else None),
-        "tests": list(dict.fromkeys(one.tested for one in asked)),
-        "samples": [min(samples), max(samples)] if samples else None,
-        "readings": [
-            _named(reading, "name", "change", "outcome")
-            | {
-                "conditions": [
-                    _named(c, "measured", "asked", "outcome", "words")
-                    | {"test": c.found.tested, "samples": c.found.samples}
-                    | _interval(c.found)
-                    for c in reading.conditions
-                ]
-            }
-            for reading in (finding.readings if finding else ())
+        **_named(claim, "id", "place", "paper", "source", "measured", "figures", "group"),
+        "part": part_of(claim),
+        **_named(entry, "verdict", "star", "elsewhere", "here", "cases", "preparations"),
+        "remark": claim.remark,
+        **_interval(entry.tests[0].found if entry.tests else None),
+        "tests": [
+            _named(test, "what", "case", "prepared", "outcome")
+            | {"found": test.found.text(test.unit), "bound": test.bound.text(test.unit), "word": test.bound.word}
+            | {"method": test.found.tested, "samples": test.found.samples}
+            | _interval(test.found)
+            for test in entry.tests
         ],
     }
 
@@ -158,19 +142,21 @@ def _interval(quantity: Quantity | None) -> dict[str, Any]:
 def write(
     output: str | os.PathLike[str] = OUTPUT,
     folder: str | os.PathLike[str] = "data",
+    others: str | os.PathLike[str] = summary.OUTPUT,
     keep: Sequence[str | os.PathLike[str]] = (),
+    collection: Collection = PAPER,
 ) -> dict[str, Any]:
-    """Judge all claims on the datasets in ``folder`` and store the result; returns it.
+    """Judge the claims of a collection on the datasets in ``folder`` and store the result; returns it.
 
     Raises ClaimsError if there are none, StoreError if one cannot be read, OSError if the output cannot be written
-    or is one of the datasets or of the files to ``keep``.
+    or is one of the files that are read or of those to ``keep``.
     """
     target = Path(output)
-    atomic.check_output(target, [*_paths(folder), *keep])
-    data = collect(folder)
+    atomic.check_output(target, [*_paths(folder, collection), Path(others), *keep])
+    data = collect(folder, others, collection)
     if not data.groups:
         raise ClaimsError(f"{folder}: holds none of the datasets that claims read; make them with dvc repro")
-    found = document(data, evaluate(data))
+    found = document(evaluate(data, claims_in(collection)))
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, (json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode())
     return found

@@ -1,143 +1,157 @@
-"""The verdict on a claim and its robustness: functions of its readings, never written by hand."""
+"""The verdict on a claim follows from its tests and is never written by hand.
+
+The scheme, as the page and the notes print it, is :data:`SCHEME`.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import Literal
 
-from .. import TOO_LITTLE
-from .claim import Claim, Data, Finding, NotMeasured, Outcome, Reading, range_over
-from .words import Bounds, bounds
+from granular_response_paper import TOO_LITTLE
 
-Verdict = Literal[
-    "reproduced", "depends on the interpretation", "undecided", "contradicted", "derivation", "not measured"
-]
-Robustness = Literal["robust", "breaks", "open", "not varied"]
+from .claim import Claim, Data, NotMeasured, Outcome, Test
+from .words import FACTORS, words
+
+SCHEME = (
+    "Each sentence has one primary test, which the text fixes: its figure, its forces, its number of samples.",
+    "The sentence is supported, or not supported, if the 95 % interval or the bracket of the measured number lies on "
+    "one side of the bound; otherwise the data cannot tell.",
+    "Where the text leaves a parameter open, the row lists the values for which the sentence holds (in part).",
+    "A star marks a verdict that changes if the threshold of a qualitative term is halved or doubled.",
+    "The second column says whether the sentence also holds under another preparation of the packing: yes, no, cannot "
+    "tell or not tried.",
+)
+
+Verdict = Literal["supported", "in part", "not supported", "cannot tell", "not seen", "derivation", "not measured"]
 
 #: Every verdict and what it says.
 MEANINGS: dict[Verdict, str] = {
-    "reproduced": "in the paper's set-up it holds with its uncertainty in every interpretation that was measured",
-    "depends on the interpretation": "it holds in one interpretation of the text and fails in another",
-    "undecided": "the uncertainty of an interpretation straddles the line",
-    "contradicted": "it fails in all interpretations, clear of the uncertainty",
-    "derivation": "algebra that no simulation can fail; it is counted apart",
-    "not measured": "no stored dataset decides it; the reason says what would",
+    "supported": "the sentence holds for every value of what the text leaves open",
+    "in part": "it holds for some of these values",
+    "not supported": "it holds for none of them, and fails for one or more",
+    "cannot tell": "the interval straddles the bound",
+    "not seen": "the sentence says that something may be, and it was not found here",
+    "derivation": "algebra that no simulation can fail; counted apart",
+    "not measured": "no stored dataset decides it",
 }
 
-
-#: Every robustness and what it says.
-ROBUSTNESS_MEANINGS: dict[Robustness, str] = {
-    "robust": "it holds in every variant of the set-up that was measured",
-    "breaks": "it fails in a variant",
-    "open": "the uncertainty of a variant straddles the line",
-    "not varied": "no other set-up was measured",
-}
+#: The second column.
+Elsewhere = Literal["yes", "no", "cannot tell", "not tried"]
 
 
 def key(kind: str) -> str:
-    """Of a verdict or a robustness in the stored table."""
+    """Of a verdict in the stored table."""
     return kind.replace(" ", "_")
 
 
-#: Conditions of a reading that a reason quotes; the table has all.
-SHOWN = 2
+def together(outcomes: Iterable[Outcome]) -> Outcome:
+    """Of numbers that must all lie in their bounds."""
+    found = set(outcomes)
+    return "no" if "no" in found else "cannot tell" if "cannot tell" in found else "yes"
+
+
+def by_case(tests: Sequence[Test]) -> dict[str, Outcome]:
+    """The outcome for each value of what the text leaves open, in the paper's preparation."""
+    own = [test for test in tests if not test.prepared]
+    return {case: together(t.outcome for t in own if t.case == case) for case in dict.fromkeys(t.case for t in own)}
+
+
+def verdict_of(tests: Sequence[Test], claim: Claim | None = None) -> Verdict:
+    """Raises ValueError without a test in the paper's preparation."""
+    outcomes = set(by_case(tests).values())
+    if not outcomes:
+        raise ValueError("a claim needs a test in the paper's own preparation")
+    if outcomes == {"yes"}:
+        return "derivation" if claim and claim.derivation else "supported"
+    if "yes" in outcomes:
+        return "in part"
+    if "no" in outcomes:
+        return "not seen" if claim and claim.modal else "not supported"
+    return "cannot tell"
+
+
+def elsewhere_of(tests: Sequence[Test]) -> Elsewhere:
+    """Whether the tests hold in every other preparation."""
+    found = [test.outcome for test in tests if test.prepared]
+    return together(found) if found else "not tried"
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A claim with its verdict and its robustness; ``reason`` and ``robustness_reason`` say why in a sentence."""
+    """A claim with its verdict. ``star`` names the qualitative terms whose threshold, halved or doubled, changes it."""
 
     claim: Claim
     verdict: Verdict
-    finding: Finding | None
-    reason: str
-    robustness: Robustness = "not varied"
-    robustness_reason: str = ""
+    tests: tuple[Test, ...] = ()
+    missing: str = ""
+    elsewhere: Elsewhere = "not tried"
+    star: tuple[str, ...] = ()
 
     @property
-    def words(self) -> set[str]:
-        """Those that set a bound of one of its conditions."""
-        readings = self.finding.readings if self.finding else ()
-        return {word for reading in readings for condition in reading.conditions for word in condition.words}
+    def here(self) -> str:
+        """What was measured, in a sentence."""
+        if not self.tests:
+            return self.missing
+        own = [test for test in self.tests if not test.prepared]
+        found = [test.found.text(test.unit) for test in own]
+        with suppress(IndexError):  # fewer tests than the sentence quotes, of a smaller study
+            if self.claim.here:
+                return self.claim.here.format(*found)
+        return f"{own[0].what}: {found[0]}"
+
+    @property
+    def cases(self) -> str:
+        """For which values of what the text leaves open it holds, fails or is open."""
+        found = by_case(self.tests)
+        if len(found) < 2:
+            return ""
+        titles: dict[Outcome, str] = {
+            "yes": "Supported for",
+            "no": "Not supported for",
+            "cannot tell": "Cannot tell for",
+        }
+        parts = {title: [case for case, one in found.items() if one == outcome] for outcome, title in titles.items()}
+        return " ".join(f"{title}: {'; '.join(cases)}." for title, cases in parts.items() if cases)
+
+    @property
+    def preparations(self) -> str:
+        """In which other preparations it holds and fails."""
+        ways = dict.fromkeys(test.prepared for test in self.tests if test.prepared)
+        found = {way: together(t.outcome for t in self.tests if t.prepared == way) for way in ways}
+        titles: dict[Outcome, str] = {"yes": "Holds", "no": "Fails", "cannot tell": "Open"}
+        parts = {title: [way for way, one in found.items() if one == outcome] for outcome, title in titles.items()}
+        return " ".join(f"{title}: {'; '.join(cases)}." for title, cases in parts.items() if cases)
 
 
-def verdict_of(readings: Sequence[Reading], *, derivation: bool = False) -> Verdict:
-    """Of the interpretations. Holds in all: reproduced, or a derivation; in some and fails in others: depends; fails in
-    all: contradicted. Raises ValueError if there are none."""
-    outcomes = {reading.outcome for reading in readings if not reading.change}
-    if not outcomes:
-        raise ValueError("a finding needs an interpretation of the text")
-    if outcomes == {"holds"}:
-        return "derivation" if derivation else "reproduced"
-    if {"holds", "fails"} <= outcomes:
-        return "depends on the interpretation"
-    return "contradicted" if outcomes == {"fails"} else "undecided"
-
-
-def robustness_of(readings: Sequence[Reading]) -> Robustness:
-    """Of the variants."""
-    outcomes = {reading.outcome for reading in readings if reading.change}
-    if not outcomes:
-        return "not varied"
-    return "breaks" if "fails" in outcomes else "open" if "open" in outcomes else "robust"
-
-
-def judge(claim: Claim, data: Data, words: Bounds | None = None) -> Entry:
-    """Measure a claim on stored data, with the words of the table or with others.
+def judge(claim: Claim, data: Data) -> Entry:
+    """Make the tests of a claim on stored data.
 
     It is not measured if its function finds too little: a variable, a label, or all that is left to look at is missing.
     """
     try:
-        finding = claim.measure(data, bounds() if words is None else words)
-        verdict = verdict_of(finding.readings, derivation=claim.derivation)
+        tests = tuple(claim.measure(data, words()))
+        verdict = verdict_of(tests, claim)
+        elsewhere = elsewhere_of(tests)
+        used = sorted({test.bound.word for test in tests if test.bound.word and not test.prepared})
+        star = tuple(word for word in used if any(_with(claim, data, word, f) != verdict for f in FACTORS))
     except NotMeasured as missing:
-        return Entry(claim, "not measured", None, str(missing))
+        return Entry(claim, "not measured", missing=str(missing))
     except TOO_LITTLE as error:
         problem = " ".join(f"{type(error).__name__}: {error}".split())
-        return Entry(claim, "not measured", None, f"data/{claim.group}.nc: holds too little ({problem})")
-    return Entry(
-        claim, verdict, finding, _reason(claim, finding), robustness_of(finding.readings), _robustness_reason(finding)
-    )
+        return Entry(claim, "not measured", missing=f"data/{claim.group}.nc holds too little ({problem})")
+    return Entry(claim, verdict, tests, "", elsewhere, star)
 
 
-def _robustness_reason(finding: Finding) -> str:
-    """In how many variants it holds, over which range, and what breaks it first."""
-    variants = finding.variants
-    if not variants:
-        return ""
-    first, span = variants[0].conditions[0], range_over(variants)
-    if span.kind == "range":
-        span = replace(span, value=math.nan)  # shown as its ends
-    holding = sum(variant.outcome == "holds" for variant in variants)
-    text = f"Holds in {holding} of {len(variants)}; {first.what}: {span.text(first.unit)}."
-    for outcome, title in (("fails", "Breaks first with"), ("open", "Open with")):
-        these = [variant for variant in variants if variant.outcome == outcome]
-        if these:
-            return f"{text} {title} another {these[0].change}: {_why(these[0], these[0].outcome, True)}."
-    return text
+def _with(claim: Claim, data: Data, word: str, factor: float) -> Verdict:
+    """The verdict with the threshold of one term changed."""
+    return verdict_of(claim.measure(data, words(word, factor)), claim)
 
 
-def _reason(claim: Claim, finding: Finding) -> str:
-    parts = []
-    interpretations = finding.interpretations
-    named = len(interpretations) > 1
-    titles: dict[Outcome, str] = {"holds": "Holds", "fails": "Fails", "open": "Open"}
-    for outcome, title in titles.items():
-        these = [reading for reading in interpretations if reading.outcome == outcome]
-        if these:
-            parts.append(f"{title}: {'; '.join(_why(reading, outcome, named) for reading in these)}.")
-    remark = finding.remark or claim.remark
-    return " ".join([*parts, *([f"{remark}."] if remark else [])])
-
-
-def _why(reading: Reading, outcome: Outcome, named: bool) -> str:
-    """A reading that holds by its name, another one with the conditions that decide it."""
-    telling = [c for c in reading.conditions if c.outcome == outcome]
-    text = ", ".join(f"{c.measured} (asked: {c.asked})" for c in telling[:SHOWN])
-    if len(telling) > SHOWN:
-        text += f", and {len(telling) - SHOWN} more"
-    if outcome == "holds" and named:
-        return reading.name
-    return f"{reading.name}: {text}" if named else text
+def rounded(value: float) -> float | None:
+    """As it is stored: six digits, so that the last ones of a machine do not show; None for nan and inf, which JSON
+    lacks."""
+    return float(f"{value:.6g}") if math.isfinite(value) else None

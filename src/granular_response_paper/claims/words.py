@@ -1,9 +1,9 @@
-"""What the paper's words mean as numbers: one table, used by every claim.
+"""Thresholds of the paper's qualitative terms: one table, used by every claim.
 
 The paper says "about 20 mg", "almost an order of magnitude", "holds quite well". A verdict needs a bound. These are our
-readings of the words, written when an earlier table of values was known; none is chosen for a claim, and
-:func:`granular_response_paper.claims.table.sensitivity` says how the verdicts move with each bound halved and doubled.
-Numbers that the paper states itself (1 %, 1e-22) are no words.
+interpretations of the terms, written when an earlier table of values was known; none is chosen for one claim. A star
+beside a verdict says that it changes with a threshold halved or doubled. Numbers that the paper states itself (1 %,
+1e-22) are no qualitative terms.
 """
 
 from __future__ import annotations
@@ -54,12 +54,15 @@ TABLE: tuple[Word, ...] = (
 
 WORDS: dict[str, Word] = {word.name: word for word in TABLE}
 
-#: Bounds by word.
-Bounds = Mapping[str, float]
+#: Thresholds by term.
+Words = Mapping[str, float]
+
+#: By what the thresholds are multiplied to see whether a verdict hangs on them.
+FACTORS = (0.5, 2.0)
 
 
-def bounds(word: str | None = None, factor: float = 1.0) -> dict[str, float]:
-    """The bounds of all words, with that of ``word`` multiplied by ``factor``. Raises KeyError for an unknown word."""
+def words(word: str | None = None, factor: float = 1.0) -> dict[str, float]:
+    """The thresholds of all terms, that of ``word`` multiplied by ``factor``. Raises KeyError for an unknown one."""
     found = {name: entry.bound for name, entry in WORDS.items()}
     if word is not None:
         found[word] *= factor

@@ -1,7 +1,7 @@
-"""The page a reader opens: verdicts, figures, readings, benchmarks, and how to run each part again.
+"""The page a reader opens: results, figures, verdicts, interpretations, benchmarks, and how to run each part again.
 
-One HTML file that needs no network: pictures, style and script are inside. It is made from files that the pipeline
-stored, and has the same bytes for the same files.
+One HTML file that needs no network. It shows the pictures that stand beside it, or holds them if it is to be
+self-contained. It is made from files that the pipeline stored, and has the same bytes for the same files.
 """
 
 from __future__ import annotations
@@ -14,95 +14,115 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
-import xarray as xr
 
 from granular_response import __version__
 from granular_response.errors import GranularError
 from granular_response.plot import style
-from granular_response.store import atomic, generated
+from granular_response.store import atomic
 from granular_response.store import files as store
 
 from .. import captions
 from ..claims import stored
 from ..claims.verdict import key
-from . import against, benchmarks, beyond, contents, explorer, pictures, readings
+from ..registry import PAPER, Collection, group_member
+from . import against, benchmarks, explorer, pictures, readings
 from .typeset import typeset
 
 #: Where the page is kept.
 OUTPUT = Path("figures") / "report.html"
 
-#: Figure groups that the explorer shows, and the one whose table the readings come from.
-EXPLORED = ("friction_linear_range", "explorer", "phase_diagram")
+#: Figure groups whose datasets the page reads: those of the explorer, and that of the interpretations.
+EXPLORED = ("friction_linear_range", "phase_diagram")
 SENSITIVITY = "sensitivity"
+
+#: Claims whose sentences stand first on the page: the result without friction, with friction, in disorder, and the
+#: preparation.
+FIRST = ("F4a", "R3a", "R5a", "A5")
 
 
 class ReportError(GranularError):
     """Something the page is made from is missing or damaged. The message is one line."""
 
 
+def datasets_read(collection: Collection) -> tuple[str, ...]:
+    """The figure groups whose datasets the page of a collection or its fragments read."""
+    if collection == PAPER:
+        return tuple(sorted({*EXPLORED, SENSITIVITY, *(row.group for row in against.ROWS)}))
+    return tuple(group for group in collection.groups if group_member(group, "tables", "markdown", optional=True))
+
+
 def write(
     output: str | os.PathLike[str] = OUTPUT,
     root: str | os.PathLike[str] = ".",
-    keep: Sequence[str | os.PathLike[str]] = (),
+    *,
+    collection: Collection = PAPER,
+    embedded: bool = False,
 ) -> Path:
-    """Make the page from ``figures/``, ``data/`` and ``benchmarks/`` below ``root``; returns its path.
+    """Make the page of a collection from ``figures/``, ``data/`` and ``benchmarks/`` below ``root``; returns its path.
 
     Raises ClaimsError, ReportError or StoreError for a table of claims, a ``captions.json`` or a dataset that cannot be
-    read, OSError if the page cannot be written, or would replace one of the files it is made from or of those to
-    ``keep``.
+    read, OSError if the page cannot be written, or would replace one of the files it is made from.
     """
     target = Path(output)
     folders = (Path(root) / name for name in ("figures", "data", "benchmarks"))
     used = [file for folder in folders for file in folder.rglob("*") if file.suffix != ".html"]
     # before the work; a folder is made when there is a page
     check = atomic.check_writable if target.parent.is_dir() else atomic.check_output
-    check(target, [*used, Path(root) / "requirements.lock", *keep])
-    made = page(Path(root), target.parent).encode()
+    check(target, [*used, Path(root) / "requirements.lock"])
+    made = page(Path(root), target.parent, collection=collection, embedded=embedded).encode()
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, made)
     return target
 
 
-def _of(group: str, lines: Callable[[Mapping[str, xr.Dataset]], str]) -> Callable[[Path], str]:
-    """What makes lines of the datasets in a folder, of one group's."""
-    return lambda data: lines(store.read(data / f"{group}.nc"))
+def fragments(root: Path, collection: Collection = PAPER) -> dict[str, Callable[[], str]]:
+    """The tables that documents include, by file name, and what makes each from the datasets below ``root``."""
+    data = root / "data"
+    if collection == PAPER:
+        return {
+            "readings.md": lambda: readings.markdown(store.read(data / f"{SENSITIVITY}.nc")),
+            "figures.md": lambda: against.markdown(data),
+        }
+    tables = {group: group_member(group, "tables", "markdown", optional=True) for group in collection.groups}
+    return {
+        f"{group}.md": lambda group=group, made=made: made(store.read(data / f"{group}.nc"))  # type: ignore[misc]
+        for group, made in tables.items()
+        if made
+    }
 
 
-#: By kind of document, the blocks of generated lines and what makes them from the folder of datasets.
-BLOCKS: Mapping[str, Mapping[str, Callable[[Path], str]]] = {
-    "notes": {readings.BLOCK: _of(SENSITIVITY, readings.markdown)},
-    "figures": {against.BLOCK: against.markdown},
-    "beyond": {group: _of(group, lines) for group, lines in beyond.BLOCKS.items()},
-    "data": {contents.BLOCK: contents.markdown},
-}
+def write_fragments(
+    folder: str | os.PathLike[str], root: str | os.PathLike[str] = ".", *, collection: Collection = PAPER
+) -> list[Path]:
+    """Write the tables that documents include into a folder; returns the paths.
 
-
-def renew(kind: str, document: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
-    """Renew the generated lines of a document from ``data/`` below ``root``; its ``kind`` is a key of :data:`BLOCKS`.
-
-    Raises GeneratedError if it cannot be read or has no place for the lines, StoreError for a dataset that cannot be
-    read, ReportError if a parameter is not the paper's and nothing says why.
+    Raises StoreError for a dataset that cannot be read, ReportError if a parameter is not the paper's and nothing says
+    why, OSError if a file cannot be written.
     """
-    for block, lines in BLOCKS[kind].items():
-        try:
-            made = lines(Path(root) / "data")
-        except ValueError as error:
-            raise ReportError(str(error)) from None
-        generated.renew(document, block, made)
+    try:
+        made = {Path(folder) / name: lines() for name, lines in fragments(Path(root), collection).items()}
+    except ValueError as error:
+        raise ReportError(str(error)) from None
+    for path, text in made.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        atomic.write_bytes(path, f"{text}\n".encode())
+    return list(made)
 
 
-def page(root: Path, folder: Path | None = None) -> str:
+def page(root: Path, folder: Path | None = None, *, collection: Collection = PAPER, embedded: bool = False) -> str:
     """The page as text. Figures, readings and benchmarks that are not there yet are left out or named as missing.
 
     Its links to files of the project, to those that are there, begin at ``folder``: by default ``figures/``.
     """
     claims = stored.read(root / stored.OUTPUT)
+    start = root / OUTPUT.parent if folder is None else folder
     try:
-        shown = pictures.collect(root / "figures")
+        shown = pictures.collect(root / "figures", start, embedded=embedded)
     except ValueError as error:
         raise ReportError(str(error)) from None
-    paths = [root / "data" / f"{group}.nc" for group in (*EXPLORED, SENSITIVITY)]
-    *explored, sensitivity = (store.read(path) if path.exists() else {} for path in paths)
+    own = collection == PAPER
+    paths = [root / "data" / f"{group}.nc" for group in (*EXPLORED, SENSITIVITY)] if own else []
+    *explored, sensitivity = (store.read(path) if path.exists() else {} for path in paths) if own else ({}, {})
     states = explorer.payload(*explored) if explored[0] else None
     numbers: dict[str, set[int]] = {row["group"]: set() for row in claims["table"]}
     for picture in shown.all():
@@ -113,22 +133,29 @@ def page(root: Path, folder: Path | None = None) -> str:
     )
     environment.filters["typeset"] = typeset
     template = environment.from_string(_resource("page.html.j2"))
+    by_id = {row["id"]: row for row in claims["table"]}
     values = {
         "version": __version__,
         "size": _SIZE,
+        "paper": own,
+        "folder": collection.folder,
+        "embedded": embedded,
         "claims": claims,
-        "verdicts": [(k["verdict"], key(k["verdict"])) for k in claims["verdict_kinds"]],
+        "verdicts": [(k["verdict"], key(k["verdict"])) for k in claims["verdicts"]],
+        "parts": {part: text for part, text in stored.PARTS.items() if any(r["part"] == part for r in claims["table"])},
+        "results": [by_id[name] for name in FIRST if name in by_id],
         "numbers": range(1, captions.NUMBER_OF_FIGURES + 1),
         "first": shown.first,
         "overview": shown.overview,
+        "figures": shown.figures,
         "questions": shown.questions,
         "claims_of": lambda picture: _claims_of(picture, shown.first, claims["table"]),
-        "linked": lambda picture: _linked(picture, root, root / OUTPUT.parent if folder is None else folder),
+        "linked": lambda picture: _linked(picture, root, start, collection),
         "states": _json_in_html(states) if states else None,
-        "explored": states and _choices(states["slabs"]),
+        "explored": states and sorted(slab["friction"] for slab in states["slabs"]),
         "readings": readings.table(sensitivity) if sensitivity else None,
-        "benchmarks": benchmarks.collect(root / "benchmarks"),
-        "goals": benchmarks.goals(root / "benchmarks"),
+        "benchmarks": benchmarks.collect(root / "benchmarks", start, embedded=embedded) if own else [],
+        "goals": benchmarks.goals(root / "benchmarks") if own else [],
         "groups": groups,
         "versions": _versions(root / "requirements.lock"),
         "style": _colours() + _resource("style.css"),
@@ -157,16 +184,11 @@ def _claims_of(
     return [row for row in table if picture.number in row["figures"]] if first[picture.number] == picture.stem else []
 
 
-def _linked(picture: pictures.Picture, root: Path, start: Path) -> list[tuple[str, str]]:
+def _linked(picture: pictures.Picture, root: Path, start: Path, collection: Collection) -> list[tuple[str, str]]:
     """The files of a picture that are there, in words, with their addresses from ``start``."""
-    there = [(name, root / path) for name, path in picture.files if (root / path).exists()]
+    base = root.joinpath(*[".."] * len(Path(collection.folder).parts))  # the folder of the checkout
+    there = [(name, base / path) for name, path in picture.files if (base / path).exists()]
     return [(name, Path(os.path.relpath(path, start)).as_posix()) for name, path in there]
-
-
-def _choices(slabs: Sequence[dict[str, Any]]) -> dict[str, list[float]]:
-    """What the reader chooses between."""
-    names = {"packings": "polydispersity", "frictions": "friction", "ratios": "ratio"}
-    return {plural: sorted({slab[name] for slab in slabs}) for plural, name in names.items()}
 
 
 #: Stands for the size of the page until the page is there.

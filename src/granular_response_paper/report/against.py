@@ -22,9 +22,6 @@ from granular_response.store import files as store
 
 from .markdown import table
 
-#: Name of the generated lines in the document.
-BLOCK = "figures"
-
 #: Largest relative difference of two numbers that count as the same.
 _SAME = 1e-9
 

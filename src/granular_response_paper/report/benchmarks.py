@@ -54,12 +54,14 @@ class Benchmark:
     picture: pictures.Picture
 
 
-def collect(folder: Path) -> list[Benchmark]:
-    """One for each ``folder/figures/*.png``."""
+def collect(folder: Path, page: Path, *, embedded: bool = False) -> list[Benchmark]:
+    """One for each ``folder/figures/*.png``, as the page in a folder shows it."""
     found = []
     for drawn in sorted((folder / PICTURES).glob("*.png")):
         title, caption = CAPTIONS.get(drawn.stem, (drawn.stem.replace("_", " ").capitalize(), ""))
-        found.append(Benchmark(title, caption, replace(pictures.embed(drawn), alternative=caption)))
+        found.append(
+            Benchmark(title, caption, replace(pictures.shown(drawn, page, embedded=embedded), alternative=caption))
+        )
     return found
 
 

@@ -10,9 +10,6 @@ import xarray as xr
 
 from . import markdown as tables
 
-#: Name of the generated lines in the notes.
-BLOCK = "readings"
-
 
 @dataclass(frozen=True)
 class Reading:

@@ -4,65 +4,46 @@ from __future__ import annotations
 
 import xarray as xr
 
-from granular_response_paper.claims import asked
-from granular_response_paper.claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
-from granular_response_paper.claims.words import Bounds
+from granular_response_paper.claims import bounds
+from granular_response_paper.claims.claim import Bound, Data, Quantity, Test
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
 
-GROUP = "crossover_scaling"
-CLAIMS = Claims(GROUP)
-#: Of the layers: the weight of a piece of the slab that is as wide as deep.
+CLAIMS = Claims(__package__)
+
+#: Of the layers: the weight of a piece of the slab that is as wide as deep. And how the sides are confined, in words.
 OF_WEIGHT = 2.0
+SIDES = {"walls": "between walls", "constant": "constant confinement", "as weight": "confined as weight"}
 
 
-def _powers(data: Data, event: str) -> list[tuple[str, xr.Dataset]]:
+def _series(data: Data, event: str) -> list[tuple[str, xr.Dataset]]:
     """What each series of layers is, and its powers of the layers."""
-    study = data.get(GROUP, "powers")
-    found = []
-    for k in range(study.sizes["series"]):
-        one = study.isel(series=k).sel(event=event)
-        if str(one["varied"].values) == "layers":
-            kind = str(one["confined"].values)
-            sides = {"walls": "between walls", "constant": "constant confinement"}.get(kind, "confined as weight")
-            found.append((f"friction {float(one['friction']):g}, {sides}", one))
+    study = data.get("crossover_scaling", "powers")
+    every = (study.isel(series=k).sel(event=event) for k in range(study.sizes["series"]))
+    found = [one for one in every if str(one["varied"].values) == "layers"]
     CLAIMS.needs(found, "powers holds no series of layers")
-    return found
+    return [(f"friction {float(one['friction']):g}, {SIDES[str(one['confined'].values)]}", one) for one in found]
 
 
-def _quantity(ends: xr.DataArray) -> Quantity:
-    value, least, largest = ends.values.tolist()
+def _power(one: xr.Dataset) -> Quantity:
+    value, least, largest = one["exponent"].values.tolist()
     return Quantity.range((least, largest), value)
 
 
 @CLAIMS.measures("B8")
-def deep_and_shallow(data: Data, words: Bounds) -> Finding:
-    series = _powers(data, "crossover")
-    layers = float(data.get(GROUP, "powers").attrs["layers"])
-    texts = [f"{_quantity(one['exponent']).text()} ({name})" for name, one in series]
-    far = [f"{_quantity(one['extrapolated']).text('mg')} ({name})" for name, one in series]
-    return Finding(
-        "crossover force grows with the layers as the power " + "; ".join(texts),
-        [
-            Reading(name, Condition("power of the layers", _quantity(one["exponent"]), 0.0, strict=True))
-            for name, one in series
-        ],
-        f"Extrapolated to {layers:g} layers: " + "; ".join(far),
-    )
+def deep_and_shallow(data: Data, words: Words) -> list[Test]:
+    bound = Bound(0.0, strict=True)
+    return [Test("power of the layers", _power(one), bound, name) for name, one in _series(data, "crossover")]
 
 
 @CLAIMS.measures("B9")
-def of_weight(data: Data, words: Bounds) -> Finding:
-    readings, texts = [], []
-    for event, what in (("reaches_floor", "open region at the floor"), ("crossover", "two peaks")):
-        series = [(name, _quantity(one["exponent"])) for name, one in _powers(data, event) if _by_itself(one)]
-        texts.append(f"{what}: " + "; ".join(f"{power.text()} ({name})" for name, power in series))
-        readings += [
-            Reading(f"{what}, {name}", asked.near("power of the layers", power, words, "nearly", OF_WEIGHT))
-            for name, power in series
-        ]
-    CLAIMS.needs(readings, "powers holds no series in which gravity could decide")
-    return Finding("powers of the layers: " + "; ".join(texts), readings)
-
-
-def _by_itself(one: xr.Dataset) -> bool:
-    """Whether the power is not that of the weight by choice: no friction and a confinement that grows with it."""
-    return bool(float(one["friction"]) > 0.0 or str(one["confined"].values) != "as weight")
+def of_weight(data: Data, words: Words) -> list[Test]:
+    """Of the series in which the power is not that of the weight by choice of the confinement."""
+    tests = [
+        Test("power of the layers", _power(one), bounds.near(words, "nearly", OF_WEIGHT), f"{what}, {name}")
+        for event, what in (("reaches_floor", "open region at the floor"), ("crossover", "two peaks"))
+        for name, one in _series(data, event)
+        if float(one["friction"]) > 0.0 or str(one["confined"].values) != "as weight"
+    ]
+    CLAIMS.needs(tests, "powers holds no series in which gravity could decide")
+    return tests

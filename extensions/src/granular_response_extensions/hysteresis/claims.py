@@ -7,13 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from granular_response_paper.claims import asked
+from granular_response.state import FloatArray
+from granular_response_paper.claims import bounds
 from granular_response_paper.claims.bootstrap import over_brackets, over_realizations
-from granular_response_paper.claims.claim import Claims, Data, Finding, Quantity, Reading
-from granular_response_paper.claims.words import Bounds
+from granular_response_paper.claims.claim import Data, Quantity, Test
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
 
-GROUP = "hysteresis"
-CLAIMS = Claims(GROUP)
+CLAIMS = Claims(__package__)
+
 #: Realizations from which on they have an interval of confidence.
 FEWEST = 3
 
@@ -28,62 +30,41 @@ def over_packings(each: Sequence[Quantity]) -> Quantity:
     return Quantity(middle, min(one.low for one in each), max(one.high for one in each), "range")
 
 
+def _brackets(event: xr.Dataset) -> list[Quantity]:
+    return [Quantity.bracket(*ends) for ends in zip(event["low"].values, event["high"].values, strict=True)]
+
+
 @CLAIMS.measures("B2")
-def ranges(data: Data, words: Bounds) -> Finding:
-    events = data.get(GROUP, "events")
-    readings: list[Reading] = []
-    ends: dict[bool, list[Quantity]] = {True: [], False: []}
+def ranges(data: Data, words: Words) -> list[Test]:
+    events, tests = data.get("hysteresis", "events"), []
     for case in range(events.sizes["case"]):
         one = events.isel(case=case)
         linear, reversible = (_brackets(one.sel(event=name)) for name in ("linear_range", "reversible_range"))
         there = [k for k, end in enumerate(linear) if np.isfinite(end.low)]  # realizations that are
         if any(linear[k].happens for k in there):
             found = over_packings([reversible[k].per(linear[k]) for k in there])
-            ends[bool(one["friction"] > 0.0)].append(found)
-            condition = asked.near("reversible over linear range", found, words, "about")
-            readings.append(Reading(asked.material(one), condition))
-    parts = [
-        f"{'with' if friction else 'without'} friction {_span(found)}" for friction, found in ends.items() if found
-    ]
-    return Finding(f"the reversible range over the linear one: {', '.join(parts)}", readings)
-
-
-def _brackets(event: xr.Dataset) -> list[Quantity]:
-    return [Quantity.bracket(*ends) for ends in zip(event["low"].values, event["high"].values, strict=True)]
-
-
-def _span(found: Sequence[Quantity]) -> str:
-    low, high = min(one.low for one in found), max(one.high for one in found)
-    return f"{low:.2g} to {high:.2g}" if np.isfinite(high) else f"above {low:.2g}"
+            tests.append(
+                Test("reversible range per linear one", found, bounds.near(words, "about"), bounds.material(one))
+            )
+    CLAIMS.needs(tests, "events holds no end of a linear range")
+    return tests
 
 
 @CLAIMS.measures("B3")
-def repeated(data: Data, words: Bounds) -> Finding:
-    loops = data.get(GROUP, "loops")
-    readings, lost, changed = [], [], []
+def repeated(data: Data, words: Words) -> list[Test]:
+    loops, tests = data.get("hysteresis", "loops"), []
     for case in range(loops.sizes["case"]):
         one = loops.isel(case=case)
-        last = int(np.flatnonzero(np.isfinite(one["force"].values))[-1])
-        one = one.isel(turn=last)
-        part = _of_realizations((one["slid_again"] + one["crossed_again"]).values / one["work"].values)
+        one = one.isel(turn=int(np.flatnonzero(np.isfinite(one["force"].values))[-1]))
+        name = f"{bounds.material(one)}, {float(one['force']):g} mg"
+        lost = _of_realizations((one["slid_again"] + one["crossed_again"]).values / one["work"].values)
         floor = _of_realizations(one["floor_repeated"].values)
-        lost.append(part.value)
-        changed.append(floor.value)
-        readings.append(
-            Reading(
-                f"{asked.material(one)}, {float(one['force']):g} mg",
-                asked.at_most("part of the work lost again", part, words, "visible", "%"),
-                asked.at_most("change of the response", floor, words, "visible", "%"),
-            )
-        )
-    return Finding(
-        f"a second loading loses up to {100.0 * max(lost):.2g} % of the work, and changes the response by up to "
-        f"{100.0 * max(changed):.1g} %",
-        readings,
-    )
+        for what, found in (("part of the work lost again", lost), ("change of the response", floor)):
+            tests.append(Test(what, found, bounds.at_most(words, "visible"), name, "%"))
+    return tests
 
 
-def _of_realizations(values: np.ndarray) -> Quantity:
+def _of_realizations(values: FloatArray) -> Quantity:
     """One packing has no interval, of several the mean has one."""
     found = values[np.isfinite(values)]
     return over_realizations(found, np.mean) if len(found) > 1 else Quantity.exact(found[0])

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from granular_response_paper.claims import asked
+from granular_response_paper.claims import bounds
 from granular_response_paper.claims.bootstrap import over_realizations
-from granular_response_paper.claims.claim import Claims, Data, Finding, Quantity, Reading
-from granular_response_paper.claims.words import Bounds
+from granular_response_paper.claims.claim import Data, Quantity, Test
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
 
-GROUP = "influence"
-CLAIMS = Claims(GROUP)
+CLAIMS = Claims(__package__)
 
 #: Of the difference of two loads with the same force and torque, in an elastic body.
 ELASTIC = 2.0
 
 
 @CLAIMS.measures("B1")
-def saint_venant(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "saint_venant")
-    what = "power of the distance with which two equivalent loads differ less"
-    readings, means = [], []
+def saint_venant(data: Data, words: Words) -> list[Test]:
+    study, tests = data.get("influence", "saint_venant"), []
     for case in range(study.sizes["case"]):
         one = study.isel(case=case, separation=0)
         each = one["exponent"].values
@@ -28,10 +26,5 @@ def saint_venant(data: Data, words: Bounds) -> Finding:
         CLAIMS.needs(len(each), "saint_venant holds no power, no rows are fitted")
         # of a lattice there is one: the range over the rows that are fitted
         found = over_realizations(each[:, 0], np.mean) if len(each) > 1 else Quantity.range(each[0])
-        means.append(found.value)
-        readings.append(Reading(asked.material(one), asked.near(what, found, words, "quite well", ELASTIC)))
-    return Finding(
-        f"the difference of a force and its two halves falls as the power {min(means):.2g} to {max(means):.2g} of the "
-        "distance; 2 in an elastic body",
-        readings,
-    )
+        tests.append(Test("power", found, bounds.near(words, "quite well", ELASTIC), bounds.material(one)))
+    return tests

@@ -2,44 +2,34 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from granular_response_paper.claims import asked
+from granular_response_paper.claims import bounds
 from granular_response_paper.claims.bootstrap import over_realizations
-from granular_response_paper.claims.claim import Claims, Data, Finding, Quantity, Reading
-from granular_response_paper.claims.words import Bounds
+from granular_response_paper.claims.claim import Data, Measure, Test
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
 
-GROUP = "moduli"
-CLAIMS = Claims(GROUP)
-
-
-def _described(data: Data, words: Bounds, solid: str, of: str) -> Finding:
-    study = data.get(GROUP, "packings")
-    readings: list[Reading] = []
-    values: dict[bool, list[float]] = {True: [], False: []}
-    for case in range(study.sizes["case"]):
-        largest = int(np.nanargmax(study["layers"].values[case]))
-        one = study.isel(case=case, size=largest, smoothing=0)
-        found = over_realizations(one["difference"].sel(solid=solid).values, np.mean)
-        values[bool(one["friction"] > 0.0)].append(found.value)
-        what = f"largest difference to the {of} slab per its largest pressure, mean of packings"
-        name = f"{asked.material(one)}, {float(one['layers']):g} layers"
-        readings.append(Reading(name, asked.at_most(what, found, words, "nearly", "%")))
-    parts = [
-        f"{Quantity.range(these, math.nan).text('%')} {'with' if friction else 'without'} friction"
-        for friction, these in values.items()
-        if these
-    ]
-    return Finding(f"part of the largest pressure by which they differ: {', '.join(parts)}", readings)
+CLAIMS = Claims(__package__)
 
 
-@CLAIMS.measures("B4")
-def by_their_moduli(data: Data, words: Bounds) -> Finding:
-    return _described(data, words, "free", "elastic")
+def described(solid: str) -> Measure:
+    """In the highest packings of each case."""
+
+    def measure(data: Data, words: Words) -> list[Test]:
+        study, tests = data.get("moduli", "packings"), []
+        for case in range(study.sizes["case"]):
+            one = study.isel(case=case, size=int(np.nanargmax(study["layers"].values[case])), smoothing=0)
+            found = over_realizations(one["difference"].sel(solid=solid).values, np.mean)
+            what, name = (
+                f"largest difference to the {solid} slab",
+                f"{bounds.material(one)}, {float(one['layers']):g} layers",
+            )
+            tests.append(Test(what, found, bounds.at_most(words, "nearly"), name, "%"))
+        return tests
+
+    return measure
 
 
-@CLAIMS.measures("B5")
-def isotropic(data: Data, words: Bounds) -> Finding:
-    return _described(data, words, "isotropic", "isotropic")
+CLAIMS.measures("B4")(described("free"))
+CLAIMS.measures("B5")(described("isotropic"))

@@ -2,79 +2,58 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import xarray as xr
 
-from granular_response_paper.claims import asked
+from granular_response_paper.claims import bounds
 from granular_response_paper.claims.bootstrap import over_realizations
-from granular_response_paper.claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
-from granular_response_paper.claims.words import Bounds
+from granular_response_paper.claims.claim import Data, Quantity, Test
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
 
-GROUP = "network"
-CLAIMS = Claims(GROUP)
+CLAIMS = Claims(__package__)
+
 #: Contacts per disk at which forces follow from balance alone, in two dimensions.
 FRICTIONLESS, FRICTIONAL = 4.0, 3.0
 
 
+def _means(data: Data, name: str, state: str) -> Iterator[tuple[str, list[tuple[float, Quantity]]]]:
+    """By polydispersity: means over realizations by friction; frictions with fewer than three are left out."""
+    study: xr.DataArray = data.get("network", "statistics")[name].sel(state=state)
+    for delta in study["polydispersity"].values.tolist():
+        each = {mu: study.sel(polydispersity=delta, friction=mu).values for mu in study["friction"].values.tolist()}
+        known = {mu: values for mu, values in each.items() if np.isfinite(values).sum() >= 3}
+        yield f"δ = {delta:g}", [(mu, over_realizations(values, np.mean)) for mu, values in known.items()]
+
+
 @CLAIMS.measures("B11")
-def tail(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "statistics")
-    readings = [
-        Reading(
-            f"δ = {delta:g}, {'at rest' if state == 'rest' else 'under the load'}",
-            *(
-                asked.near(f"friction {mu:g}", quantity, words, "quite well")
-                for mu, quantity in _by_friction(study["tail_variation"].sel(polydispersity=delta, state=state))
-            ),
-        )
-        for state in study["state"].values.tolist()
-        for delta in study["polydispersity"].values.tolist()
+def tail(data: Data, words: Words) -> list[Test]:
+    return [
+        Test(f"coefficient of variation, friction {mu:g}", found, bounds.near(words, "quite well"), f"{delta}, {state}")
+        for state in ("rest", "loaded")
+        for delta, means in _means(data, "tail_variation", state)
+        for mu, found in means
     ]
-    found = [condition.found.value for reading in readings for condition in reading.conditions]
-    return Finding(
-        f"the coefficient of variation is {min(found):.2f} to {max(found):.2f}; 1 for an exponential", readings
-    )
 
 
 @CLAIMS.measures("B12")
-def coordination(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "statistics").sel(state="rest")
-    readings, numbers = [], []
-    for delta in study["polydispersity"].values.tolist():
-        each = _by_friction(study["coordination_number"].sel(polydispersity=delta))
-        (_, without), (largest, rough) = each[0], each[-1]
-        numbers.append(f"{without.value:.2f} to {rough.value:.2f} (δ = {delta:g})")
-        readings.append(
-            Reading(
-                f"δ = {delta:g}",
-                asked.near("friction 0", without, words, "nearly", FRICTIONLESS),
-                asked.near(f"friction {largest:g}", rough, words, "nearly", FRICTIONAL),
+def coordination(data: Data, words: Words) -> list[Test]:
+    tests = []
+    for delta, means in _means(data, "coordination_number", "rest"):
+        for (mu, found), isostatic in ((means[0], FRICTIONLESS), (means[-1], FRICTIONAL)):
+            tests.append(
+                Test(f"contacts per disk, friction {mu:g}", found, bounds.near(words, "nearly", isostatic), delta)
             )
-        )
-    return Finding(f"contacts per disk from no friction to the largest: {', '.join(numbers)}", readings)
+    return tests
 
 
 @CLAIMS.measures("B13")
-def isostaticity(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "statistics").sel(state="rest")
-    readings, found = [], []
-    for delta in study["polydispersity"].values.tolist():
-        conditions: list[Condition] = []
-        for mu, quantity in _by_friction(study["hyperstaticity"].sel(polydispersity=delta)):
-            if mu > 0.0:
-                conditions.append(asked.at_most(f"friction {mu:g}", quantity, words, "nearly", "%"))
-                found.append(quantity.value)
-        readings.append(Reading(f"δ = {delta:g}", *conditions))
-    return Finding(
-        f"with friction there are {min(found):.0%} to {max(found):.0%} more force components than equations", readings
-    )
-
-
-def _by_friction(values: xr.DataArray) -> list[tuple[float, Quantity]]:
-    """Means over realizations, by friction; frictions with fewer than three are left out."""
-    found = []
-    for mu in values["friction"].values.tolist():
-        each = values.sel(friction=mu).values
-        if np.isfinite(each).sum() >= 3:
-            found.append((mu, over_realizations(each, np.mean)))
-    return found
+def isostaticity(data: Data, words: Words) -> list[Test]:
+    return [
+        Test(f"components beyond equations, friction {mu:g}", found, bounds.at_most(words, "nearly"), delta, "%")
+        for delta, means in _means(data, "hyperstaticity", "rest")
+        for mu, found in means
+        if mu > 0.0
+    ]

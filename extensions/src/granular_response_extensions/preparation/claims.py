@@ -2,47 +2,43 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 from scipy.stats import spearmanr
 
-from granular_response_paper.claims import asked
-from granular_response_paper.claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
-from granular_response_paper.claims.words import Bounds
+from granular_response_paper.claims import bounds
+from granular_response_paper.claims.claim import Bound, Data, Quantity, Test
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
 
-GROUP = "preparation"
-CLAIMS = Claims(GROUP)
+CLAIMS = Claims(__package__)
+
 #: Fewest preparations that have a trend.
 FEWEST = 4
 EVENTS = {"linear_range": "end of the linear range", "first_opening": "first opening", "crossover": "two peaks"}
 
 
 @CLAIMS.measures("B18")
-def mobilized(data: Data, words: Bounds) -> Finding:
+def mobilized(data: Data, words: Words) -> list[Test]:
     """For each slab with :data:`FEWEST` preparations: a falling trend, and one force without mobilized contacts."""
-    study = data.get(GROUP, "mobilized")
+    study = data.get("preparation", "mobilized")
     study = study.isel(case=study["polydispersity"].values == 0.0)
     slabs = list(zip(study["wall_friction"].values.tolist(), study["friction"].values.tolist(), strict=True))
-    readings, trends, spreads = [], [], []
-    for event, text in EVENTS.items():
-        for margin in study["margin"].values.tolist():
-            conditions: list[Condition] = []
-            for slab in dict.fromkeys(slabs):
-                alike = study.isel(case=[one == slab for one in slabs]).sel(name=event, margin=margin)
-                part, force = alike["mobilized_part"].values, alike["force"].values
-                free = force[part == 0.0]
-                if np.isnan(force).any() or len(force) < FEWEST or np.ptp(part) == 0.0 or len(free) < 2:
-                    continue
-                trends.append(float(spearmanr(part, force).statistic))
-                spreads.append(float(free.max() / free.min()))
-                where = f"friction {slab[1]:g}{', rough walls' if slab[0] else ''}"
-                trend, none = f"rank correlation, {where}", f"largest over smallest force without them, {where}"
-                falling = Condition(trend, Quantity.exact(trends[-1]), most=words["nearly"] - 1.0, words=("nearly",))
-                conditions += [falling, asked.near(none, spreads[-1], words, "similar")]
-            if conditions:
-                readings.append(Reading(f"{text}, contacts within {margin:.0%} of the limit", *conditions))
-    CLAIMS.needs(readings, f"mobilized holds no slab with {FEWEST} preparations")
-    return Finding(
-        f"the rank correlation is {min(trends):.2f} to {max(trends):.2f}, -1 for a falling trend; without mobilized "
-        f"contacts the forces of one friction differ by a factor of up to {max(spreads):.3g}",
-        readings,
-    )
+    tests = []
+    for (event, text), margin in product(EVENTS.items(), study["margin"].values.tolist()):
+        for slab in dict.fromkeys(slabs):
+            alike = study.isel(case=[one == slab for one in slabs]).sel(name=event, margin=margin)
+            part, force = alike["mobilized_part"].values, alike["force"].values
+            free = force[part == 0.0]
+            if np.isnan(force).any() or len(force) < FEWEST or np.ptp(part) == 0.0 or len(free) < 2:
+                continue
+            case = f"{text}, contacts within {margin:.0%} of the limit"
+            where = f"friction {slab[1]:g}{', rough walls' if slab[0] else ''}"
+            trend, spread = (Quantity.exact(one) for one in (spearmanr(part, force).statistic, free.max() / free.min()))
+            falling = Bound(most=words["nearly"] - 1.0, word="nearly")
+            tests.append(Test(f"rank correlation, {where}", trend, falling, case))
+            same = bounds.near(words, "similar")
+            tests.append(Test(f"largest per smallest force without them, {where}", spread, same, case))
+    CLAIMS.needs(tests, f"mobilized holds no slab with {FEWEST} preparations")
+    return tests

@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from granular_response_paper.claims import asked
-from granular_response_paper.claims.claim import Claims, Condition, Data, Finding, Quantity
-from granular_response_paper.claims.words import Bounds
+from granular_response_paper.claims import bounds
+from granular_response_paper.claims.claim import Data, Quantity, Test
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
 
-GROUP = "tangent_moduli"
-CLAIMS = Claims(GROUP)
+CLAIMS = Claims(__package__)
 
 
 def _slabs(data: Data) -> dict[str, xr.Dataset]:
     """Slabs by friction, without steps that are not there."""
-    found = data.get(GROUP, "slabs")
+    found = data.get("tangent_moduli", "slabs")
     known = np.isfinite(found["force"].values)
     return {f"friction {float(mu):g}": found.isel(slab=k, step=known[k]) for k, mu in enumerate(found["friction"])}
 
@@ -25,8 +25,8 @@ def _crossover(slab: xr.Dataset) -> Quantity:
 
 
 @CLAIMS.measures("B27")
-def reach(data: Data, words: Bounds) -> Finding:
-    found = {}
+def reach(data: Data, words: Words) -> list[Test]:
+    tests = []
     for name, slab in _slabs(data).items():
         crossover, reached = _crossover(slab), slab["reach"].values.reshape(slab.sizes["step"], -1) >= 1.0
         if crossover.happens and reached[-1].all():
@@ -34,39 +34,33 @@ def reach(data: Data, words: Bounds) -> Finding:
             first = reached.argmax(axis=0)
             CLAIMS.needs(bool((first > 0).all()), f"{name}: the region of r < 0 reaches the floor at the first force")
             ends = np.concatenate([force[first - 1], force[first]])
-            found[name] = Quantity(float(ends.mean()), float(ends.min()), float(ends.max()), "range").per(crossover)
-    CLAIMS.needs(bool(found), "slabs holds no region of r < 0 that reaches the floor beside a crossover")
-    return asked.each(
-        "per force of the crossover: ",
-        found,
-        lambda one: asked.near("force at which r < 0 reaches the floor, per crossover", one, words, "about"),
-    )
+            found = Quantity.range(ends, float(ends.mean())).per(crossover)
+            tests.append(Test("force per crossover force", found, bounds.near(words, "about"), name))
+    CLAIMS.needs(tests, "slabs holds no region of r < 0 that reaches the floor beside a crossover")
+    return tests
 
 
 @CLAIMS.measures("B28")
-def incrementally_elastic(data: Data, words: Bounds) -> Finding:
-    found = {}
+def incrementally_elastic(data: Data, words: Words) -> list[Test]:
+    tests = []
     for name, slab in _slabs(data).items():
-        crossover = _crossover(slab)
-        below = slab["force"].values <= crossover.low
+        crossover, force = _crossover(slab), slab["force"].values
+        below = force <= crossover.low
         parts = {"up to the crossover": below, "beyond it": ~below} if crossover.happens else {"one peak": below}
         for part, inside in parts.items():
-            if inside.any():
-                largest = slab["difference"].values[inside].max(axis=0)
-                found[f"{name}, {part}"] = Quantity.range(largest.ravel(), float("nan"))
-    return asked.each(
-        "the largest difference per largest response is ",
-        found,
-        lambda one: asked.at_most("difference per largest response", one, words, "nearly", "%"),
-        unit="%",
-    )
+            for k, width in enumerate(slab["width"].values.tolist()) if inside.any() else ():
+                largest = slab["difference"].isel(width=k).values[inside].max(axis=0)
+                case = f"{name}, {part}, averages over {width:g} R"
+                found = Quantity.range(largest.ravel(), float("nan"))
+                tests.append(Test("difference per largest response", found, bounds.at_most(words, "nearly"), case, "%"))
+    return sorted(tests, key=lambda test: not test.case.startswith("friction 0.2, up"))
 
 
 @CLAIMS.measures("B29")
-def peaks(data: Data, words: Bounds) -> Finding:
-    found = {}
+def peaks(data: Data, words: Words) -> list[Test]:
+    tests = []
     for name, slab in _slabs(data).items():
         wrong = (slab["predicted_two_peaks"] != slab["two_peaks"]).sum("step")
-        found[f"{name}, {slab.sizes['step']} forces"] = Quantity.range(wrong.values.ravel())
-    what = "forces with another number of peaks"
-    return asked.each(f"{what}: ", found, lambda one: Condition(what, one, most=0.0))
+        found, case = Quantity.range(wrong.values.ravel()), f"{name}, {slab.sizes['step']} forces"
+        tests.append(Test("forces with another number of peaks", found, bounds.NONE, case))
+    return tests

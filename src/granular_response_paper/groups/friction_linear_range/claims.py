@@ -1,107 +1,24 @@
-"""Claims F1 to F3, F11, F12, R1 to R12 but R5a, A1, A2, K4: ordered slabs with friction, growing forces (Sec. V)."""
+"""Claims of Secs. I and V: ordered slabs with friction under growing forces."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping, Sequence
 from itertools import product
 
 import numpy as np
 import xarray as xr
 
-from granular_response.state import SLIDING
-
-from ...claims import asked, preparations
-from ...claims.claim import Claims, Condition, Data, Finding, Measure, Quantity, Reading, at
-from ...claims.preparations import OWN
-from ...claims.words import Bounds
+from granular_response.state import OPEN, SLIDING, FloatArray
+from granular_response_paper.claims import bounds, preparations
+from granular_response_paper.claims.claim import Bound, Data, Quantity, Test, at
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
 
 GROUP = "friction_linear_range"
-BREAKING = "symmetry_breaking"
-CLAIMS = Claims(GROUP)
+CLAIMS = Claims(__package__)
 
-
-def _events(data: Data, name: str, *frictions: float) -> dict[float, Quantity]:
-    """The brackets of an event by friction."""
-    return {mu: data.event(GROUP, name, mu) for mu in frictions}
-
-
-def at_force(
-    event: str, friction: float, paper: float, *, what: str, text: str, first_sampled: bool = False
-) -> Measure:
-    """The paper's number for an event: "about" it, or the first of its sampled forces at or above it."""
-
-    def measure(data: Data, words: Bounds) -> Finding:
-        def wanted(end: Quantity) -> list[Condition]:
-            if first_sampled:
-                return [asked.sampled(what, end, paper, words)]
-            return [asked.near(what, end, words, "about", paper, "mg")]
-
-        own = "the first sampled force at or above it" if first_sampled else OWN
-        found = _events(data, event, friction)
-        readings = preparations.readings(data, event, found, wanted, own)
-        if event == "crossover":
-            readings.insert(1, Reading(asked.VISIBLE, *wanted(_visible_from(data, friction, words))))
-        return Finding(f"{text} {found[friction].text('mg')}", readings)
-
-    return measure
-
-
-for _id, _friction, _force in (("F1", 0.0, 0.75), ("F2", 0.2, 4.0), ("F3", 1.0, 6.0)):
-    CLAIMS.measures(_id)(
-        at_force("first_opening", _friction, _force, what="first opening", text="opens at", first_sampled=True)
-    )
-
-
-def _visible_from(data: Data, friction: float, words: Bounds) -> Quantity:
-    return asked.dips_from(_curve(data, friction, "central_dip"), "force", words)
-
-
-#: Frictions of the paper (Fig. 6, Sec. V.B).
-OWN_FRICTIONS = (0.0, 0.2, 1.0)
-#: Ends of the linear range that other preparations have too, by event.
-_EVENTS = {"response 1 % off": "linear_range", "first opening": "first_opening"}
-
-
-def _ranges(data: Data, frictions: list[float]) -> dict[str, dict[float, Quantity]]:
-    """The ends of the linear range at each friction, by what counts as its end."""
-    curves = {mu: _curve(data, mu, "response_at_centre") for mu in frictions}
-    further = {
-        f"response {part:.0%} off".replace("%", " %"): {
-            mu: asked.linear_until(curve, part) for mu, curve in curves.items()
-        }
-        for part in (0.02, 0.05)
-    }
-    one, opening = ({name: _events(data, event, *frictions)} for name, event in _EVENTS.items())
-    return one | further | opening
-
-
-def _by_end(
-    data: Data, found: dict[str, dict[float, Quantity]], wanted: Callable[..., list[Condition]]
-) -> list[Reading]:
-    """What is asked of the ends at all frictions: each as the paper prepares the slab, then in the other ways."""
-    others = []
-    for name, event in _EVENTS.items():
-        others += preparations.readings(data, event, found[name], wanted, named=f"{name}, ")[1:]
-    return [Reading(name, *wanted(*ends.values())) for name, ends in found.items()] + others
-
-
-@CLAIMS.measures("R1")
-def linear_range(data: Data, words: Bounds) -> Finding:
-    def wanted(without: Quantity, *ends: Quantity) -> list[Condition]:
-        least, most = (10.0 ** (1.0 + sign * words["almost"]) for sign in (-1.0, 1.0))
-        return [
-            Condition(f"times larger at friction {mu:g}", end.per(without), least, most, ("almost",))
-            for mu, end in zip((0.2, 1.0), ends, strict=True)
-        ]
-
-    found = _ranges(data, list(OWN_FRICTIONS))
-    ratios = {
-        name: " and ".join(f"{ends[mu].per(ends[0.0]).value:.3g}" for mu in (0.2, 1.0)) for name, ends in found.items()
-    }
-    return Finding(
-        "at friction 0.2 and 1: " + ", ".join(f"{both} times ({name})" for name, both in ratios.items()),
-        _by_end(data, found, wanted),
-    )
+#: Frictions of the paper (Fig. 6, Sec. V.B), and how far off a response may no longer be linear.
+FRICTIONS, TOLERANCES = (0.0, 0.2, 1.0), (0.01, 0.02, 0.05)
 
 
 def _curve(data: Data, friction: float, name: str) -> xr.Dataset:
@@ -110,61 +27,131 @@ def _curve(data: Data, friction: float, name: str) -> xr.Dataset:
     return curve.isel(force=np.isfinite(curve[name].values))
 
 
-def _up_to_50(data: Data, name: str) -> xr.Dataset:
-    """The curve at friction 1."""
-    curve = _curve(data, 1.0, name)
-    force = curve["force"].values
-    CLAIMS.needs(force.max(initial=0.0) >= 50.0, "response does not reach 50 mg at friction 1")
-    return curve.isel(force=force <= 50.0)
+def _linear(data: Data, friction: float, tolerance: float) -> Quantity:
+    """The end of the linear range: located to 1 %, else between two stored forces."""
+    if tolerance == TOLERANCES[0]:
+        return data.event(GROUP, "linear_range", friction)
+    return bounds.linear_until(_curve(data, friction, "response_at_centre"), tolerance)
 
 
-@CLAIMS.measures("R2a")
-def single_peak(data: Data, words: Bounds) -> Finding:
-    curves = {OWN: _up_to_50(data, "double_peaked"), **preparations.responses(data, 1.0)}
-    readings = []
-    for way, curve in curves.items():
-        double = curve["double_peaked"].values[curve["force"].values <= 50.0] > 0.0
-        none = asked.none_of("forces up to 50 mg with two peaks", int(double.sum()))
-        readings.append(Reading(way, none, change="" if way == OWN else preparations.CHANGE))
-    size, two = curves[OWN].sizes["force"], readings[0].conditions[0].found.value
-    return Finding(
-        f"one peak at {size - two:.0f} of {size} forces up to 50 mg",
-        [*readings, *preparations.one_peak_at_15(data, 1.0, words)],
-    )
+@CLAIMS.measures("R1")
+def linear_range(data: Data, words: Words) -> list[Test]:
+    least, most = (10.0 ** (1.0 + sign * words["almost"]) for sign in (-1.0, 1.0))
+
+    def tests(without: Quantity, *ends: Quantity, case: str = "") -> list[Test]:
+        return [
+            Test(f"times longer at friction {mu:g}", end.per(without), Bound(least, most, "almost"), case)
+            for mu, end in zip(FRICTIONS[1:], ends, strict=True)
+        ]
+
+    own = {part: {mu: _linear(data, mu, part) for mu in FRICTIONS} for part in TOLERANCES}
+    found = [one for part, ends in own.items() for one in tests(*ends.values(), case=f"response {part:.0%} off")]
+    return found + preparations.tested(data, "linear_range", FRICTIONS, own[TOLERANCES[0]], tests)
 
 
-@CLAIMS.measures("R2b")
-def sharper(data: Data, words: Bounds) -> Finding:
-    curve = _up_to_50(data, "half_maximum_width")
-    width, height = curve["half_maximum_width"].values, curve["peak_height"].values
-    return asked.one_reading(
-        f"from the smallest force to 50 mg the full width falls from {width[0]:.1f} to {width[-1]:.1f} R, the height "
-        f"grows from {height[0]:.4f} to {height[-1]:.4f}",
-        OWN,
-        asked.lower("width at 50 mg per that at the smallest force", width[-1] / width[0], words, "visible"),
-    )
+@CLAIMS.measures("A1")
+def range_grows(data: Data, words: Words) -> list[Test]:
+    every = np.unique(data.get(GROUP, "response")["friction"].values).tolist()
+    tests = []
+    for name, frictions in (("frictions 0, 0.2 and 1", list(FRICTIONS)), ("all frictions", every)):
+        for part in TOLERANCES:
+            ends = [_linear(data, mu, part) for mu in frictions]
+            tests.append(bounds.rises("range", ends, f"response {part:.0%} off, {name}"))
+        ends = [data.event(GROUP, "first_opening", mu) for mu in frictions]
+        tests.append(bounds.rises("range", ends, f"first opening, {name}"))
+    for event in ("first_opening", "linear_range"):
+        own = {mu: data.event(GROUP, event, mu) for mu in FRICTIONS}
+        tests += preparations.tested(data, event, FRICTIONS, own, lambda *ends: [bounds.rises("range", ends)])
+    return tests
 
 
-CLAIMS.measures("R3a")(at_force("crossover", 0.2, 20.0, what="crossover", text="two peaks from"))
-CLAIMS.measures("R3b")(
-    at_force("reaches_floor", 0.2, 20.0, what="open region at the floor", text="open region at the floor from")
-)
-CLAIMS.measures("R4a")(at_force("third_peak", 0.2, 40.0, what="third peak", text="from", first_sampled=True))
+@CLAIMS.measures("A2")
+def smaller_anisotropy(data: Data, words: Words) -> list[Test]:
+    axis = data.get(GROUP, "friction_axis").sortby("friction")
+    largest = float(data.get(GROUP, "response")["friction"].max())
+    elastic = _curve(data, largest, "response_at_centre")["floor_response"].transpose("force", "floor_disk").values[0]
+    response = axis["floor_response"].transpose("friction", "floor_disk").values
+    off = np.sqrt(((response - elastic) ** 2).sum(axis=1) / (elastic**2).sum())
+    tests = []
+    for case, size in (("dip at x = 0", axis["central_dip"].values), ("difference from the elastic response", off)):
+        growth, fall = Quantity.exact(np.diff(size).max()), Quantity.exact(1.0 - size[-1] / size[0])
+        tests.append(Test("largest growth with friction", growth, bounds.at_most(words, "visible"), case, "%"))
+        tests.append(Test("fall over all frictions", fall, bounds.at_least(words, "marked"), case, "%"))
+    return tests
 
 
-@CLAIMS.measures("R4b")
-def third_peak_small(data: Data, words: Bounds) -> Finding:
-    curve = _curve(data, 0.2, "third_peak_prominence")
-    force, size = curve["force"].values, curve["third_peak_prominence"].values
-    beyond = np.flatnonzero((force >= 40.0) & (size > 0.0))
-    return Finding(
-        f"prominence {size[beyond[0]]:.3f} of the largest response at {force[beyond[0]]:g} mg, up to "
-        f"{size[beyond].max():.3f} at {force[beyond][size[beyond].argmax()]:g} mg",
-        [
-            Reading(f"{force[k]:g} mg", asked.at_most("prominence per largest response", size[k], words, "small", "%"))
-            for k in beyond
-        ],
-    )
+@CLAIMS.measures("F11")
+def elastic_without_friction(data: Data, words: Words) -> list[Test]:
+    curve = _curve(data, 0.0, "response_at_centre")
+    until = data.event(GROUP, "first_opening", 0.0).low
+    before = curve["response_at_centre"].values[curve["force"].values <= until]
+    CLAIMS.needs(before.size > 1, "response holds too few forces before the first opening")
+    change = Quantity.exact(np.ptp(before) / before[0])
+    return [Test("change of the response before a contact opens", change, bounds.at_most(words, "visible"), unit="%")]
+
+
+def _slides(states: xr.Dataset, force: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Which contacts of disks slide under a force; where contacts that touch are, from the load; and if horizontal."""
+    one = at(states.assign_coords(force=states["force"]), force=force)
+    position, first, second = (one[name].values for name in ("position", "contact_disk", "contact_partner"))
+    touching = one["contact_status"].values != OPEN
+    away = 0.5 * (position[first] + position[second]) - position[int(one["loaded_disk"])]
+    level = np.abs(position[first, 1] - position[second, 1]) < 0.5 * np.sqrt(3.0)
+    return (one["contact_status"].values == SLIDING)[touching], away[touching], level[touching]
+
+
+@CLAIMS.measures("I1")
+def far_from_the_load(data: Data, words: Words) -> list[Test]:
+    tests = []
+    for force in (5.0, 15.0):
+        slides, away, _ = _slides(data.get(GROUP, "states_mu_0.2"), force)
+        far = np.hypot(*away.T) > 20.0
+        CLAIMS.needs(far.any(), "states_mu_0.2 holds no contact farther than 20 radii from the load")
+        parts = {
+            "per contact there": slides[far].mean(),
+            "per sliding contact": far[slides].sum() / max(slides.sum(), 1),
+        }
+        for per, part in parts.items():
+            none, case = bounds.at_most(words, "few per cent"), f"{per}, {force:g} mg"
+            tests.append(Test("sliding contacts far from the load", Quantity.exact(part), none, case, "%"))
+    return tests
+
+
+@CLAIMS.measures("R12")
+def sliding_near(data: Data, words: Words) -> list[Test]:
+    tests = []
+    for radius, force in product((6.0, 10.0, 15.0), (3.0, 5.0, 10.0, 15.0)):
+        slides, away, _ = _slides(data.get(GROUP, "states_mu_0.2"), force)
+        CLAIMS.needs(slides.any(), f"states_mu_0.2 holds no sliding contact under {force:g} mg")
+        part = Quantity.exact((np.hypot(*away[slides].T) < radius).mean())
+        case = f"within {radius:g} R at {force:g} mg"
+        tests.append(Test("part of the sliding contacts", part, bounds.at_least(words, "marked"), case, "%"))
+    return tests
+
+
+@CLAIMS.measures("R13")
+def spreads_downward(data: Data, words: Words) -> list[Test]:
+    depths = []
+    for force in (2.0, 5.0, 10.0, 15.0):
+        slides, away, _ = _slides(data.get(GROUP, "states_mu_0.2"), force)
+        depths.append(Quantity.exact(-np.quantile(away[slides, 1], 0.1)))
+    return [bounds.rises("depth", depths)]
+
+
+@CLAIMS.measures("R4c")
+def reorganized(data: Data, words: Words) -> list[Test]:
+    """In the region that has opened contacts: below the load, as far to each side as it is deep there."""
+    parts = []
+    for force in (20.0, 30.0):
+        slides, away, level = _slides(data.get(GROUP, "states_mu_0.2"), force)
+        below = np.abs(away[:, 0]) < -away[:, 1] / np.sqrt(3.0)
+        CLAIMS.needs((slides & below).any(), f"states_mu_0.2 holds no sliding contact below the load at {force:g} mg")
+        parts.append(Quantity.exact(level[slides & below].mean()))
+    before, after = parts
+    return [
+        Test("horizontal part of the sliding contacts at 20 mg", before, Bound(0.0), unit="%"),
+        Test("that at 30 mg per that at 20 mg", after.per(before), bounds.lower(words, "nearly"), unit="%"),
+    ]
 
 
 def _jump(data: Data) -> tuple[xr.Dataset, int]:
@@ -175,262 +162,152 @@ def _jump(data: Data) -> tuple[xr.Dataset, int]:
     return runs, int(lost[0])
 
 
-#: How the force of those runs grows.
-RAMP = "ramp of 20 sqrt(R/g)"
-
-
 @CLAIMS.measures("R5b")
-def sharp(data: Data, words: Bounds) -> Finding:
+def sharp(data: Data, words: Words) -> list[Test]:
     runs, first = _jump(data)
-    asymmetry, force = runs["asymmetry"].values, runs["force"].values
-    step = float(asymmetry[first] - asymmetry[first - 1])
-    return asked.one_reading(
-        f"asymmetry from {asymmetry[first - 1]:.1e} at {force[first - 1]:g} mg to {asymmetry[first]:.2f} at "
-        f"{force[first]:g} mg",
-        RAMP,
-        asked.at_least("change between two forces, per largest response", step, words, "gradual"),
-    )
+    step = Quantity.exact(np.diff(runs["asymmetry"].values)[first - 1])
+    return [Test("change between two forces, per largest response", step, bounds.at_least(words, "gradual"))]
 
 
 @CLAIMS.measures("R6a")
-def sliding_drops(data: Data, words: Bounds) -> Finding:
+def sliding_drops(data: Data, words: Words) -> list[Test]:
     runs, first = _jump(data)
-    sliding, margins = runs["mobilised_contacts"].transpose("force", "margin").values, runs["margin"].values
-    readings, texts = [], []
-    for margin, before, after in zip(margins.tolist(), sliding[first - 1], sliding[first], strict=True):
-        texts.append(f"{before:.0f} and {after:.0f} (within {margin:.0%})")
-        if before > 0:
-            fewer = asked.lower("sliding contacts after per before", after / before, words, "marked")
-            readings.append(Reading(f"within {margin:.0%} of the Coulomb limit", fewer))
-    return Finding("contacts near the Coulomb limit before and after: " + ", ".join(texts), readings)
+    sliding = runs["mobilised_contacts"].transpose("force", "margin").values
+    return [
+        Test(
+            "after per before",
+            Quantity.exact(after / before),
+            bounds.lower(words, "marked"),
+            f"within {margin:.0%}",
+            "%",
+        )
+        for margin, before, after in zip(runs["margin"].values, sliding[first - 1], sliding[first], strict=True)
+        if before > 0
+    ]
 
 
 @CLAIMS.measures("R6b")
-def network_changes(data: Data, words: Bounds) -> Finding:
+def network_asymmetric(data: Data, words: Words) -> list[Test]:
     runs, first = _jump(data)
     network = runs["network_asymmetry"].values
-    after = Quantity.exact(network[first:].min())
-    return asked.one_reading(
-        f"contacts without a mirror image: {network[first - 1]:.1%} before, {network[first]:.1%} after",
-        RAMP,
-        asked.none_of("contacts without a mirror image before", network[first - 1]),
-        Condition("smallest part without a mirror image after", after, 0.0, strict=True),
+    before, after = Quantity.exact(network[first - 1]), Quantity.exact(network[first:].min())
+    what = "contacts without a mirror image"
+    return [
+        Test(f"{what} before", before, bounds.NONE, unit="%"),
+        Test(f"{what} after, smallest part", after, Bound(0.0, strict=True), unit="%"),
+    ]
+
+
+@CLAIMS.measures("R6c")
+def network_changes(data: Data, words: Words) -> list[Test]:
+    runs, first = _jump(data)
+    states = data.get(GROUP, "large_force_states")
+    states = states.assign_coords(force=states["force"])
+    before, after = (
+        at(states, force=float(runs["force"][k]))["contact_status"].values != OPEN for k in (first - 1, first)
     )
+    part = Quantity.exact((before != after).sum() / before.sum())
+    return [Test("contacts that change, per contacts before", part, bounds.at_least(words, "marked"), unit="%")]
+
+
+@CLAIMS.measures("R6d")
+def by_sliding(data: Data, words: Words) -> list[Test]:
+    states = data.get(GROUP, "states_mu_1")
+    force, status = states["force"].values, states["contact_status"].values
+    rest, last = status[0], status[np.flatnonzero(force <= 90.0)[-1]]
+    opened = ((rest != OPEN) & (last == OPEN)).sum()
+    CLAIMS.needs(opened > 0, "states_mu_1 holds no opened contact")
+    ratio = Quantity.exact((last == SLIDING).sum() / opened)
+    return [Test("sliding contacts per opened one", ratio, Bound(1.0, strict=True))]
 
 
 @CLAIMS.measures("R7")
-def mirror_images(data: Data, words: Bounds) -> Finding:
+def mirror_images(data: Data, words: Words) -> list[Test]:
     runs, first = _jump(data)
     after = runs.isel(force=slice(first, None))
-    response, force = after["floor_response"].values, after["force"].values
-    sign = after["asymmetry_sign"].values
+    response, force, sign = (after[name].values for name in ("floor_response", "force", "asymmetry_sign"))
     # the paper's pair lies between 91 and 95 mg
-    pairs = [
-        (float(np.abs(response[a] - response[b][::-1]).max() / response[a].max()), force[a], force[b])
-        for a in range(len(force))
-        for b in range(a + 1, len(force))
-        if sign[a] * sign[b] < 0 and force[b] - force[a] <= 4.0
+    apart = [
+        float(np.abs(response[a] - response[b][::-1]).max() / response[a].max())
+        for a, b in product(range(len(force)), repeat=2)
+        if sign[a] * sign[b] < 0 and 0.0 < force[b] - force[a] <= 4.0
     ]
-    best = min(pairs, default=(1.0, float("nan"), float("nan")))
-    turned = ""
-    if BREAKING in data.groups:
-        copies = data.get(BREAKING, "copies")["asymmetry_sign"].values
-        turned = (
-            f"; copies of the packing that differ by rounding: {(copies > 0).sum()} to the right, "
-            f"{(copies < 0).sum()} to the left"
+    best = Quantity.exact(min(apart, default=1.0))
+    return [Test("difference of one response and the mirrored other", best, bounds.at_most(words, "holds"), unit="%")]
+
+
+@CLAIMS.measures("R7b")
+def similar_beyond(data: Data, words: Words) -> list[Test]:
+    runs, first = _jump(data)
+    size, force = runs["asymmetry"].values, runs["force"].values
+    far = force >= 150.0
+    CLAIMS.needs(far.any(), "large_forces ends before 150 mg")
+    return [
+        Test(
+            "asymmetry per that just beyond",
+            Quantity.exact(one / size[first]),
+            bounds.at_least(words, "similar"),
+            f"{f:g} mg",
+            "%",
         )
-    seen = f"{best[1]:g} and {best[2]:g} mg, difference {best[0]:.1%}" if pairs else "no pair of opposite sign"
-    what = "difference of one response and the mirrored other, per largest response"
-    return asked.one_reading(f"{seen}{turned}", RAMP, asked.at_most(what, best[0], words, "holds", "%"))
+        for f, one in zip(force[far][[0, -1]], size[far][[0, -1]], strict=True)
+    ]
+
+
+def _ratio(event: str, over: float, under: float, bound: Bound, data: Data) -> list[Test]:
+    """Of an event at two frictions, in both geometries and in other preparations."""
+    what, tests = f"force at friction {over:g} per that at {under:g}", []
+    for case, table in (("rows of 61 and 60", "events"), ("rows of 60", "events_equal_rows")):
+        found: Mapping[float, Quantity] = {mu: data.event(GROUP, event, mu, table) for mu in (over, under)}
+        tests.append(Test(what, found[over].per(found[under]), bound, case))
+        if table == "events":
+            own = found
+    return tests + preparations.tested(
+        data, event, (over, under), own, lambda one, other: [Test(what, one.per(other), bound)]
+    )
 
 
 @CLAIMS.measures("R8a")
-def floor_earlier(data: Data, words: Bounds) -> Finding:
-    event, what = "reaches_floor", "force at friction 1 per that at 0.2"
-    found = _events(data, event, 1.0, 0.2)
-    return Finding(
-        f"at the floor from {found[1.0].text('mg')} (friction 1) and {found[0.2].text('mg')} (friction 0.2)",
-        preparations.readings(
-            data, event, found, lambda one, other: [Condition(what, one.per(other), most=1.0, strict=True)]
-        ),
-    )
-
-
-@CLAIMS.measures("R8b")
-def one_peak_beyond(data: Data, words: Bounds) -> Finding:
-    floor = data.event(GROUP, "reaches_floor", 1.0)
-    curve = _curve(data, 1.0, "double_peaked")
-    beyond = curve["force"].values >= floor.high
-    CLAIMS.needs(beyond.any(), "response ends before the open region reaches the floor")
-    double = int(np.count_nonzero(curve["double_peaked"].values[beyond]))
-    return asked.one_reading(
-        f"two peaks at {double} of {beyond.sum()} forces beyond {floor.high:.4g} mg",
-        OWN,
-        asked.none_of("forces beyond it with two peaks", double),
-    )
-
-
-@CLAIMS.measures("R9")
-def crossover_rises(data: Data, words: Bounds) -> Finding:
-    found, visible = {}, []
-    for mu in np.sort(data.get(GROUP, "response")["friction"].values).tolist():
-        curve = _curve(data, mu, "double_peaked")
-        found[mu] = asked.first(curve, "force", curve["double_peaked"].values > 0.0)
-        visible.append(_visible_from(data, mu, words))
-    what = "crossover force"
-    readings = preparations.readings(data, "crossover", found, lambda *ends: [asked.rises(what, ends)])
-    readings.insert(1, Reading(asked.VISIBLE, asked.rises(what, visible)))
-    texts = asked.listed({f"{mu:g}": end for mu, end in found.items()}, unit="mg")
-    return Finding("two peaks from, by friction: " + texts, readings)
-
-
-@CLAIMS.measures("R10")
-def smaller_region(data: Data, words: Bounds) -> Finding:
-    without, full = (_curve(data, mu, "teardrop_depth") for mu in (0.0, 0.2))
-    shared = [f for f in without["force"].values if f in full["force"].values]
-    without, full = without.sel(force=shared), full.sel(force=shared)
-    open_ = (without["teardrop_depth"].values > 2.0) & (full["reaches_floor"].values == 0)
-    ratio = full["opened_contacts"].values[open_] / without["opened_contacts"].values[open_]
-    found = Quantity.range(ratio, float(np.median(ratio)))
-    return asked.one_reading(
-        f"opened contacts at friction 0.2 per those without, until the region reaches the floor: {ratio.min():.2f} to "
-        f"{ratio.max():.2f}",
-        OWN,
-        asked.lower("opened contacts per those without friction, same force", found, words, "marked"),
-    )
+def floor_earlier(data: Data, words: Words) -> list[Test]:
+    return _ratio("reaches_floor", 1.0, 0.2, Bound(most=1.0, strict=True), data)
 
 
 @CLAIMS.measures("R11")
-def floor_later(data: Data, words: Bounds) -> Finding:
-    event, what = "reaches_floor", "force with friction per without"
-    found = _events(data, event, 0.0, 0.2)
-    return Finding(
-        f"at the floor from {found[0.2].text('mg')} (friction 0.2) and {found[0.0].text('mg')} (without)",
-        preparations.readings(
-            data, event, found, lambda early, late: [asked.higher(what, late.per(early), words, "marked")]
-        ),
+def floor_later(data: Data, words: Words) -> list[Test]:
+    return _ratio("reaches_floor", 0.2, 0.0, bounds.higher(words, "marked"), data)
+
+
+@CLAIMS.measures("R9")
+def crossover_rises(data: Data, words: Words) -> list[Test]:
+    frictions: Sequence[float] = np.sort(data.get(GROUP, "response")["friction"].values).tolist()
+    found = {}
+    for mu in frictions:
+        curve = _curve(data, mu, "double_peaked")
+        found[mu] = bounds.first(curve, "force", curve["double_peaked"].values > 0.0)
+    own = [bounds.rises("crossover force", list(found.values()))]
+    return own + preparations.tested(
+        data, "crossover", frictions, found, lambda *ends: [bounds.rises("crossover force", ends)]
     )
 
 
-@CLAIMS.measures("F11")
-def elastic_without_friction(data: Data, words: Bounds) -> Finding:
-    event = data.event(GROUP, "first_opening", 0.0)
-    curve = _curve(data, 0.0, "response_at_centre")
-    before = curve["response_at_centre"].values[curve["force"].values <= event.low]
-    CLAIMS.needs(before.size > 1, "response holds too few forces before the first opening")
-    change = float(np.ptp(before) / before[0])
-    return asked.one_reading(
-        f"the response at x = 0 changes by {change:.2%} up to the first opening at {event.text('mg')}",
-        OWN,
-        asked.at_most("change of the response before a contact opens", change, words, "visible", "%"),
+@CLAIMS.measures("R14")
+def not_identical(data: Data, words: Words) -> list[Test]:
+    one, other = (
+        at(_curve(data, mu, "central_dip"), force=force)["floor_response"].values
+        for mu, force in ((0.2, 25.0), (0.0, 4.0))
     )
+    apart = Quantity.exact(np.abs(one - other).max() / max(one.max(), other.max()))
+    return [Test("difference per largest response", apart, bounds.at_least(words, "visible"), unit="%")]
 
 
-@CLAIMS.measures("F12")
-def region_and_friction(data: Data, words: Bounds) -> Finding:
-    """Where the region has not reached the floor, and at the force of Fig. 12."""
-    sizes = {"contacts": "opened_contacts", "depth": "teardrop_depth", "width": "teardrop_width"}
-    axis, response = (data.get(GROUP, name).sortby("friction") for name in ("friction_axis", "response"))
-    inside = (response["opened_contacts"].values[0] > 0.0) & (response["reaches_floor"].values[0] == 0.0)
-    CLAIMS.needs(inside.any(), "response holds no open region without friction that has not reached the floor")
-    last = float(response["force"].values[inside].max())
-    studies = {f"up to {last:g} mg": response.isel(force=inside), "15 mg": axis}
-    readings = []
-    for (force, study), (what, name) in product(studies.items(), sizes.items()):
-        size = study[name].transpose("friction", ...).values
-        CLAIMS.needs((size[0] > 0.0).all(), "friction_axis holds no open region without friction")
-        growth = float((np.diff(size, axis=0) / size[0]).max())
-        condition = asked.at_most("largest growth with friction, per size without", growth, words, "visible", "%")
-        readings.append(Reading(f"{what}, {force}", condition))
-    return Finding(
-        "opened contacts at 15 mg: " + asked.listed(asked.by_friction(axis, "opened_contacts"), ".0f"), readings
-    )
-
-
-#: "Near the point of application": within this distance (mean radii).
-NEAR = 6.0
-
-
-@CLAIMS.measures("R12")
-def sliding_near(data: Data, words: Bounds) -> Finding:
-    """At forces below that of the paper's crossover."""
-    states = data.get(GROUP, "states_mu_0.2")
-    first, second = states["contact_disk"].values, states["contact_partner"].values
-    near = {}
-    for k, force in enumerate(states["force"].values.tolist()):
-        position = states["position"].values[k]
-        slides = states["contact_status"].values[k] == SLIDING
-        away = 0.5 * (position[first] + position[second])[slides] - position[int(states["loaded_disk"])]
-        if 0.0 < force < 20.0 and away.size:
-            near[f"{force:g} mg"] = float((np.hypot(*away.T) < NEAR).mean())
-    what = f"sliding contacts within {NEAR:g} radii of the load"
-    return asked.each(f"{what}: ", near, lambda part: asked.at_least(what, part, words, "marked", "%"), "%")
-
-
-@CLAIMS.measures("A1")
-def range_grows(data: Data, words: Bounds) -> Finding:
-    frictions = np.unique(data.get(GROUP, "response")["friction"].values).tolist()
-    found = _ranges(data, frictions)
-    texts = {name: ", ".join(f"{end.value:.3g}" for end in ends.values()) for name, ends in found.items()}
-    own = {name: asked.rises("range", [ends[mu] for mu in OWN_FRICTIONS]) for name, ends in found.items()}
-    return Finding(
-        f"at friction {', '.join(f'{mu:g}' for mu in frictions)}: "
-        + "; ".join(f"{name} at {ends} mg" for name, ends in texts.items()),
-        _by_end(data, found, lambda *ends: [asked.rises("range", ends)])
-        + [Reading(f"{name}, the paper's three frictions", rises) for name, rises in own.items()],
-    )
-
-
-@CLAIMS.measures("A2")
-def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
-    axis = data.get(GROUP, "friction_axis").sortby("friction")
-    dip = axis["central_dip"].values
-    largest = float(data.get(GROUP, "response")["friction"].max())
-    elastic = _curve(data, largest, "response_at_centre")
-    small = elastic["floor_response"].transpose("force", "floor_disk").values[0]
-    response = axis["floor_response"].transpose("friction", "floor_disk").values
-    off = np.sqrt(((response - small) ** 2).sum(axis=1) / (small**2).sum())
-    apart = dict(zip((f"{mu:g}" for mu in axis["friction"].values), off, strict=True))
-    return Finding(
-        f"dip at x = 0 at 15 mg from {dip[0]:.0%} without friction to {dip[-1]:.1%} at friction "
-        f"{float(axis['friction'][-1]):g}; rms difference from the elastic response " + asked.listed(apart, ".1%"),
-        [
-            Reading(
-                "dip at x = 0",
-                asked.at_most("largest growth of the dip with friction", np.diff(dip).max(), words, "visible", "%"),
-                asked.at_least("fall of the dip over all", dip[0] - dip[-1], words, "marked"),
-            ),
-            Reading(
-                "difference from the elastic response",
-                asked.at_most(
-                    "largest growth of the difference with friction", np.diff(off).max(), words, "visible", "%"
-                ),
-                asked.lower("the difference with the largest friction per without", off[-1] / off[0], words, "marked"),
-            ),
-        ],
-    )
-
-
-@CLAIMS.measures("K4")
-def friction_crossover(data: Data, words: Bounds) -> Finding:
-    event = data.event(GROUP, "friction_crossover")
-    axis = data.get(GROUP, "friction_axis").sortby("friction")
-    first, last = float(axis["central_dip"][0]), float(axis["central_dip"][-1])
-
-    without = asked.at_least("dip without friction", first, words, "visible", "%")
-
-    def one_peak(dip: float) -> Condition:
-        return asked.at_most("dip with much friction", dip, words, "visible", "%")
-
-    largest = float(axis["friction"][-1])
-    visible = asked.dips_from(axis.isel(friction=slice(None, None, -1)), "friction", words)
-    readings = [
-        Reading(name, Condition("friction", found, 0.0, largest), without, one_peak(last))
-        for name, found in ((OWN, event), (asked.VISIBLE, visible))
-    ]
-    if preparations.LOADING in data.groups:
-        readings += [
-            Reading(name, without, one_peak(dip), change=preparations.change(name))
-            for name, dip in preparations.dips(data, 1.0).items()
-        ]
-    return Finding(f"two peaks up to friction {event.text()}, one above", readings)
+@CLAIMS.measures("R15")
+def rough_walls(data: Data, words: Words) -> list[Test]:
+    """Of the preparation that has both kinds of walls: the text's own is in the summary too."""
+    smooth = data.event(GROUP, "linear_range", 1.0)
+    found = data.get(preparations.GROUP, "events")
+    here = (found["name"].values == "linear_range") & (found["wall_friction"].values == 1.0)
+    here &= (found["gravity"].values == "at-once") & np.isclose(found["friction"].values, 1.0)
+    CLAIMS.needs(here.any(), "the summary of preparations holds no linear range beside rough walls")
+    k = int(np.flatnonzero(here)[0])
+    rough = Quantity.bracket(found["low"].values[k], found["high"].values[k])
+    return [Test("range beside rough walls per smooth", rough.per(smooth), Bound(most=1.0, strict=True))]

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Description, NonNegative, Positive, Ratio
+from granular_response.scene.base import Count, Description, NonNegative, Positive, Ratio
 from granular_response.scene.errors import Problem
 from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Growing, SceneGroup, over
 
@@ -43,6 +43,15 @@ class LargeForces(Description):
     time_step: Positive
 
 
+class EqualRows(Description):
+    """The text's own geometry: as many disks in every row."""
+
+    layers: Count
+    disks: Count
+    frictions: Coefficients
+    forces: Growing
+
+
 class Parameters(SceneGroup):
     """Section ``friction_linear_range``."""
 
@@ -55,6 +64,7 @@ class Parameters(SceneGroup):
     asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
     friction_axis: FrictionAxis
     dynamics: LargeForces
+    equal_rows: EqualRows
 
     @model_validator(mode="after")
     def _check_frictions(self) -> Parameters:

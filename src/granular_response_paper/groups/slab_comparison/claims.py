@@ -2,32 +2,27 @@
 
 from __future__ import annotations
 
-from ...claims import asked
-from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
-from ...claims.words import Bounds
-from ...records import alike
+from granular_response_paper.claims import bounds
+from granular_response_paper.claims.claim import Bound, Data, Quantity, Test
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
+from granular_response_paper.records import alike
 
-GROUP = "slab_comparison"
-CLAIMS = Claims(GROUP)
+CLAIMS = Claims(__package__)
 
 
 @CLAIMS.measures("A4")
-def large_systems(data: Data, words: Bounds) -> Finding:
-    cases = alike(data.get(GROUP, "slabs"), "slab", "friction", "floor", "gravity", "disks_per_layer")
-    readings = []
+def large_systems(data: Data, words: Words) -> list[Test]:
+    cases = alike(data.get("slab_comparison", "slabs"), "slab", "friction", "floor", "gravity", "disks_per_layer")
+    tests = []
     for (mu, floor, gravity, wide), slabs in cases.items():
         CLAIMS.needs(slabs.sizes["slab"] > 1, "slabs holds one depth of a case")
         thin, *_, deep = slabs.sortby("layers")["distance"].values
-        readings.append(
-            Reading(
-                f"friction {mu:g}, {floor} floor, gravity {gravity}, {wide:g} disks a row per layer",
-                asked.at_most("difference from the elastic slab in the deepest one", deep, words, "holds", "%"),
-                Condition("that per the one in the thinnest", Quantity.exact(deep / thin), most=1.0),
-                change="" if gravity == "at-once" else "gravity",
-            )
-        )
-    values = [reading.conditions[0].found.value for reading in readings]
-    return Finding(
-        f"the floor response of the deepest slab is {min(values):.2%} to {max(values):.2%} off the elastic one",
-        readings,
-    )
+        name = f"friction {mu:g}, {floor} floor, {wide:g} disks a row per layer"
+        other = "" if gravity == "at-once" else f"gravity {gravity}"
+        close = bounds.at_most(words, "holds")
+        tests += [
+            Test("difference from the elastic slab in the deepest one", Quantity.exact(deep), close, name, "%", other),
+            Test("that per the one in the thinnest", Quantity.exact(deep / thin), Bound(most=1.0), name, "", other),
+        ]
+    return tests

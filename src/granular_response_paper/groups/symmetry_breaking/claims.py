@@ -2,37 +2,34 @@
 
 from __future__ import annotations
 
-from ...claims import asked, preparations
-from ...claims.claim import Claims, Condition, Data, Finding, Quantity
-from ...claims.words import Bounds
+from contextlib import suppress
 
-GROUP = "symmetry_breaking"
-CLAIMS = Claims(GROUP)
+from granular_response_paper.claims import preparations
+from granular_response_paper.claims.claim import Bound, Data, NotMeasured, Quantity, Test
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
 
-#: A force that grows without end slowly, gravity at once.
-PATH = "quasi-static path"
+GROUP, EVENT = "symmetry_breaking", "loss_of_symmetry_path"
+CLAIMS = Claims(__package__)
+
+#: The next force that the paper names is 95 mg, where its response has lost its symmetry.
+BOUND = Bound(91.0, 95.0)
 
 
 @CLAIMS.measures("R5a")
-def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
+def loss_of_symmetry(data: Data, words: Words) -> list[Test]:
     brackets = data.get(GROUP, "brackets")
+    steps = brackets["time_step"].values
     columns = (brackets[name].values.tolist() for name in ("low", "high", "ramp_time", "time_step"))
     found = {
-        f"ramp of {ramp:g} sqrt(R/g), step {step:g}": Quantity.bracket(low, high)
+        f"force grown over {ramp:g} sqrt(R/g)": Quantity.bracket(low, high)
         for low, high, ramp, step in zip(*columns, strict=True)
+        if step == steps[0]
     }
-    if preparations.GROUP in data.groups:
-        found[PATH] = data.event(preparations.GROUP, "loss_of_symmetry_path", 1.0)
-    for walls, friction in (("smooth", 0.0), ("rough", 1.0)):
-        for way, event in preparations.events(data, "loss_of_symmetry_path", 1.0, friction).items():
-            found[f"{way}, {walls} walls, along a load path"] = event
-    # the next force that the paper names is 95 mg, where its response has lost its symmetry
-    return asked.each(
-        "",
-        found,
-        lambda event: Condition("loss of symmetry", event, 91.0, 95.0, unit="mg"),
-        "mg",
-        changed=lambda name: (
-            "walls" if "rough walls" in name else "" if name.startswith(("ramp", PATH)) else preparations.CHANGE
-        ),
-    )
+    literal = data.get(GROUP, "equal_rows")
+    found["rows of 60 disks"] = Quantity.bracket(literal["low"].item(), literal["high"].item())
+    with suppress(NotMeasured):  # without a summary of preparations
+        found["along a load path"] = data.event(preparations.GROUP, EVENT, 1.0)
+    tests = [Test("loss of symmetry", event, BOUND, case, "mg") for case, event in found.items()]
+    others = preparations.events(data, EVENT, 1.0)
+    return tests + [Test("loss of symmetry", event, BOUND, "", "mg", way) for way, event in others.items()]

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Description, Index, NonNegative, Positive
+from granular_response.scene.base import Count, Description, Index, NonNegative, Positive
 from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, over, some
 
 
@@ -39,6 +39,14 @@ class Held(Description):
     displacement: Positive
 
 
+class EqualRows(Description):
+    """The text's own geometry: as many disks in every row; and the forces between which symmetry is lost there."""
+
+    layers: Count
+    disks: Count
+    between: tuple[NonNegative, Positive]
+
+
 class Parameters(SceneGroup):
     """Section ``symmetry_breaking``; ``method`` is that of the path of ``held``, all else is dynamics."""
 
@@ -46,5 +54,6 @@ class Parameters(SceneGroup):
     asymmetry: Positive = Field(description="Above which symmetry counts as lost.")
     tolerance: Positive = Field(description="Width of the brackets, in mean disk weights.")
     protocols: Annotated[tuple[Protocol, ...], AfterValidator(some)] = Field(description="Ramps and steps to try.")
+    equal_rows: EqualRows
     copies: Copies
     held: Held

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ...claims import asked
-from ...claims.claim import Claims, Data, Finding
-from ...claims.words import Bounds
+from granular_response_paper.claims import bounds
+from granular_response_paper.claims.claim import Data, Quantity, Test
+from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.words import Words
 
 GROUP = "torque"
-CLAIMS = Claims(GROUP)
+CLAIMS = Claims(__package__)
 
 #: "Close to the load" and beyond (mean radii).
 NEAR, FAR = 6.0, 9.0
@@ -23,20 +24,15 @@ def _rings(data: Data) -> tuple[xr.Dataset, np.ndarray]:
 
 
 @CLAIMS.measures("T1a")
-def chains(data: Data, words: Bounds) -> Finding:
+def chains(data: Data, words: Words) -> list[Test]:
     rings, near = _rings(data)
     CLAIMS.needs(near.any(), f"reach holds no ring within {NEAR:g} radii")
-    change = float(rings["force_change"].values[near].mean())
-    torque = float(rings["torque"])
-    return asked.one_reading(
-        f"torque {torque:g}: contact forces within {NEAR:g} radii change by {change:.0%}",
-        f"torque {torque:g}",
-        asked.at_least("change of the contact forces", change, words, "marked", "%"),
-    )
+    change = Quantity.exact(rings["force_change"].values[near].mean())
+    return [Test("change of the contact forces", change, bounds.at_least(words, "marked"), unit="%")]
 
 
 @CLAIMS.measures("T1b")
-def near_the_load(data: Data, words: Bounds) -> Finding:
+def near_the_load(data: Data, words: Words) -> list[Test]:
     rings, near = _rings(data)
     far = rings["ring_inner"].values >= FAR
     study, disks = (data.get(GROUP, name).sortby("torque") for name in ("stress", "torques"))
@@ -56,14 +52,11 @@ def near_the_load(data: Data, words: Bounds) -> Finding:
     def area(field: np.ndarray) -> float:
         return float(field[beyond].mean() / field[within].mean())
 
-    return asked.each(
-        f"change beyond {FAR:g} radii per that within {NEAR:g}: ",
-        {
-            "antisymmetric part, mean over the area": area(antisymmetric),
-            "whole stress, mean over the area": area(whole),
-            "antisymmetric part, per stress of the ring": ring("antisymmetric_change"),
-            "whole stress, per stress of the ring": ring("stress_change"),
-        },
-        lambda ratio: asked.at_most("change far from the load per that near it", ratio, words, "small"),
-        form=".3f",
-    )
+    found = {
+        "antisymmetric part, mean over the area": area(antisymmetric),
+        "whole stress, mean over the area": area(whole),
+        "antisymmetric part, per stress of the ring": ring("antisymmetric_change"),
+        "whole stress, per stress of the ring": ring("stress_change"),
+    }
+    small = bounds.at_most(words, "small")
+    return [Test("change far from the load per near it", Quantity.exact(r), small, case) for case, r in found.items()]

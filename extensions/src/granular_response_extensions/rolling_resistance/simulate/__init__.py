@@ -37,6 +37,7 @@ class Pile:
     """A pile that has come to rest."""
 
     moved: float = column(f"largest displacement of a disk on the way to rest {RADII}")
+    loose_disks: float = column("disks that have fewer than two contacts when the others have come to rest")
     floor_dip: float = column(
         "how far the floor force under the apex is below the lower maximum beside it, per largest"
     )
@@ -72,7 +73,8 @@ def settle(scene: Scene) -> Pile:
     rest, start = rest_state(problem), problem.packing.position
     bottom = np.flatnonzero(start[:, 1] < start[:, 1].min() + 0.5)
     force, x = floor_force(rest, bottom), start[bottom, 0] - 0.5 * problem.packing.width
-    return Pile(float(np.linalg.norm(rest.position - start, axis=1).max()), central_dip(x, force), x, force)
+    moved, loose = np.linalg.norm(rest.position - start, axis=1).max(), (rest.contact_count() < 2).sum()
+    return Pile(float(moved), float(loose), central_dip(x, force), x, force)
 
 
 def threshold(parameters: Parameters, layers: int, rolling: float, ramp: float) -> Threshold:
@@ -88,7 +90,8 @@ def threshold(parameters: Parameters, layers: int, rolling: float, ramp: float) 
 
     least, most = parameters.least_friction, parameters.most_friction
     if held(most) is None:
-        return Threshold(float("nan"), float("nan"), np.empty(0), np.empty(0), most, float("nan"))
+        nan = float("nan")
+        return Threshold(nan, nan, nan, np.empty(0), np.empty(0), most, nan)
     found = bisect_event(lambda mu: held(mu) is not None, least, most, parameters.tolerance, at_low=False, at_high=True)
     return Threshold(**vars(held(found.high)), low=found.low if found.low > least else 0.0, high=found.high)
 

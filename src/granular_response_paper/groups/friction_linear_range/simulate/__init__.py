@@ -22,7 +22,7 @@ from granular_response.state import State
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.friction_linear_range.parameters import Parameters
+from granular_response_paper.groups.friction_linear_range.parameters import EqualRows, Parameters
 from granular_response_paper.records import axes, table, variables
 from granular_response_paper.tasks import computed
 
@@ -52,6 +52,8 @@ def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = No
     states, measures = path.through(forces), slab.Measures(path)
     asked = slab.happenings(measures, states[0], asymmetry) if asymmetry else {}
     asked = {name: what for name, what in asked.items() if keep or name in ("first_opening", "linear_range")}
+    if asked and keep:
+        asked["first_opening_anywhere"] = slab.first_opening(measures, anywhere=True)
     return PathResult(
         forces,
         slab.measured(measures, states),
@@ -61,6 +63,20 @@ def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = No
         path.rest,
         slab.states_picture([path.rest, *states], path.problem) if keep else None,
     )
+
+
+def equal_rows(scene: Scene, given: EqualRows) -> list[slab.Event]:
+    """Events on the path of a slab with as many disks in every row; its load is half a radius off the middle."""
+    path = slab.LoadPath.of(scene, packing=slab.equal_rows(given.layers, given.disks))
+    path.through(given.forces)
+    measures = slab.Measures(path)
+    asked = {
+        "first_opening": slab.first_opening(measures),
+        "first_opening_anywhere": slab.first_opening(measures, anywhere=True),
+        "crossover": slab.two_peaks(measures),
+        "reaches_floor": slab.reaches_floor(measures),
+    }
+    return slab.locate(path, given.forces, asked)
 
 
 def shake(scene: Scene, rest: State, force: float) -> tuple[State, xr.Dataset]:
@@ -83,7 +99,7 @@ def narrow(scene: Scene, force: float, low: float, high: float, tolerance: float
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``response`` (friction, force), ``states_mu_<friction>`` (at rest first), ``friction_axis`` (friction),
-    ``large_forces`` (force) with ``large_force_states``, ``events`` and ``lost``.
+    ``large_forces`` (force) with ``large_force_states``, ``events``, ``events_equal_rows`` and ``lost``.
     """
     base, axis, given = parameters.base, parameters.friction_axis, parameters.dynamics
     paths = computed(_paths(parameters), "load paths")
@@ -98,8 +114,12 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     tasks = {force: partial(shake, shaken, main[given.friction].rest, force) for force in sorted(given.forces)}
     if np.isfinite(high) and not one_peak[0]:
         tasks["crossover"] = partial(narrow, base, axis.force, low, high, axis.tolerance)
-    done = computed(tasks, "large forces")
+    same = parameters.equal_rows
+    scenes = {mu: base.updated({"contact.friction": mu}) for mu in same.frictions}
+    tasks |= {("equal rows", mu): partial(equal_rows, scene, same) for mu, scene in scenes.items()}
+    done = computed(tasks, "large forces and equal rows")
     low, high = done.pop("crossover", (low, high))
+    literal = [event for mu in same.frictions for event in done.pop(("equal rows", mu))]
 
     text = f"along the axis of friction at force {axis.force:g}, the floor response no longer has two peaks"
     found = [event for result in main.values() for event in result.events]
@@ -132,6 +152,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {parameters.asymmetry:g}"
         found.append(slab.Event("loss_of_symmetry", given.friction, *ends, text))
     datasets["events"] = slab.events_dataset(found)
+    datasets["events_equal_rows"] = slab.events_dataset(literal)
     return labelled(datasets, base)
 
 

@@ -48,6 +48,7 @@ class Outcome:
         f"largest horizontal distance of a disk at rest from its place in a symmetric state {RADII}"
     )
     new_neighbours: int = column("pairs touching at rest that are no lattice neighbours")
+    open_at_rest: int = column("horizontal contacts of the lattice in the central third that are open at rest")
     measured: xr.Dataset  #: along ``force``
     events: list[Event]  #: of EVENTS, then the crossover by each dip of the task
     brackets: list[tuple[float, float]]  #: their forces before and at
@@ -76,9 +77,11 @@ def solve(
 
     asked |= {f"dip {dip:g}": exceeds(dip) for dip in dips}
     events = slab_response.locate(path, forces, asked, tolerance)
+    level = (network.lattice_direction(rest) == network.HORIZONTAL) & measures.near
     return Outcome(
         rest_asymmetry(packing.position, rest, packing.width),
         new_neighbours(packing.position, rest),
+        int(np.count_nonzero(level & ~rest.pairs.touching)),
         slab_response.measured(measures, states).rename(state="force").assign_coords(force=list(forces)),
         events,
         [(one.low, one.high) for one in events],

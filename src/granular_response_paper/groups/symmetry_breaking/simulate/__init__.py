@@ -69,6 +69,17 @@ def bracket(
 ) -> BracketResult:
     """For one time step; the loss is looked for between ``first`` before anywhere else."""
     path = slab.LoadPath.of(protocol.scene(asked.scene, time_step), rest)
+    event = narrowed(asked, path, protocol, time_step, first)
+    forces = tuple(sorted(path.known))
+    ends = tuple(path.known[force] for force in (event.low, event.high) if force in path.known)
+    measured = slab.measured(slab.Measures(path), path.through(forces))
+    return BracketResult(protocol.ramp_time, time_step, event, forces, measured, ends if len(ends) == 2 else ())
+
+
+def narrowed(
+    asked: Parameters, path: slab.LoadPath, protocol: Protocol, time_step: float, first: tuple[float, float] | None
+) -> slab.Event:
+    """Where the states of a path lose their symmetry; see :func:`bracket`."""
     measures, above = slab.Measures(path), asked.asymmetry
 
     def asymmetric(force: float) -> bool:
@@ -82,13 +93,18 @@ def bracket(
         low, high = found.low, found.high
     except EventNotBracketed:
         low, high = (0.0, low) if asymmetric(low) else (high, float("nan"))
-    forces = tuple(sorted(path.known))
     how = f"dynamics with a ramp of {protocol.ramp_time:g} and a time step of {time_step:g}"
     text = f"{how}: the asymmetry of the floor response exceeds {above:g}"
-    event = slab.Event("loss_of_symmetry", measures.friction, low, high, text)
-    ends = tuple(path.known[force] for force in (low, high) if force in path.known)
-    measured = slab.measured(measures, path.through(forces))
-    return BracketResult(protocol.ramp_time, time_step, event, forces, measured, ends if len(ends) == 2 else ())
+    return slab.Event("loss_of_symmetry", measures.friction, low, high, text)
+
+
+def equal_rows(asked: Parameters) -> slab.Event:
+    """For the first protocol and a slab with as many disks in every row."""
+    first, given = asked.protocols[0], asked.equal_rows
+    scene = first.scene(asked.scene, first.time_steps[0])
+    path = slab.LoadPath.of(scene, packing=slab.equal_rows(given.layers, given.disks))
+    protocol = first.model_copy(update={"between": given.between})
+    return narrowed(asked, path, protocol, first.time_steps[0], None)
 
 
 def held(asked: Parameters, rest: State) -> xr.Dataset:
@@ -115,8 +131,8 @@ def held(asked: Parameters, rest: State) -> xr.Dataset:
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``brackets`` (event), ``runs`` (run), ``copies`` (copy), ``held`` (force), and ``states``: at rest, and
-    the last symmetric and the first asymmetric one of the first protocol.
+    """Datasets ``brackets`` and ``equal_rows`` (event), ``runs`` (run), ``copies`` (copy), ``held`` (force), and
+    ``states``: at rest, and the last symmetric and the first asymmetric one of the first protocol.
     """
     base, protocols = parameters.scene, parameters.protocols
     first = protocols[0].scene(base, protocols[0].time_steps[0])
@@ -127,6 +143,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     longest = sorted(enumerate(protocols), key=lambda one: -(100.0 + one[1].ramp_time) / min(one[1].time_steps))
     tasks: dict[Any, Callable[[], Any]] = {k: partial(ramps, parameters, rest, protocol) for k, protocol in longest}
     tasks["held"] = partial(held, parameters, rest)
+    tasks["equal rows"] = partial(equal_rows, parameters)
     tasks |= {name: partial(copied, first, copy, force) for name, copy in packings.items()}
     done = computed(tasks, "loss of symmetry")
     found: list[BracketResult] = [result for k in range(len(protocols)) for result in done[k]]
@@ -135,6 +152,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     forces = np.concatenate([one.forces for one in found])
     datasets = {
         "brackets": slab.events_dataset([one.event for one in found]).assign(table(found, "event").variables),
+        "equal_rows": slab.events_dataset([done["equal rows"]]),
         "runs": runs.assign(of_run.variables).assign(force=variable("run", forces, APPLIED)),
         "held": done["held"],
         "copies": compared({name: done[name] for name in packings}, force),
