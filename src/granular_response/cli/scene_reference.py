@@ -5,11 +5,12 @@ What is allowed is not written down a second time either: it is what the message
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple, get_args
 
 from .. import scene
+from ..scene import text as yaml_text
 from ..scene.base import Description, unit_of
 from ..scene.lattice import LatticePacking
 from ..scene.material import KNOWN_LAWS
