@@ -16,8 +16,10 @@ if TYPE_CHECKING:
     from .problem import Problem
 
 #: Kinetic energy, over its limit, below which statics may take over from a vibration that changes no contact. Contacts
-#: turn meanwhile, so that springs remember it in second order: forces by up to 5e-9 mg at this value, 3e-8 at 1e5.
+#: turn meanwhile, so that springs remember it in second order: up to 5e-9 mg at the largest one, in mg R, and in
+#: proportion to it.
 QUIET = 1e4
+LARGEST_QUIET = 1e-9
 
 
 @dataclass(frozen=True)
@@ -96,9 +98,9 @@ def _load(problem: Problem) -> Choice:
 def _stop_energies(problem: Problem, static: bool) -> tuple[float, float]:
     """The paper's own: 1e-6 without friction, 1e-9 with disorder, and else what the protocol says.
 
-    In an ordered packing with friction ``QUIET`` times as much will do where no contact changes any more; in a
-    disordered one some nearly always does. With ``method: dynamics``, or without a static finish, the protocol is taken
-    at its word.
+    In an ordered packing with friction ``QUIET`` times as much will do where no contact changes any more, up to
+    ``LARGEST_QUIET``; in a disordered one some nearly always does. With ``method: dynamics``, or without a static
+    finish, the protocol is taken at its word.
     """
     protocol = problem.scene.protocol
     stop = protocol.stop_kinetic_energy
@@ -106,7 +108,7 @@ def _stop_energies(problem: Problem, static: bool) -> tuple[float, float]:
         return stop, 0.0
     if problem.rotations and problem.packing.ordered:
         at_once = protocol.stop_rule == "instantaneous" and not problem.rolls
-        return stop, QUIET * stop if at_once else 0.0
+        return stop, min(QUIET * stop, LARGEST_QUIET) if at_once else 0.0
     return max(stop, 1e-9 if problem.rotations else 1e-6), 0.0
 
 
