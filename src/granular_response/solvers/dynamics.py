@@ -429,7 +429,7 @@ class Relaxation:
         if not energy < self.scale:
             raise DynamicsError(dynamics._blow_up())
         self.largest = max(self.largest, energy)
-        fallen = energy <= stop.fallen * self.largest or energy < OPTIONS.motionless
+        fallen = max(stop.fallen * self.largest, OPTIONS.motionless)
         if self.progress is not None:
             self.progress(dynamics, energy)
         if dynamics.time < self.ramp_time:
@@ -444,7 +444,7 @@ class Relaxation:
             self.settled, self.network = False, None
             return
         touching = dynamics.touching()
-        if look_at_rolling or (energy > stop.kinetic_energy and (slow or self.rolling)):
+        if look_at_rolling or (energy > min(stop.kinetic_energy, fallen) and (slow or self.rolling)):
             rollers, of_rolling = dynamics.rolling(touching, dynamics.contact_count(touching))
             if look_at_rolling:
                 self.rolling = 0 < rollers <= OPTIONS.most_rollers * dynamics.problem.n
@@ -463,7 +463,7 @@ class Relaxation:
         ends = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
         if energy < stop.quiet_energy:
             ends = ends or self.quiet * dynamics.time_step >= dynamics.problem.swing_time
-        self.settled = ends and fallen and dynamics.time >= stop.least_time and not dynamics.in_flight(touching)
+        self.settled = ends and energy <= fallen and dynamics.time >= stop.least_time and not dynamics.in_flight(touching)
 
     def state(self) -> State:
         """The state reached, with all that :class:`Reached` says of dynamics."""
