@@ -164,6 +164,16 @@ def test_loose_disk_does_not_keep_a_packing_from_rest():
     assert settled.reached.kinetic_energy > 1e-13
 
 
+def test_what_rolls_need_not_fall_to_a_part_of_the_largest_energy():
+    """Beside a disk that falls on the floor and comes to rest there. It kept motions between equilibria going."""
+    problem, state = free_disks(
+        [[10.0, 1.0], [50.0, 1.0 - 1 / 6000]], velocity=[(0, 0), (2e-4, 0)], contact__friction=0.2
+    )
+    settled = relax(Dynamics(problem, state), Stop(1e-6, fallen=1e-4, maximum_steps=20_000))
+    assert settled.reached.settled
+    assert settled.reached.kinetic_energy > 5e-9
+
+
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 def test_what_rolls_are_disks_that_touch_the_floor_alone(friction):
     """Not those beside another one, in flight or at a wall. Motion along the floor counts, and spin."""

@@ -280,6 +280,16 @@ class Problem:
         """In which a compression wave runs through the packing, in sqrt(R/g): before, parts know nothing of others."""
         return float(self.packing.position[:, 1].max()) / (2.0 * self.scene.contact.normal_stiffness**0.5)
 
+    @property
+    def swing_time(self) -> float:
+        """A whole period of the slowest motion, in sqrt(R/g): a wave up and down twice, its foot held, or to and fro
+        between the sides, at a speed between those of shear and of compression (1.2 and 2.1 sqrt(k R/m)).
+
+        The slowest period of the paper's slab is 0.82 to 0.94 of it with smooth walls and 0.38 with rough ones.
+        """
+        way = max(4.0 * float(self.packing.position[:, 1].max()), 2.0 * self.packing.width)
+        return way / (1.5 * self.scene.contact.normal_stiffness**0.5)
+
     @cached_property
     def weight_vector(self) -> FloatArray:
         """(dof,) generalised gravity; nothing on what is held."""
