@@ -446,7 +446,7 @@ def static_contacts(
         statics.rolling_spring_forces(rolling_spring, out.status, out.normal, rolling, rolls)
     return Contacts(
         np.asarray(first, np.int32), np.asarray(second, np.int32),
-        overlap, out.normal, out.tangential, out.spring, out.status, *(rolls or ()),
+        overlap, out.normal, out.tangential, out.spring, out.status.astype(np.int8), *(rolls or ()),
     )  # fmt: skip
 
 
