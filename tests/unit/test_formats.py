@@ -652,8 +652,8 @@ def test_a_start_deep_inside_others_is_asked_about(tmp_path):
         solve_scene(Scene.from_dict({"packing": packing, "loads": []}, folder=tmp_path))
     assert str(caught.value) == (
         "packing: disks 0 and 1 (counted from 0) overlap by 1 mean radii at the start, must be at most 0.5, half the "
-        "smaller radius; are radii diameters, and walls and floor where they should be? For measured disks packing.overlaps: removed "
-        "takes overlaps of up to a radius out"
+        "smaller radius; are radii diameters, and walls and floor where they should be? For measured disks "
+        "packing.overlaps: removed takes overlaps of up to a radius out"
     )
     (tmp_path / "a.csv").write_text("x,z,radius\n0.4,1,1\n3,1,1\n5,1,1\n")
     with pytest.raises(SceneError, match=r"^packing: disk 0 and the left wall \(counted from 0\) overlap by 0\.6 mean"):
