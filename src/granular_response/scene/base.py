@@ -86,7 +86,7 @@ class Description(BaseModel, metaclass=_Public):
         try:
             super().__init__(**data)
         except ValidationError as error:
-            raise from_validation(error, PACKING_KINDS) from None
+            raise from_validation(error, PACKING_KINDS, UNITS) from None
 
     # Without this mark pydantic would call __init__ for nested descriptions too and lose the path of the key.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
@@ -147,8 +147,9 @@ class Sparse(Description):
     @model_serializer(mode="wrap")
     def _written(self, written: SerializerFunctionWrapHandler) -> dict[str, Any]:
         data: dict[str, Any] = written(self)
-        fields = type(self).model_fields
-        usual = {key for key in self.sparse if key in fields and getattr(self, key) == fields[key].default}
+        fields = {key: info for key, info in type(self).model_fields.items() if key in self.sparse}
+        defaults = {key: info.get_default(call_default_factory=True) for key, info in fields.items()}
+        usual = {key for key, default in defaults.items() if getattr(self, key) == default}
         return {key: value for key, value in data.items() if key not in usual}
 
 

@@ -16,7 +16,7 @@ from pydantic import BeforeValidator, Field, ValidationError, model_validator
 from ..inputs import read_text
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
-from .base import MOST_STIFFNESS, PACKING_KINDS, Description, PackingDescription, Sparse
+from .base import MOST_STIFFNESS, PACKING_KINDS, UNITS, Description, PackingDescription, Sparse
 from .errors import Problem, SceneError, SceneFileError, from_validation, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
@@ -187,7 +187,7 @@ class Scene(Sparse):
         try:
             return cls.model_validate(data, context={"folder": folder})
         except ValidationError as error:
-            raise from_validation(error, PACKING_KINDS) from None
+            raise from_validation(error, PACKING_KINDS, UNITS) from None
 
     @classmethod
     def from_arrays(
@@ -384,8 +384,10 @@ def _merged(old: Any, change: Any, path: tuple[str, ...]) -> Any:
         new = list(old)
         for part, value in change.items():
             if not str(part).isdecimal() or int(part) >= len(old):
+                inside = bool(old) and not str(part).isdecimal() and isinstance(old[0], dict)
+                meant = f", did you mean {show_key((*path, '0', str(part)))}?" if inside else ""
                 raise SceneError(
-                    f"{show_key((*path, part))}: {show_key(path)} has {len(old)} items, no item {show(part)}"
+                    f"{show_key((*path, part))}: {show_key(path)} has {len(old)} items, no item {show(part)}{meant}"
                 )
             new[int(part)] = _merged(old[int(part)], value, (*path, part))
         return new

@@ -244,7 +244,9 @@ class Dynamics:
 
     def _blow_up(self) -> str:
         load = float(np.abs(self.load[1] * self.problem.load[:, :2]).max(initial=0.0))
-        if load > self.problem.stiffness:
+        if self.problem.too_soft:
+            cure = self.problem.too_soft
+        elif load > self.problem.stiffness:
             cure = f"the largest load, {load:.3g} mg, is more than the contacts bear: take a smaller one"
         else:
             cure = "take a smaller protocol.time_step"
@@ -499,6 +501,7 @@ def relax(
     """
     relaxation = Relaxation(dynamics, stop, gravity=gravity, load=load, progress=progress)
     while not relaxation.ended:
-        dynamics.advance(OPTIONS.check_every)
+        left = stop.maximum_steps - (dynamics.steps - relaxation.started)
+        dynamics.advance(min(OPTIONS.check_every, left))  # not a step more than the scene allows
         relaxation.look()
     return relaxation.state()

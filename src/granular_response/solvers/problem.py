@@ -194,6 +194,19 @@ class Problem:
         """Of the normal springs between disks, at a normal force of one mean disk weight: the scale of stiffnesses."""
         return self.pair_law.normal_stiffness
 
+    @property
+    def too_soft(self) -> str:
+        """That the lowest contacts overlap by a radius and more under the weight above them; empty where they do not.
+
+        In a column as high as the packing they bear a weight for each diameter.
+        """
+        if 0.5 * float(self.packing.position[:, 1].max()) <= self.stiffness:
+            return ""
+        return (
+            f"contacts are so soft (contact.normal_stiffness {self.stiffness:g}) that disks sink through each other "
+            "under their weight: take a larger one"
+        )
+
     @cached_property
     def pair_friction(self) -> bool:
         return self.pair_law.friction > 0.0

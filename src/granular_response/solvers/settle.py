@@ -122,6 +122,7 @@ def not_settled(problem: Problem, state: State, what: str) -> str:
     return (
         f"the packing did not come to rest under {what} within protocol.maximum_steps = "
         f"{problem.scene.protocol.maximum_steps} (kinetic energy {state.reached.kinetic_energy:.1e} per disk)"
+        + (f"; {problem.too_soft}" if problem.too_soft else "")
     )
 
 
