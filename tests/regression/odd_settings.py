@@ -102,11 +102,11 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
         {**FEW_CASES, "linear_range": {**FEW_CASES["linear_range"], "forces": [0.5], "tolerance": 1e-9}},
     ),
     "superposition": (
-        {"realizations": 1, "pair_realizations": 1, "offsets": [1], "forces": [0.01, 0.02],
+        {"realizations": 1, "pair_realizations": 1, "offsets": [1], "forces": [0.2, 1.0],
          "single_forces": [0.01, 0.02]},
         {"realizations": 2, "pair_realizations": 1, "offsets": [4], "tolerance": 1e-9},
         {"scene": SHALLOW, "realizations": 1, "pair_realizations": 1, "offsets": [1],
-         "forces": [5.0, 20.0], "single_forces": [10.0, 40.0], "tolerance": 10.0},
+         "forces": [0.2, 1.0, 20.0], "single_forces": [10.0, 40.0], "tolerance": 10.0},
     ),
     "influence": (
         {"cases": [{"polydispersity": 0.0, "friction": 0.0}], "margin": 100.0},

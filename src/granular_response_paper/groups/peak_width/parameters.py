@@ -11,7 +11,17 @@ from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio
 from granular_response.scene.errors import Problem
 from granular_response.state import FloatArray
-from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Counts, SurveyedGroup, growing, over, some
+from granular_response_paper.parameters import (
+    MATERIAL,
+    SIZE,
+    UNIT_LOAD,
+    Counts,
+    Rows,
+    SurveyedGroup,
+    growing,
+    over,
+    some,
+)
 
 #: Least number of realizations that are drawn from for an interval.
 LEAST_REALIZATIONS = 3
@@ -70,7 +80,7 @@ class Parameters(SurveyedGroup):
         description="Rows at which stiffness and forces are as given. Stiffness grows as the number of rows, so that "
         "gravity compresses all slabs by the same part."
     )
-    disks_per_layer: Count = Field(description="Disks of a row over number of rows, and one more.")
+    disks_per_layer: Rows = Field(description="Disks of a row over number of rows, and one more.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials and loads.")
     loads: Count = Field(description="Small loads on a disordered packing, one after another; one on a lattice.")
     margin: Positive = Field(description="Of these loads from the side walls, in heights.")

@@ -27,15 +27,13 @@ from granular_response.scene import Scene
 from granular_response.state import FloatArray, State
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles.realizations import ensemble_scene
-from granular_response_paper.groups.network.parameters import Parameters
+from granular_response_paper.groups.network.parameters import VERTICAL_MARGIN, Parameters
 from granular_response_paper.records import axes, column, record, table
 from granular_response_paper.slab_response import LoadPath, wall_margin
 from granular_response_paper.tasks import computed
 
 #: Edges of the bins of forces over their mean, of mobilization, and number of bins of directions.
 FORCES, MOBILIZATION, ANGLES = np.linspace(0.0, 6.0, 25), np.linspace(0.0, 1.0, 21), 36
-#: Distance of what is counted from the floor and the highest disk (radii).
-VERTICAL_MARGIN = 4.0
 
 
 @record
