@@ -166,7 +166,7 @@ def test_mfix_dem04_by_a_torque_that_is_taken_away(torque, slides):
     time = steps * STEP
     v, spin = driven.velocity[0, 0], driven.angular_velocity[0]
     assert (v, spin) == pytest.approx(
-        (-friction * time, 2.0 * (torque - friction) * time), rel=2e-3
+        (-friction * time, 2.0 * (torque - friction) * time), rel=3e-3
     )  # it slips at once
     assert slides == (v + spin > 3.0 * friction * time)
     if slides:
