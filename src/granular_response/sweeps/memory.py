@@ -20,6 +20,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ..inputs import check_regular
 from ..store import atomic
 from .encoding import NotDecodable, NotEncodable, decode, encode
 from .keys import Indistinct, key, sources
@@ -78,6 +79,7 @@ class Memory:
         if name is None:
             return MISSING
         try:
+            check_regular(self._path(name))
             data = self._path(name).read_bytes()
             if data[-32:] != _seal(name, data[:-32]):
                 return MISSING
