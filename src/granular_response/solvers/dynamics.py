@@ -465,7 +465,8 @@ class Relaxation:
         ends = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
         if energy < stop.quiet_energy:
             ends = ends or self.quiet * dynamics.time_step >= dynamics.problem.swing_time
-        self.settled = ends and energy <= fallen and dynamics.time >= stop.least_time and not dynamics.in_flight(touching)
+        late = dynamics.time >= stop.least_time
+        self.settled = ends and energy <= fallen and late and not dynamics.in_flight(touching)
 
     def state(self) -> State:
         """The state reached, with all that :class:`Reached` says of dynamics."""
