@@ -40,7 +40,7 @@ MALFORMED = {
         "loads[0].torqe = 1: unknown key, did you mean torque? (allowed: disk, force, displacement, torque)"
     ),
     "preparation: {gravty: slow}": (
-        "preparation.gravty = 'slow': unknown key, did you mean gravity? (allowed: gravity, ramp_time)"
+        "preparation.gravty = 'slow': unknown key, did you mean gravity? (allowed: gravity, ramp_time, taps)"
     ),
     "packing: {kind: file, path: a.csv, width: 1.0, layers: 3}": (
         "packing.layers = 3: unknown key (allowed: kind, path, format, width, origin, sides, columns, overlaps)"
@@ -172,6 +172,16 @@ def test_constructors_raise_the_same_error():
     ("changes", "message"),
     [
         ({"contact.fricton": 1.0}, r"^contact\.fricton = 1\.0: unknown key, did you mean friction\?"),
+        ({"friction": 1.0}, r"^friction = 1\.0: unknown key, did you mean contact\.friction or wall\.friction\? \("),
+        (
+            {"protocol.friction": 1.0},
+            r"^protocol\.friction = 1\.0: unknown key, did you mean contact\.friction or wall",
+        ),
+        ({"layers": 3}, r"^layers = 3: unknown key, did you mean packing\.layers\?"),
+        (
+            {"loads.force": [0.0, -1.0]},
+            r"^loads\.force: loads has 1 items, no item 'force', did you mean loads\.0\.force",
+        ),
         ({"contacts.friction": 1.0}, r"^contacts = \{'friction': 1\.0\}: unknown key, did you mean contact\?"),
         ({"loads.1.torque": 1.0}, r"^loads\.1: loads has 1 items, no item '1'$"),
         ({"contact.friction.x": 1.0}, r"^contact\.friction = \{'x': 1\.0\}: must be a number from 0 to 1e6"),

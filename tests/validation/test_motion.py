@@ -108,5 +108,8 @@ def test_an_equilibrium_stays_and_a_load_moves_it():
     pushed = gr.motion(slab, [0.0, 200.0], start=result.rest, progress=False)
     np.testing.assert_allclose(pushed["position"][1], result.loaded[-1].position, atol=1e-6)
     assert pushed["load_factor"].values.tolist() == [1.0, 1.0]
+    smooth = slab.updated({"protocol.ramp_time": 5.0})
+    under = gr.motion(smooth, [1.0], start=result.loaded[-1], progress=False)  # its load is there from the beginning
+    np.testing.assert_allclose(under["position"][0], result.loaded[-1].position, atol=1e-12)
     with pytest.raises(gr.SceneError, match=r"^start: a state of 20 disks, must be one of this packing of 908$"):
         gr.motion(gr.Scene(loads=[]), [1.0], start=result.rest)

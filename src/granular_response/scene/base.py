@@ -128,12 +128,24 @@ class Description(BaseModel, metaclass=_Public):
             raise Problem(f"must be a mapping with keys among {keys}" if keys else "must be {}")
         for key, value in data.items():
             if key not in cls.model_fields:
+                meant = cls._elsewhere(key) or suggestion(key, cls.model_fields)
                 raise Problem(
-                    f"unknown key{suggestion(key, cls.model_fields)} (allowed: {keys or 'none'})",
+                    f"unknown key{meant} (allowed: {keys or 'none'})",
                     key=(key if isinstance(key, str) else str(key),),
                     value=value,
                 )
         return {key: plain(value) for key, value in data.items()}
+
+    @classmethod
+    def _elsewhere(cls, key: Any) -> str:
+        """', did you mean ...?' for the other parts of a scene that have the key, or nothing."""
+        others = {part: models for part, models in PLACES.items() if cls not in models}
+        found = [f"{part}.{key}" for part, models in others.items() if any(key in one.model_fields for one in models)]
+        return f", did you mean {' or '.join(found)}?" if found else ""
+
+
+#: The parts of a scene by their place in it, for keys that stand in another one; ``scene.scene`` names them.
+PLACES: dict[str, tuple[type[Description], ...]] = {}
 
 
 class Sparse(Description):
