@@ -63,9 +63,7 @@ def _place(claim: Claim) -> tuple[int, int, str, str, int, str]:
 CLAIMS: tuple[Claim, ...] = tuple(sorted((c for name in packages().values() for c in claims_of(name)), key=_place))
 
 #: Figure groups whose datasets the claims read.
-GROUPS: tuple[str, ...] = tuple(
-    sorted({claim.group for claim in CLAIMS} | {"phase_diagram", "polydisperse_averages", "sensitivity"})
-)
+GROUPS: tuple[str, ...] = tuple(sorted({claim.group for claim in CLAIMS}))
 
 
 def collect(folder: str | os.PathLike[str] = "data", others: str | os.PathLike[str] = summary.OUTPUT) -> Data:
