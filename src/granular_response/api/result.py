@@ -465,7 +465,10 @@ class Result:
             name = f"load factor {state.load_factor:g}" if k else "initial equilibrium"
             stable = {True: "stable", False: "unstable", None: "stability not determined"}[state.certificate.stable]
             stable = stable if state.certificate.balanced else "not in balance"
-            rows.append((name, f"{stable}, max. unbalanced force {state.certificate.force_residual:.1e}, {contacts}"))
+            text = f"{stable}, max. unbalanced force {state.certificate.force_residual:.1e}, {contacts}"
+            if stopped := state.reached.stopped_rattlers:
+                text += f", {stopped} rolling rattler{'s' if stopped > 1 else ''} stopped by hand"
+            rows.append((name, text))
         return [*rows, *([moved] if (moved := self._moved()) else [])]
 
     def _moved(self) -> tuple[str, str] | None:

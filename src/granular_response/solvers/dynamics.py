@@ -472,6 +472,10 @@ class Relaxation:
         """The state reached, with all that :class:`Reached` says of dynamics."""
         dynamics = self.dynamics
         state = dynamics.state()
+        loose, problem = dynamics.contact_count() < 2, dynamics.problem
+        # what rolls on the floor alone never stops by itself: its energy is left out of the criterion of rest
+        energy = problem.weight * (state.velocity**2).sum(axis=1) + problem.packing.inertia * state.angular_velocity**2
+        rolling = int((loose & (0.5 * energy > self.stop.kinetic_energy)).sum()) if self.settled else 0
         reached = replace(
             state.reached,
             kinetic_energy=dynamics.kinetic_energy(),
@@ -480,7 +484,8 @@ class Relaxation:
             network_fixed_steps=self.fixed,
             sliding_contacts=int(state.pairs.sliding.sum() + state.walls.sliding.sum()),
             mean_acceleration=dynamics.mean_acceleration(),
-            loose_disks=int((dynamics.contact_count() < 2).sum()),
+            loose_disks=int(loose.sum()),
+            stopped_rattlers=rolling or None,
         )
         return replace(state, reached=reached)
 
