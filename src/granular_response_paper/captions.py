@@ -27,9 +27,6 @@ if TYPE_CHECKING:
 #: Name of the file beside the pictures, and of the templates beside their ``draw.py``.
 FILE, TEMPLATES = "captions.json", "captions.yaml"
 
-#: Ending of a compressed vector picture, which the page shows in place of the raster one.
-VECTOR = ".svgz"
-
 NUMBER_OF_FIGURES = 24
 
 #: Units of force and length in a text: mean disk weights, mean radii.

@@ -46,7 +46,7 @@ FORMATS = {
     ".pdf": "application/pdf",
     ".png": "image/png",
     ".py": "text/x-python",
-    ".svgz": "image/svg+xml",
+    ".svg": "image/svg+xml",
     ".yaml": "application/yaml",
 }
 

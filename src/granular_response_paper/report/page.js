@@ -27,16 +27,6 @@
     });
   });
 
-  // line plots are vectors, sharp at every size
-  document.querySelectorAll("img[data-vector]").forEach(async function (picture) {
-    try {
-      const zipped = Uint8Array.from(atob(picture.dataset.vector), function (c) { return c.charCodeAt(0); });
-      const drawn = new Blob([zipped]).stream().pipeThrough(new DecompressionStream("gzip"));
-      picture.src = "data:image/svg+xml," + encodeURIComponent(await new Response(drawn).text());
-    } catch (error) { return; }  // an old browser keeps the raster picture
-    picture.removeAttribute("data-vector");
-  });
-
   // a link into something folded unfolds it
   function unfold(hash) {
     const target = document.getElementById(decodeURIComponent(hash.slice(1)));

@@ -23,9 +23,6 @@ SHOWN = 0.62
 #: Largest size of a small picture, in its own pixels, and how hard it is compressed, from 0 to 100.
 SMALL, SMALL_QUALITY = (256, 144), 45
 
-#: Largest width of a raster picture that only stands in for a vector one, in its own pixels, and its colours.
-STAND_IN, STAND_IN_COLOURS = 868, 32
-
 #: How hard smooth maps are compressed, from 0 to 100.
 MAP_QUALITY = 85
 
@@ -80,7 +77,6 @@ class Picture:
     height: int
     shown: int  #: width on a wide screen in pixels of the page
     plot: bool  #: whether it is drawn on white paper
-    vector: str = ""  #: compressed SVG in base64, if there is one: the page's script shows it in place of the raster
     caption: str = ""  #: with all its parameters, in plain text
     alternative: str = ""  #: what stands for it where it cannot be seen
 
@@ -89,7 +85,7 @@ class Picture:
         """What belongs to it, in words, and the path from the root of the project."""
         folder = f"src/granular_response_paper/groups/{self.group}"
         return (
-            ("PDF", f"figures/{self.group}/{self.stem}.pdf"),
+            ("PNG", f"figures/{self.group}/{self.stem}.png"),
             ("GIF", f"figures/{self.group}/{self.stem}.gif"),
             ("data", f"data/{self.group}.nc"),
             ("drawing", f"{folder}/draw.py"),
@@ -181,19 +177,15 @@ def _said(folder: Path) -> dict[tuple[str, str], dict[str, Any]]:
 def embed(path: Path) -> Picture:
     """A drawn picture as a data URI: as many pixels as drawn in 256 colours, a third as large as the PNG.
 
-    A smooth map is in all colours, with little loss, which is smaller. Where a vector picture is beside it, the raster
-    one is smaller, for readers without scripts; where an animation is, that stands in its place.
+    A smooth map is in all colours, with little loss, which is smaller. Where an animation is beside it, that stands in
+    its place.
     """
     with Image.open(path) as image:
         plain = image.convert("RGB")
     small = plain.copy()
     small.thumbnail(SMALL)
-    moving, beside = path.with_suffix(".gif"), path.with_suffix(captions.VECTOR)
-    vector = base64.b64encode(beside.read_bytes()).decode() if beside.exists() and not moving.exists() else ""
-    few = plain.copy()
-    if vector:
-        few.thumbnail((STAND_IN, plain.height))
-    few = few.quantize(STAND_IN_COLOURS if vector else 256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    moving = path.with_suffix(".gif")
+    few = plain.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     still = _webp(few.convert("RGB"), lossless=True, quality=76)
     return Picture(
         path.stem,
@@ -204,7 +196,6 @@ def embed(path: Path) -> Picture:
         plain.height,
         round(SHOWN * plain.width),
         bool(np.asarray(small).mean() > PAPER),
-        vector,
     )
 
 
