@@ -1,7 +1,6 @@
 """Every stage of every figure group with parameters that leave little to be measured: results, or one line."""
 
 import json
-from functools import partial
 
 import odd_settings
 import pytest
@@ -30,7 +29,6 @@ def coarse_pictures(monkeypatch):
         return render(drawn, file_format, dpi=30)
 
     monkeypatch.setattr(style, "render", coarse)
-    monkeypatch.setattr(style, "save", partial(style.save, formats=["png"]))
 
 
 def test_every_group_has_odd_settings():
