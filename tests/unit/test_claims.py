@@ -337,6 +337,7 @@ PLANTED = [
     ("P2", put("pile_dip", "stress", "dip", 0.05), "not supported"),
     ("P3", put("pile_dip", "piles", "central_width", 16.0), "not supported"),
     ("P3", put("pile_dip", "piles", "central_width", [16.0, 16.0, 30.0]), "in part"),
+    ("P4", put("pile_dip", "glued", "floor_dip", 0.05), "not supported"),
     ("T1a", scaled("torque", "reach", "force_change", 0.1), "not supported"),
     ("T1b", put("torque", "reach", "stress_change", 0.3), "in part"),
     ("T1b", both(*(put("torque", "reach", n, 0.3) for n in ("stress_change", "antisymmetric_change")),
@@ -915,7 +916,7 @@ def test_the_stored_table_is_the_one_file_of_verdicts(tmp_path):
     assert stored == found == stored_table.read(tmp_path / "claims.json")
     assert [row["id"] for row in stored["table"]] == list(CLAIM) and stored["scheme"] == list(SCHEME)
     ordered = stored["counts"]["ordered"]
-    assert ordered["supported"] == 3 and ordered["not_measured"] == sum(ordered.values()) - 3
+    assert ordered["supported"] == 4 and ordered["not_measured"] == sum(ordered.values()) - 4
     assert sum(sum(part.values()) for part in stored["counts"].values()) == len(CLAIM)
     row = next(row for row in stored["table"] if row["id"] == "P1")
     assert (row["verdict"], row["elsewhere"], row["value"], row["interval"]) == ("supported", "not tried", 0.07, None)
