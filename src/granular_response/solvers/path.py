@@ -31,7 +31,6 @@ from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from ..errors import SolveError
 from ..kernels import events
@@ -475,6 +474,8 @@ class _Path:
             beyond = float(np.sqrt(self.rates.force * length / (ahead[k] + then.rate[c])))
             if slip(0.0) > 0.0 and slip(length) >= 0.0:
                 return 0.5 * length  # the event that was found lies on another branch, beyond a limit point
+            from scipy.optimize import brentq  # a tenth of a second at the start of every process, and rare
+
             turn = float(brentq(slip, 0.0, length, xtol=0.25 * beyond)) if slip(0.0) > 0.0 else 0.0
             if length > turn + 1.5 * beyond:
                 return turn + beyond
