@@ -20,26 +20,18 @@ from places import ROOT
 from xarray import Dataset
 
 from granular_response.store import files as store
-from granular_response.store import generated
 from granular_response.store.variables import variable
-from granular_response_paper import groups, report
+from granular_response_paper import report
 from granular_response_paper.claims import table as claims
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.stored import ClaimsError
 from granular_response_paper.claims.verdict import MEANINGS
 from granular_response_paper.groups.sensitivity import simulate as sensitivity
+from granular_response_paper.registry import PAPER, collections
 from granular_response_paper.report import against, benchmarks, explorer, pictures, readings
 from granular_response_paper.report.typeset import typeset
 
 FORCES = (0.0, 1.0, 4.0, 90.0)
-#: The files with generated lines, by their name.
-DOCUMENTS = {
-    "readings": "docs/_generated/readings.md",
-    "figures": "docs/_generated/figures.md",
-    "hysteresis": "docs/_generated/hysteresis.md",
-    "crossover_scaling": "docs/_generated/crossover_scaling.md",
-    "datasets": "data/README.md",
-}
 
 
 def states(friction):
@@ -126,10 +118,9 @@ def root(tmp_path_factory):
         Image.fromarray(shade).save(path)
         beside = path.with_name("captions.json")
         said = json.loads(beside.read_text()) if beside.exists() else {}
-        said[path.stem] = {"caption": f"What {path.stem} <shows>.", "alternative": "How it looks."}
+        said[path.stem] = {"caption": f"What {path.stem} <shows>.", "alternative": "How it looks.", "question": "Why?"}
         beside.write_text(json.dumps(said))
     store.write(folder / "data" / "friction_linear_range.nc", friction_study())
-    store.write(folder / "data" / "explorer.nc", {"a": added_slab(0.0, 0.0), "b": added_slab(0.25, 3.0)})
     store.write(folder / "data" / "phase_diagram.nc", {"crossovers": crossovers()})
     store.write(folder / "data" / "sensitivity.nc", {"mu_0.2": sensitivity_study()})
     (folder / "benchmarks").mkdir()
@@ -137,7 +128,8 @@ def root(tmp_path_factory):
     (folder / "benchmarks" / "summary.json").write_text(json.dumps({"goals": [goal]}))
     (folder / "requirements.lock").write_text("# pinned\nnumpy==2.9.1\nsome-other==1.0\n")
     data = Data({"friction_linear_range": friction_study()})
-    (folder / "figures" / "claims.json").write_text(json.dumps(claims.document(claims.evaluate(data))))
+    judged = claims.document(claims.evaluate(data, claims.claims_in(PAPER)))
+    (folder / "figures" / "claims.json").write_text(json.dumps(judged))
     return folder
 
 
@@ -175,7 +167,8 @@ def test_one_row_for_every_claim_with_its_verdict(judged, page):
     assert chips == [f"chip {row['verdict'].replace(' ', '_')}" for row in judged["table"]]
     for part in ("ordered", "disorder"):
         tiles = page.partition(f'id="tiles-{part}"')[2].partition("<p ")[0]
-        found = {verdict: int(number) for verdict, number in re.findall(r'<div class="tile (\w+)"><b>(\d+)</b>', tiles)}
+        counted = re.findall(r'<a class="tile (\w+)" href="#only-\w+"><b>(\d+)</b>', tiles)
+        found = {verdict: int(number) for verdict, number in counted}
         assert found == {verdict: number for verdict, number in judged["counts"][part].items() if number}
     for sentence in judged["scheme"]:
         assert f"<li>{sentence}</li>" in page
@@ -200,7 +193,8 @@ def test_of_many_tests_the_page_lists_those_that_do_not_hold():
     assert report.telling(tests[:3]) == tests[:3]
 
 
-def test_the_page_needs_no_network_and_no_other_file(page):
+def test_a_self_contained_page_needs_no_network_and_no_other_file(root):
+    page = report.page(root, embedded=True)
     elements = Elements(page)
     assert all(image["src"].startswith("data:image/webp;base64,") for image in elements.named("img"))
     assert [link["href"] for link in elements.named("link")] == ["data:,"]
@@ -209,32 +203,34 @@ def test_the_page_needs_no_network_and_no_other_file(page):
     assert "url(" not in page and "@import" not in page
 
 
-def test_every_figure_of_the_paper_has_a_place_and_all_stand_by_their_questions(page):
+def test_the_page_shows_the_pictures_beside_it(root, page):
+    shown = [image["src"] for image in Elements(page).named("img") if not image["src"].startswith("data:")]
+    assert shown and all((root / "figures" / source).exists() for source in shown)
+    assert len(page) < len(report.page(root, embedded=True))
+
+
+def test_every_figure_of_the_paper_has_a_place_and_others_stand_by_their_questions(page):
     assert sorted(map(int, re.findall(r' id="figure-(\d+)"', page))) == list(range(1, 25))
     assert page.count("not drawn yet") == 24 - 3
-    assert page.count("<img ") == 2 * 5  # in small and in full
     assert page.count('<figure id="picture-') == 5
-    asked = re.findall(r"<h3>([^<]+\?)</h3>", page)
-    assert asked == [question for question in pictures.QUESTIONS if question in asked]
-    assert page.index("What does friction change?") < page.index('id="picture-fig06_linear_range"')
-    assert page.index("How certain are the numbers?") < page.index('id="picture-numerics"')
+    assert page.count("<img ") == 5 + 3  # in full, and the paper's in small
+    assert re.findall(r"<h3>([^<]+\?)</h3>", page) == ["Why?"]
+    assert page.index('id="picture-fig17_pile"') < page.index("Why?") < page.index('id="picture-numerics"')
     assert "<b>Numerics. What numerics &lt;shows&gt;.</b>" in page
     targets = set(re.findall(r'href="#([\w-]+)"', page))
     assert targets <= {e["id"] for _, e in Elements(page).found if "id" in e}
 
 
 def test_pictures_lead_to_the_files_that_are_there(root, page, tmp_path):
-    links = [a["href"] for a in Elements(page).named("a") if not a["href"].startswith("#")]
-    assert len(set(links)) == 6
-    assert all((root / "figures" / link).exists() for link in links)
     part = page.partition('<figure id="picture-fig06_linear_range"')[2].partition("</figure>")[0]
-    assert re.findall(r'<a href="([^#"]+)">([\w ]+)</a>', part) == [
-        ("friction_linear_range/fig06_linear_range.png", "PNG"),
-        ("../data/friction_linear_range.nc", "data"),
-    ]
+    found = {name: link for link, name in re.findall(r'<a href="([^#"]+)">([\w ]+)</a>', part)}
+    assert found["picture"] == "friction_linear_range/fig06_linear_range.png"
+    assert found["data"] == "../data/friction_linear_range.nc"
+    assert {"drawing", "simulation"} < set(found)
+    assert all((root / "figures" / link).exists() for link in found.values())
     elsewhere = report.write(tmp_path / "elsewhere" / "page.html", root).read_text()
     moved = [a["href"] for a in Elements(elsewhere).named("a") if not a["href"].startswith("#")]
-    assert len(set(moved)) == 6 and all((tmp_path / "elsewhere" / link).exists() for link in moved)
+    assert moved and all((tmp_path / "elsewhere" / link).exists() for link in moved)
 
 
 def test_claims_and_figures_lead_to_each_other(judged, page):
@@ -245,11 +241,12 @@ def test_claims_and_figures_lead_to_each_other(judged, page):
         part = listed(f'<tr id="claim-{row["id"]}"', "</tr>")
         assert [int(number) for number in re.findall(r'href="#figure-(\d+)"', part)] == row["figures"]
     for number in (1, 6, 17):
-        shown = re.findall(r'<li><a href="#claim-(\w+)">', listed(f'<span id="figure-{number}"'))
+        shown = re.findall(r'<li><a class="mark \w+" href="#claim-(\w+)">', listed(f'<span id="figure-{number}"'))
         assert shown == [row["id"] for row in judged["table"] if number in row["figures"]]
     # a further picture shows the claims of its group that no figure shows
     expected = [row["id"] for row in judged["table"] if row["group"] == "numerics" and not row["figures"]]
-    assert re.findall(r'<li><a href="#claim-(\w+)">', listed('<figure id="picture-numerics"')) == expected != []
+    found = re.findall(r'<li><a class="mark \w+" href="#claim-(\w+)">', listed('<figure id="picture-numerics"'))
+    assert found == expected != []
 
 
 def test_the_summary_names_what_is_not_supported(judged, tmp_path):
@@ -292,16 +289,12 @@ def test_a_variant_without_words_is_shown_with_those_of_the_study():
     assert reading.question == "time step <halved>" and differences == ("8.0e-6",)
 
 
-def test_the_notes_get_the_table_and_are_the_same_every_time(tmp_path):
-    notes = tmp_path / "notes.md"
-    notes.write_text("By hand.\n<!-- readings: begin -->\n<!-- readings: end -->\nBy hand too.\n")
+def test_the_fragment_of_readings_is_the_same_every_time(tmp_path):
     count = len(readings.READINGS)
     study = readings_study(np.arange(1, count + 1) * 1e-3, response_sum=np.linspace(1.0, 0.9, count + 1))
     store.write(tmp_path / "data" / "sensitivity.nc", {"mu_0.2": study})
-    report.renew("notes", notes, tmp_path)
-    text = notes.read_text()
-    assert text.startswith("By hand.\n<!-- readings: begin -->\n| interpretation | choice |")
-    assert text.endswith("<!-- readings: end -->\nBy hand too.\n")
+    text = report.fragments(tmp_path)["readings.md"]()
+    assert text.startswith("| interpretation | choice |")
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert len(rows) == count + 2 and {row.count("|") for row in rows} == {5}
     largest = f"{count * 1e-3:.1e}".replace("e-0", "e-")
@@ -309,21 +302,21 @@ def test_the_notes_get_the_table_and_are_the_same_every_time(tmp_path):
     place = 1 + list(reversed(list(readings.READINGS))).index("stop_1e-9")
     assert f"stopped at 1e-9 per disk: {study['response_sum'].values[place]:.4f} (µ = 0.2)" in text
     assert "as printed:" not in text  # its kinetic energy is not stored here
-    report.renew("notes", notes, tmp_path)
-    assert notes.read_text() == text
+    assert report.fragments(tmp_path)["readings.md"]() == text
 
 
-@pytest.mark.parametrize(("kind", "block"), [(kind, block) for kind, all_ in report.BLOCKS.items() for block in all_])
-def test_the_documents_hold_what_is_stored(kind, block):
-    if missing := [group for group in groups.NAMES if not (ROOT / "data" / f"{group}.nc").exists()]:
+@pytest.mark.parametrize("collection", collections(), ids=lambda one: one.name)
+def test_the_fragments_of_the_documents_hold_what_is_stored(collection):
+    root = ROOT / collection.folder
+    if missing := [g for g in report.datasets_read(collection) if not (root / "data" / f"{g}.nc").exists()]:
         pytest.skip(f"not simulated yet: {', '.join(missing)}")
-    text = (ROOT / DOCUMENTS[block]).read_text()
-    assert generated.replace(text, block, report.BLOCKS[kind][block](ROOT / "data")) == text, "make quote"
+    for name, made in report.fragments(root, collection).items():
+        assert (ROOT / "docs" / "_generated" / name).read_text() == f"{made()}\n", "make reproduce, make extensions"
 
 
 def test_the_stored_page_shows_the_stored_benchmarks():
     stored = (ROOT / report.OUTPUT).read_text()
-    shown = [one.picture for one in benchmarks.collect(ROOT / "benchmarks")]
+    shown = [one.picture for one in benchmarks.collect(ROOT / "benchmarks", ROOT / "figures")]
     assert len(shown) > 5
     assert [one.stem for one in shown if one.source not in stored] == [], "make reproduce"
 
@@ -331,7 +324,7 @@ def test_the_stored_page_shows_the_stored_benchmarks():
 def test_every_figure_with_parameters_stands_beside_its_caption():
     assert [row.figure for row in against.ROWS] == sorted(row.figure for row in against.ROWS)
     assert {row.figure for row in against.ROWS} == set(range(1, 25)) - {11}  # a drawing of springs
-    assert {row.group for row in against.ROWS} <= set(groups.NAMES)
+    assert {row.group for row in against.ROWS} <= set(PAPER.groups)
 
 
 @pytest.mark.parametrize(
@@ -354,7 +347,7 @@ def test_another_parameter_without_a_reason_is_an_error(tmp_path, monkeypatch):
     store.write(tmp_path / "data" / "theory.nc", {"one": friction_study()["response"]})
     monkeypatch.setattr(against, "ROWS", (against.Row(3, "(a)", "F_ext", (5.0,), "theory/one:force"),))
     with pytest.raises(report.ReportError, match=r"figure 3, F_ext: 1, 4, 90 where the paper has 5, and nothing says"):
-        report.renew("figures", tmp_path / "figures.md", tmp_path)
+        report.write_fragments(tmp_path / "documents", tmp_path)
 
 
 def test_parameters_are_read_from_variables_scenes_and_attributes():
@@ -378,7 +371,7 @@ def test_the_same_files_give_the_same_bytes(root, tmp_path):
 
 def test_embedded_pictures_are_as_drawn(root):
     path = root / "figures" / "theory" / "fig01_predictions.png"
-    picture = pictures.embed(path)
+    picture = pictures.shown(path, root / "figures", embedded=True)
     assert (picture.width, picture.height, picture.shown, picture.plot) == (1400, 500, 868, False)
     with Image.open(io.BytesIO(base64.b64decode(picture.source.partition(",")[2]))) as shown, Image.open(path) as drawn:
         assert shown.format == "WEBP"
@@ -405,9 +398,9 @@ def test_captions_that_are_none_are_one_line(root, tmp_path):
     assert "\n" not in str(caught.value)
 
 
-def test_the_overview_stands_at_the_top_and_unknown_groups_at_the_end(root, tmp_path):
+def test_the_overview_stands_at_the_top_and_moves(root, tmp_path):
     shutil.copytree(root, tmp_path / "copy")
-    for name in ("overview/overview", "overview/growing_force", "another/another"):
+    for name in ("overview/overview", "overview/growing_force"):
         path = tmp_path / "copy" / "figures" / f"{name}.png"
         path.parent.mkdir(exist_ok=True)
         Image.new("RGB", (1400, 500), "black").save(path)
@@ -417,22 +410,21 @@ def test_the_overview_stands_at_the_top_and_unknown_groups_at_the_end(root, tmp_
     moving = tmp_path / "copy" / "figures" / "overview" / "growing_force.gif"
     frames[0].save(moving, save_all=True, append_images=frames[1:], duration=[160, 1500])
     text = report.page(tmp_path / "copy")
-    part = text.partition('id="picture-growing_force"')[2]
-    source = re.search(r'src="data:image/webp;base64,([^"]*)"', part)
-    assert source.start() < part.index('href="overview/growing_force.gif">GIF</a>')
-    with Image.open(io.BytesIO(base64.b64decode(source[1]))) as moving:
-        assert moving.n_frames == 2
-        assert [np.asarray(frame.convert("RGB")).mean() for frame in ImageSequence.Iterator(moving)] == [0.0, 255.0]
-    assert text.index('id="picture-overview"') < text.index('class="tiles"') < text.index('id="picture-growing_force"')
-    assert text.index('id="summary"') < text.index('id="picture-overview"') < text.index('id="try"')
-    assert text.count('picture-overview"') == 1
     assert (
-        text.index('id="picture-numerics"') < text.index("<h3>Further figures</h3>") < text.index('"picture-another"')
+        'src="overview/growing_force.gif"' in text.partition('id="picture-growing_force"')[2].partition("</figure>")[0]
     )
+    assert text.index('id="results"') < text.index('id="picture-overview"') < text.index('id="figures"')
+    assert text.count('picture-overview"') == 1 and text.index('id="picture-growing_force"') > text.index(
+        'id="figures"'
+    )
+    held = report.page(tmp_path / "copy", embedded=True).partition('id="picture-growing_force"')[2]
+    source = re.search(r'src="data:image/webp;base64,([^"]*)"', held)
+    with Image.open(io.BytesIO(base64.b64decode(source[1]))) as moving:
+        assert [np.asarray(frame.convert("RGB")).mean() for frame in ImageSequence.Iterator(moving)] == [0.0, 255.0]
 
 
 def test_the_message_is_the_first_sentence_of_a_caption(root):
-    picture = pictures.embed(root / "figures" / "numerics" / "numerics.png")
+    picture = pictures.shown(root / "figures" / "numerics" / "numerics.png", root / "figures")
     for said, parts in {
         "As in Fig. 6 it rises, w = 3. (a) Force. Rest.": ("As in Fig. 6 it rises, w = 3.", "(a) Force. Rest."),
         "Secs. V and VI, k_T/k_N = 0.2 alone": ("Secs. V and VI, k_T/k_N = 0.2 alone", ""),
@@ -441,14 +433,14 @@ def test_the_message_is_the_first_sentence_of_a_caption(root):
         assert (one.message, one.details) == parts
 
 
-def test_explorer_and_summary_come_before_the_figures_and_the_table_after_them(page):
-    names = ("summary", "try", "figures", "claims", "words", "readings", "benchmarks", "rerun", "versions")
+def test_results_come_first_and_the_table_of_claims_after_the_figures(page):
+    names = ("results", "figures", "try", "claims", "words", "readings", "benchmarks", "rerun", "versions")
     places = [page.index(f' id="{name}"') for name in names]
     assert places == sorted(places)
 
 
 def test_the_parts_of_the_table_stand_apart(judged, page):
-    for part in ("ordered", "disorder", "extension"):
+    for part in ("ordered", "disorder"):
         body = page.partition(f'<tbody id="part-{part}">')[2].partition("</tbody>")[0]
         expected = [row["id"] for row in judged["table"] if row["part"] == part]
         assert re.findall(r'<tr id="claim-(\w+)"', body) == expected != []
@@ -459,7 +451,7 @@ def test_the_parts_of_the_table_stand_apart(judged, page):
 
 
 def test_the_page_says_its_size(page):
-    assert f"one file of {len(page.encode()) / 1e6:.1f} MB" in page
+    assert f"Beside its pictures this page has {len(page.encode()) / 1e6:.1f} MB" in page
 
 
 def test_there_is_a_filter_for_every_kind_of_verdict(page):
@@ -485,27 +477,6 @@ def test_there_is_a_filter_for_every_kind_of_verdict(page):
 )
 def test_texts_are_set_with_minus_signs_powers_and_subscripts(plain, typed):
     assert typeset(plain) == typed
-
-
-def added_slab(polydispersity, width):
-    """The slab of ``states`` as the group ``explorer`` stores one."""
-    slab = states(0.2).astype(np.float32).assign(contact_status=states(0.2)["contact_status"])
-    for name in ("contact_disk", "contact_partner", "loaded_disk"):
-        slab[name] = states(0.2)[name]
-    x = np.arange(-6.0, 7.0, 2.0)
-    row = np.full((len(FORCES), 7), 1.0 / 7.0)
-    numbers = {"polydispersity": polydispersity, "friction": 0.2, "wall_friction": 0.0, "stiffness_ratio": 0.2}
-    return slab.assign(
-        x=variable(("floor_disk",), x, "place"),
-        floor_response=variable(("state", "floor_disk"), row, "response"),
-        smoothed_response=variable(("state", "floor_disk"), 0.5 * row, "response"),
-        response_at_centre=variable(("state",), np.full(len(FORCES), 0.07), "response"),
-        peak_count=variable(("state",), np.ones(len(FORCES)), "peaks"),
-        **{
-            name: variable((), value, name)
-            for name, value in {**numbers, "normal_stiffness": 3000.0, "smoothing_width": width}.items()
-        },
-    )
 
 
 def crossovers():
@@ -570,15 +541,14 @@ def test_lost_compression_has_the_other_sign():
     assert (levels[0] < 0).all()
 
 
-def test_slabs_of_the_explorer_and_fig_22_stand_beside_the_others():
-    more = {"slab_0": added_slab(0.0, 0.0), "slab_1": added_slab(0.25, 3.0)}
-    data = explorer.payload(friction_study(), more, {"crossovers": crossovers()})
-    lattice, disordered = data["slabs"][3:]
-    assert (lattice["polydispersity"], lattice["ratio"], lattice["smoothed"]) == (0.0, 0.2, None)
-    # as in Fig. 20 a smoothed response is a stress; the force of a disk is one over the distance of two floor disks
-    assert disordered["smoothed"] == disordered["response"] == [[0.0714] * 7] * 3 and disordered["centre"] == [0.07] * 3
-    assert disordered["peaks"] is None and lattice["peaks"] == [1, 1, 1]
-    assert lattice["paper"] == [] and [one["force"] for one in data["slabs"][1]["paper"]] == [4.0, 20.0, 40.0]
+def test_fig_22_stands_beside_the_slabs():
+    data = explorer.payload(friction_study(), {"crossovers": crossovers()})
+    assert [slab["friction"] for slab in data["slabs"]] == [0.0, 0.2, 1.0]
+    assert data["slabs"][0]["peaks"] == [2, 2, 2] and [one["force"] for one in data["slabs"][1]["paper"]] == [
+        4.0,
+        20.0,
+        40.0,
+    ]
     assert data["crossovers"] == [
         {"polydispersity": 0.0, "friction": [0.2, 1.0], "force": [20.0, 3.0], "low": [20.0, 3.0],
          "high": [None, 3.0], "kind": [2, 0]},
@@ -623,7 +593,7 @@ def test_benchmarks_show_goals_and_pictures(root, tmp_path):
     assert re.findall(r">([^<>]+)</td>", row) == ["at least 4", "5", "yes"]
     (tmp_path / "figures").mkdir()
     Image.new("RGB", (400, 200), "white").save(tmp_path / "figures" / "kernel.png")
-    (kernel,) = benchmarks.collect(tmp_path)
+    (kernel,) = benchmarks.collect(tmp_path, tmp_path)
     assert (
         kernel.title == "Kernel" and kernel.picture.width == 400 and kernel.picture.text == f"Kernel: {kernel.caption}"
     )
@@ -639,10 +609,10 @@ def tab(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def opened(tab, root, page, tmp_path_factory):
+def opened(tab, root, tmp_path_factory):
     """Opens the page, with its explorer ready."""
     path = tmp_path_factory.mktemp("page") / "page.html"
-    path.write_text(page)
+    path.write_text(report.page(root, embedded=True))
 
     def show(width, **options):
         del tab.problems[:], tab.requests[:]
@@ -679,7 +649,7 @@ def test_a_browser_shows_all_of_it(judged, opened, width, scheme):
     sizes = "i => [i.naturalWidth, i.clientWidth, i.parentElement.clientWidth]"
     tab.run("document.querySelectorAll('details').forEach(folded => { folded.open = true; })")
     images = tab.run(f"Array.from(document.querySelectorAll('main img'), {sizes})")
-    assert len(images) == 2 * 5
+    assert len(images) == 5 + 3  # the paper's in small too
     # only on a telephone does a picture scroll sideways, in its own frame, so that its letters can be read
     assert all(0 < shown <= (640 if width == 390 else frame) and frame <= width and i for i, shown, frame in images)
     assert tab.run(WIDER) == [] and tab.run("document.documentElement.scrollWidth") == width
@@ -692,14 +662,12 @@ def test_a_browser_shows_all_of_it(judged, opened, width, scheme):
         assert tab.run(rows) == sum(row["verdict"] == kind for row in judged["table"])
 
 
-def test_a_link_unfolds_what_it_leads_to(opened):
+def test_a_link_unfolds_what_it_leads_to_and_a_count_shows_its_claims(opened):
     tab = opened(1400)
-    folded = "document.getElementById('picture-numerics').closest('details').open"
-    assert not tab.run(folded)
-    tab.click(*tab.centre(".sheet a[href='#picture-numerics']")[:2])
-    assert tab.run(folded)
     tab.run("location.hash = '#words'")
     tab.wait("document.getElementById('words').parentElement.open", 5.0)
+    tab.click(*tab.centre("#tiles-ordered .tile")[:2])
+    tab.wait("!document.getElementById('only-all').checked", 5.0)
     assert tab.problems == []
 
 
@@ -710,7 +678,7 @@ def test_what_a_reader_touches_has_a_name_and_is_large_enough(opened):
         " !(e.textContent || e.getAttribute('aria-label') || e.labels?.length)).map(e => e.outerHTML.slice(0, 80))"
     )
     assert tab.run(unnamed) == []
-    low = "Array.from(document.querySelectorAll('nav a, .by-number a, #explorer button')).map(e => e.offsetHeight)"
+    low = "Array.from(document.querySelectorAll('nav a, .tile, #explorer button')).map(e => e.offsetHeight)"
     assert min(tab.run(low)) >= 24
     levels = tab.run("Array.from(document.querySelectorAll('h1, h2, h3'), e => Number(e.tagName[1]))")
     assert levels[0] == 1 and all(b <= a + 1 for a, b in itertools.pairwise(levels))
@@ -747,11 +715,6 @@ def test_the_explorer_follows_mouse_and_keys(opened):
     assert force(tab)[0] == "90 mg" and drawn(tab) == before
     tab.click(*tab.centre("#paper button")[:2])
     assert force(tab)[0] == "4 mg"
-    tab.click(*tab.centre("input[name=packing][value='0.25']")[:2])
-    assert "one packing with δ = 0.25" in tab.run("document.getElementById('about').textContent")
-    assert tab.run("document.querySelector('input[name=ratio][value=\"0.8\"]').disabled")
-    tab.run("document.querySelector('input[name=packing]:checked').focus()")
-    tab.key("ArrowLeft", 37)
     assert "ordered packing" in tab.run("document.getElementById('network').getAttribute('aria-label')")
     tab.click(*tab.centre("input[name=friction][value='0.0']")[:2])
     assert "µ = 0, " in tab.run("document.getElementById('network').getAttribute('aria-label')")
@@ -785,21 +748,17 @@ def test_the_force_grows_by_itself_and_stops_at_the_end(opened):
 
 def test_a_link_leads_to_a_state(opened):
     tab = opened(1400)
-    tab.run("location.hash = '#delta=0.25&mu=0.2&ratio=0.2&F=3'")
+    tab.run("location.hash = '#mu=1&F=3'")
     tab.wait("document.getElementById('force').getAttribute('aria-valuetext') === '4 mg'", 5.0)
-    assert "δ = 0.25" in tab.run("document.getElementById('about').textContent")
-    assert tab.run("document.getElementById('link').hash") == "#delta=0.25&mu=0.2&ratio=0.2&F=4"
+    assert "µ = 1," in tab.run("document.getElementById('about').textContent")
+    assert tab.run("document.getElementById('link').hash") == "#mu=1&F=4"
     assert tab.problems == []
-
-
-#: Groups whose datasets the explorer shows.
-EXPLORED = ("friction_linear_range", "explorer", "phase_diagram")
 
 
 @pytest.fixture(scope="module")
 def stepped(tab, root, tmp_path_factory):
     """The stored datasets, and what the explorer says of a state of them."""
-    if missing := [group for group in EXPLORED if not (ROOT / "data" / f"{group}.nc").exists()]:
+    if missing := [group for group in report.EXPLORED if not (ROOT / "data" / f"{group}.nc").exists()]:
         pytest.skip(f"not simulated yet: {', '.join(missing)}")
     folder = tmp_path_factory.mktemp("stepped")
     (folder / "figures").mkdir()
@@ -811,21 +770,20 @@ def stepped(tab, root, tmp_path_factory):
     tab.wait("'ready' in document.getElementById('explorer').dataset")
 
     tab.run(
-        "window.choose = (delta, mu, ratio, index) => {"
-        " for (const [name, value] of [['packing', delta], ['friction', mu], ['ratio', ratio]])"
-        " document.querySelectorAll(`input[name=${name}]`).forEach(i => { if (Number(i.value) === value) i.click(); });"
+        "window.choose = (mu, index) => {"
+        " document.querySelectorAll('input[name=friction]').forEach(i => { if (Number(i.value) === mu) i.click(); });"
         " const slider = document.getElementById('force'); slider.value = index;"
         " slider.dispatchEvent(new Event('input'));"
         " return ['force-label', 'about', 'said'].map(id => document.getElementById(id).textContent); }; 0"
     )
 
-    def say(delta, friction, ratio, applied, index):
-        label, about, words = tab.run(f"choose({delta}, {friction}, {ratio}, {index})")
+    def say(friction, applied, index):
+        label, about, words = tab.run(f"choose({friction}, {index})")
         assert label == f"F = {applied:g} mg"
-        assert (f"δ = {delta:g}," if delta else "ordered") in about and f"µ = {friction:g}," in about
+        assert "ordered" in about and f"µ = {friction:g}," in about
         return words.replace("\u2212", "-")
 
-    yield {group: store.read(ROOT / "data" / f"{group}.nc") for group in EXPLORED}, say
+    yield {group: store.read(ROOT / "data" / f"{group}.nc") for group in report.EXPLORED}, say
     assert tab.problems == []
 
 
@@ -840,11 +798,11 @@ def network(states, friction):
     return (touching[0] & ~touching).sum(axis=1), sliding.sum(axis=1)
 
 
-def crossover_said(phase, delta, friction):
-    """What Fig. 22 has for a packing."""
+def crossover_said(phase, friction):
+    """What Fig. 22 has for the lattice."""
     one = phase["crossovers"].sel(width=6.0)
     one = one.isel(
-        case=(one["polydispersity"].values == delta)
+        case=(one["polydispersity"].values == 0.0)
         & (one["friction"].values == friction)
         & (one["lattice_constant"].values == "touching-largest")
     )
@@ -853,22 +811,15 @@ def crossover_said(phase, delta, friction):
     return words[int(one["kind"].item())].format(f"{two_digits:g}")
 
 
-def hold(words, counts, measured, phase, slab):
+def hold(words, counts, measured, phase, friction):
     """The sentence of one state against what is stored of it; ``measured`` is x = 0, and peaks and asymmetry."""
     opened, sliding = counts
-    delta, friction, ratio, walls = slab
     centre, peaks, asymmetry = measured
     assert f": {opened} contact{'s' if opened != 1 else ''} opened, {sliding} at the Coulomb limit." in words
-    assert f"The response ({'rough' if walls else 'smooth'} walls, " in words
-    assert ("smoothed with w = 3 R\u0304) is" if delta else "not smoothed) has") in words
-    assert f"{centre:.4f} at x = 0;" in words
-    if not delta:
-        assert f" has {peaks} peak{'s' if peaks > 1 else ''}, is {'not ' if asymmetry > 0.2 else ''}symmetric," in words
-    if ratio == 0.8:
-        who = f"Fig. 22 ({'mean of the ensemble, ' if delta else ''}{'rough' if friction else 'smooth'} walls, "
-        assert f"{who}smoothed with w = 6 R\u0304): {crossover_said(phase, delta, friction)}" in words
-    else:
-        assert "Fig. 22" not in words
+    assert f"The response (smooth walls) has {peaks} peak{'s' if peaks > 1 else ''}, " in words
+    assert f" is {'not ' if asymmetry > 0.2 else ''}symmetric, and is {centre:.4f} at x = 0;" in words
+    walls = "rough" if friction else "smooth"
+    assert f"Fig. 22 ({walls} walls, smoothed with w = 6 R\u0304): {crossover_said(phase, friction)}" in words
 
 
 def one_peak_then_more(said):
@@ -899,29 +850,12 @@ def test_every_sentence_of_an_ordered_slab_is_what_is_stored(stepped, friction):
             state = int(np.flatnonzero(states["force"].values == applied)[0])
             one = response.sel(force=applied)
             peaks = int(one["peak_count"])
-            words = say(0.0, friction, 0.8, applied, len(said))
+            words = say(friction, applied, len(said))
             measured = float(one["response_at_centre"]), peaks, float(one["asymmetry"])
-            hold(words, [count[state] for count in counts], measured, data["phase_diagram"], (0.0, friction, 0.8, 0.0))
+            hold(words, [count[state] for count in counts], measured, data["phase_diagram"], friction)
             assert (f"({reached})" in words) == np.isfinite(first)
             said.append((applied, peaks, words))
     one_peak_then_more(said)
-
-
-def test_every_sentence_of_an_added_slab_is_what_is_stored(stepped):
-    data, say = stepped
-    for slab in data["explorer"].values():
-        names = ("polydispersity", "friction", "stiffness_ratio", "wall_friction")
-        delta, friction, ratio, walls = (float(slab[name]) for name in names)
-        counts, said = network(slab, friction), []
-        for state in range(1, slab.sizes["state"]):
-            one = slab.isel(state=state)
-            words = say(delta, friction, ratio, float(one["force"]), state - 1)
-            measured = float(one["response_at_centre"]), int(one["peak_count"]), 0.0
-            mine = (delta, friction, ratio, walls)
-            hold(words, [count[state] for count in counts], measured, data["phase_diagram"], mine)
-            said.append((float(one["force"]), int(one["peak_count"]), words))
-        if not delta:
-            one_peak_then_more(said)
 
 
 def test_the_explorer_follows_a_finger(opened):
