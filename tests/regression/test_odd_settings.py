@@ -1,6 +1,5 @@
 """Every stage of every figure group with parameters that leave little to be measured: results, or one line."""
 
-import json
 from functools import partial
 
 import odd_settings
@@ -10,9 +9,12 @@ import reduced
 from granular_response.errors import SolveError
 from granular_response.plot import style
 from granular_response.scene import SceneError, text
+from granular_response.store import files as store
 from granular_response.sweeps.errors import SweepError
+from granular_response_paper.claims import table
+from granular_response_paper.claims.claim import Data
 from granular_response_paper.groups import NAMES
-from granular_response_paper.pipeline import GroupError, drawing, measuring, simulation
+from granular_response_paper.pipeline import GroupError, drawing, simulation
 
 #: What the command line tells in one line.
 LINES = (GroupError, SceneError, SolveError)
@@ -33,6 +35,12 @@ def coarse_pictures(monkeypatch):
     monkeypatch.setattr(style, "save", partial(style.save, formats=["png"]))
 
 
+def judged(group, data):
+    """The verdicts on the claims of a group, from its own datasets alone."""
+    claims = [claim for claim in table.CLAIMS if claim.group == group]
+    return {entry.claim.id: entry.verdict for entry in table.evaluate(Data({group: store.read(data)}), claims)}
+
+
 def test_every_group_has_odd_settings():
     assert set(odd_settings.SETTINGS) == set(NAMES) - {MEASURES_THE_SURVEY}
     assert {len(settings) for settings in odd_settings.SETTINGS.values()} == {3}
@@ -44,11 +52,11 @@ def test_every_group_has_odd_settings():
 def test_an_experiment_never_ends_in_a_traceback(group, number, tmp_path):
     sections = {"common": {"method": "auto"}, group: odd_settings.section(group, number)}
     (tmp_path / "params.yaml").write_text(text.write(sections))
-    data, metrics = tmp_path / "data.nc", tmp_path / "metrics.json"
+    data = tmp_path / "data.nc"
     done = []
     for stage in (
         lambda: simulation.simulate(group, data, parameter_file=tmp_path / "params.yaml", workers=1),
-        lambda: measuring.measure(group, data, metrics),  # it does not wait for pictures
+        lambda: judged(group, data),
         lambda: drawing.draw(group, data, tmp_path / "figures"),
     ):
         try:
@@ -60,15 +68,13 @@ def test_an_experiment_never_ends_in_a_traceback(group, number, tmp_path):
             assert "\n" not in str(error)
         if not data.exists():
             return
-    assert isinstance(json.loads(metrics.read_text()), dict)
     assert len(done) == 3 or not (tmp_path / "figures" / "captions.json").exists()
 
 
-def test_a_slab_narrower_than_its_rings_has_figure_and_metrics(tmp_path):
+def test_a_slab_narrower_than_its_rings_has_a_figure_and_verdicts(tmp_path):
     """Rings beyond the slab hold nothing, and limits of an axis were not a number."""
     small = {**reduced.parameters("torque"), "distances": [60.0, 80.0, 100.0]}
     (tmp_path / "params.yaml").write_text(text.write({"common": {"method": "auto"}, "torque": small}))
     data = simulation.simulate("torque", tmp_path / "data.nc", parameter_file=tmp_path / "params.yaml", workers=1)
     assert tmp_path / "fig18_torque_reach.png" in drawing.draw("torque", data, tmp_path)
-    numbers = json.loads(measuring.measure("torque", data, tmp_path / "torque.json").read_text())
-    assert numbers == {"not measured": "T1a T1b"}
+    assert judged("torque", data) == {"T1a": "not measured", "T1b": "not measured"}
