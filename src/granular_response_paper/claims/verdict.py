@@ -6,7 +6,7 @@ The scheme, as the page and the notes print it, is :data:`SCHEME`.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Literal
@@ -107,24 +107,20 @@ class Entry:
     def cases(self) -> str:
         """For which values of what the text leaves open it holds, fails or is open."""
         found = by_case(self.tests)
-        if len(found) < 2:
-            return ""
-        titles: dict[Outcome, str] = {
-            "yes": "Supported for",
-            "no": "Not supported for",
-            "cannot tell": "Cannot tell for",
-        }
-        parts = {title: [case for case, one in found.items() if one == outcome] for outcome, title in titles.items()}
-        return " ".join(f"{title}: {'; '.join(cases)}." for title, cases in parts.items() if cases)
+        return _listed(found, "Supported for", "Not supported for", "Cannot tell for") if len(found) > 1 else ""
 
     @property
     def preparations(self) -> str:
-        """In which other preparations it holds and fails."""
+        """In which other preparations it holds, fails or is open."""
         ways = dict.fromkeys(test.prepared for test in self.tests if test.prepared)
-        found = {way: together(t.outcome for t in self.tests if t.prepared == way) for way in ways}
-        titles: dict[Outcome, str] = {"yes": "Holds", "no": "Fails", "cannot tell": "Open"}
-        parts = {title: [way for way, one in found.items() if one == outcome] for outcome, title in titles.items()}
-        return " ".join(f"{title}: {'; '.join(cases)}." for title, cases in parts.items() if cases)
+        found = {way: together(test.outcome for test in self.tests if test.prepared == way) for way in ways}
+        return _listed(found, "Holds", "Fails", "Open")
+
+
+def _listed(found: Mapping[str, Outcome], yes: str, no: str, open_: str) -> str:
+    titles: dict[Outcome, str] = {"yes": yes, "no": no, "cannot tell": open_}
+    parts = {title: [name for name, one in found.items() if one == outcome] for outcome, title in titles.items()}
+    return " ".join(f"{title}: {'; '.join(names)}." for title, names in parts.items() if names)
 
 
 def judge(claim: Claim, data: Data) -> Entry:
