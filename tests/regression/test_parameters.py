@@ -58,8 +58,8 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
             r"realizations = \[4\]: must have a number for each of the layers",
         ),
         (
-            {"lattice": reduced.parameters("moduli")["lattice"] | {"responding": [7, 8]}},
-            r"responding = \[7, 8\]: must be odd",
+            {"loaded": reduced.parameters("moduli")["loaded"] | {"scene": {"contact": {"friction": 0.2}}}},
+            r"loaded\.scene\.contact\.friction = 0\.2: is decided by the group",
         ),
     ],
     "pile_dip": [({"dip_height": -1.0}, r"dip_height = -1\.0: must be a number greater than 0")],
