@@ -25,10 +25,9 @@ from pathlib import Path
 import numpy as np
 import peers
 
-from granular_response.contact import Hertz, Linear
-from granular_response.contact.rolling import Rolling
 from granular_response.scene import Packing, Scene
 from granular_response.solvers.problem import Problem
+from granular_response.store.export.lammps import model
 
 #: Timed runs after the settling.
 REPEATS = 8
@@ -93,19 +92,6 @@ def _granular(law: str, friction: float) -> tuple[str, str]:
     """A law of `pair_style granular` between disks, and at walls; the constants are those of the scene's laws."""
     problem = Problem.from_scene(Scene().updated({"contact.law": law, "contact.friction": friction}))
     return f"pair_style granular\npair_coeff * * {model(problem.pair_law)}", f"granular {model(problem.wall_law)}"
-
-
-def model(law: Linear | Hertz, rolling: Rolling | None = None) -> str:
-    """A law of ours in the words of `granular`, with its rolling resistance."""
-    if isinstance(law, Hertz):
-        kind, constant = "hertz", law.factor / math.sqrt(law.reduced_radius)
-    else:
-        kind, constant = "hooke", law.normal_stiffness
-    part = law.tangential_damping / law.normal_damping if law.normal_damping else 0.0
-    tangential = f"linear_history {law.tangential_stiffness!r} " if law.friction else "linear_nohistory "
-    rolls = "" if rolling is None else f" rolling sds {rolling.stiffness!r} {rolling.damping!r} {rolling.friction!r}"
-    normal = f"{kind} {constant!r} {law.normal_damping!r}"
-    return f"{normal} tangential {tangential}{part!r} {law.friction!r}{rolls} damping velocity"
 
 
 #: Contact laws, between disks and at walls, by name: `linear` is the linear law of the old styles.

@@ -61,6 +61,8 @@ Coefficients = Annotated[
 Counts = Annotated[
     tuple[Count, ...], _SOME, AfterValidator(_different), allowed("must be a list of different whole numbers from 1 on")
 ]
+#: Of rows, or of disks over rows.
+Rows = Annotated[int, Field(strict=True, ge=2), allowed("must be a whole number from 2 on")]
 Integrators = Annotated[
     tuple[Integrator, ...],
     Field(min_length=2),

@@ -120,13 +120,15 @@ def test_run_and_show(folder):
     finished = process("run", "scene.yaml", "-o", "out/result.nc", folder=folder)
     assert finished.returncode == 0, finished.stderr
     assert finished.stderr == ""  # no progress where nobody looks
-    assert "out/result.nc: 14 disks" in finished.stdout
+    assert "out/result.nc: 14 disks" in finished.stdout and "replaces" not in finished.stdout
     attributes = store.read_attributes(folder / "out" / "result.nc")
     assert 0 < attributes["wall_clock_seconds"] < 600
     assert attributes["package_version"] == __version__
     result = store.read(folder / "out" / "result.nc")[""]
     assert float(result["floor_response"].sum()) == pytest.approx(1.0, abs=1e-8)
 
+    again = succeeded("run", "scene.yaml", "-o", "out/result.nc", folder=folder)
+    assert again.endswith("s (replaces an earlier result.nc)\n")
     shown = succeeded("show", "out/result.nc", folder=folder)
     assert re.search(r"1\.0000000\d\d|0\.999999999", shown)
     for part in ("certificate", "force residual", "layers: 3", "minimise"):

@@ -44,9 +44,15 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"compared_stiffnesses": [1000.0, 2000.0]}, r"compared_stiffnesses = .*: must be two of"),
     ],
     "hysteresis": [({"cases": [LOOP, LOOP]}, "must have each material once"), ({"cases": []}, "cases")],
-    "network": [({"polydispersities": [0.0]}, r"polydispersities = \[0.0\]: must be above 0")],
+    "network": [
+        ({"polydispersities": [0.0]}, r"polydispersities = \[0.0\]: must be above 0"),
+        ({"scene": {"packing.layers": 5}}, r"scene\.packing\.layers = 5: must be more: contacts nearer than 4 radii"),
+    ],
     "overview": [({"forces": [0.5]}, r"forces = \[0\.5\]: must be two or more growing numbers above 0")],
-    "rolling_resistance": [({"most_friction": 0.05}, r"most_friction = 0.05: must be above least_friction = 0.05")],
+    "rolling_resistance": [
+        ({"most_friction": 0.05}, r"most_friction = 0.05: must be above least_friction = 0.05"),
+        ({"layers": [1]}, r"layers\[0\] = 1: must be a whole number from 2 on"),
+    ],
     "experiments": [
         ({"packings": {}}, r"cases = 'nearly equal': must have packings among"),
         ({"pictures": [9]}, r"pictures = \[9\]: must be below 3"),
@@ -58,8 +64,8 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
             r"realizations = \[4\]: must have a number for each of the layers",
         ),
         (
-            {"loaded": reduced.parameters("moduli")["loaded"] | {"scene": {"contact": {"friction": 0.2}}}},
-            r"loaded\.scene\.contact\.friction = 0\.2: is decided by the group",
+            {"loaded": reduced.parameters("moduli")["loaded"] | {"scene": {"packing.layers": 1}}},
+            r"loaded\.scene\.packing\.layers = 1: must be 2 or more",
         ),
     ],
     "pile_dip": [({"dip_height": -1.0}, r"dip_height = -1\.0: must be a number greater than 0")],

@@ -115,6 +115,7 @@ def friction_study():
         ("first_opening_anywhere", 0.0, 0.66, 0.68),
         ("first_opening_anywhere", 0.2, 3.8, 3.82),
         ("first_opening_anywhere", 1.0, 5.5, 5.52),
+        ("crossover", 0.0, 3.0, 3.1),
         ("crossover", 0.2, 20.1, 20.2),
         ("crossover", 1.0, 90.0, np.nan),
         ("reaches_floor", 0.0, 3.5, 3.6),

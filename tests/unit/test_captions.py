@@ -82,7 +82,7 @@ def test_fields_of_a_template_are_filled_in_and_lists_put_in_words():
         frictions=(0.2, 1.0), force=15.0, friction=0.2, restart=SimpleNamespace(forces=(1.0, 2.0, 15.0))
     )
     said = captions.of_group("numerics", given, p=parameters)["numerics"].whole
-    assert "for µ = 0.2 and 1 at 15 m̄g" in said and "under 1, 2 and 15 m̄g put back" in said
+    assert "for µ = 0.2 and 1 at 15 m̄g" in said and "under 1, 2 and 15 m̄g that are put back" in said
     assert said.endswith("µ = 0.2. Not in the paper. µ = 0.2.")
     with pytest.raises(KeyError, match="p"):
         captions.of_group("numerics", given)

@@ -250,10 +250,11 @@ PLANTED = [
     ("F2", everywhere("first_opening", 0.2, 3.9, 4.3), "in part"),
     ("F3", EARLY, "not supported"),
     ("F3", moved(FRICTION, "first_opening", 1.0, 50.0, NAN), "in part"),
-    ("F4a", moved(SLAB, "crossover", 0.0, 50.0, NAN), "cannot tell"),
-    ("F4a", moved(SLAB, "crossover", 0.0, 60.0, NAN), "not supported"),
-    ("F4b", moved(SLAB, "crossover", 0.0, 3.7, 3.8), "not supported"),
-    ("F4b", moved(SLAB, "crossover", 0.0, 1.0, 1.1), "not supported"),
+    ("F4a", moved(SLAB, "crossover", 0.0, 60.0, NAN), "in part"),
+    *(("F4a", both(moved(SLAB, "crossover", 0.0, force, NAN), everywhere("crossover", 0.0, force, NAN)), verdict)
+      for force, verdict in ((50.0, "cannot tell"), (60.0, "not supported"))),
+    *(("F4b", both(moved(SLAB, "crossover", 0.0, *ends), everywhere("crossover", 0.0, *ends)), "not supported")
+      for ends in ((3.7, 3.8), (1.0, 1.1))),
     ("F5a", TILTED, "not supported"),
     ("F5b", put(SLAB, "response", "teardrop_depth", [5.0, 1.0, 12.0]), "not supported"),
     ("F6", scaled(SLAB, "regions", "teardrop_depth", [[1.0], [0.4], [1.0], [1.0]]), "not supported"),

@@ -127,7 +127,7 @@ def dashpots(system, trial) -> np.ndarray:
             by_t = np.sign(trial.tangential[c]) * law.friction * by_n
         local[c, :2] = np.outer(normal[c], by_n) + np.outer(along, by_t)
         local[c, 2] = by_t
-    return system.tangent(replace(trial, tangent=local)).toarray()
+    return system.tangent(replace(trial, local=lambda: local)).toarray()
 
 
 def fastest(system, trial, part: float) -> float:

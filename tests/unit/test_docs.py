@@ -12,7 +12,7 @@ import pytest
 from places import ROOT
 
 from granular_response.cli import scene_reference
-from granular_response.scene import LaboratoryUnits, Scene, SceneError
+from granular_response.scene import FilePacking, LaboratoryUnits, Scene, SceneError
 from granular_response.scene.base import UNITS
 from granular_response.scene.material import Contact
 from granular_response.scene.motion import Motion
@@ -132,6 +132,7 @@ def test_the_reference_has_every_key_of_every_kind_of_scene():
     sparse = {f"{part}.{name}" for part in ("contact", "wall") for name in Contact.sparse} - {"wall.parameters"}
     sparse |= {f"motion.{name}" for name in Motion.sparse} | {"preparation.taps"}
     sparse |= {f"preparation.taps.{name}" for name in Taps.model_fields}
+    sparse |= {f"packing.{name}" for name in FilePacking.sparse}
     assert set().union(sparse, *(paths_of(scene.to_dict()) for scene in scenes)) == known
 
 

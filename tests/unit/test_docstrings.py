@@ -22,6 +22,8 @@ def public() -> dict[str, object]:
         if name in USED:
             methods = {key: getattr(one, "__func__", one) for key, one in vars(value).items() if key[0] != "_"}
             found |= {f"{name}.{key}": one for key, one in methods.items() if callable(one)}
+            shown = {key: one for key, one in methods.items() if ">>>" in (inspect.getdoc(one) or "")}
+            found |= {f"{name}.{key}": one for key, one in shown.items()}
     return found | {f"plot.{name}": getattr(gr.plot, name) for name in gr.plot.__all__}
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from small_scenes import at_rest, free_disks, scene
 
+import granular_response as gr
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop, relax
 from granular_response.solvers.problem import Problem
@@ -161,7 +162,36 @@ def test_loose_disk_does_not_keep_a_packing_from_rest():
     settled = relax(Dynamics(problem, state), Stop(1e-13, maximum_steps=20_000))
     assert settled.reached.settled
     assert settled.reached.loose_disks == 2
+    assert settled.reached.stopped_rattlers == 1  # the other one lies still
     assert settled.reached.kinetic_energy > 1e-13
+
+
+def test_what_rolls_need_not_fall_to_a_part_of_the_largest_energy():
+    """Beside a disk that falls on the floor and comes to rest there. It kept motions between equilibria going."""
+    problem, state = free_disks(
+        [[10.0, 1.0], [50.0, 1.0 - 1 / 6000]], velocity=[(0, 0), (2e-4, 0)], contact__friction=0.2
+    )
+    settled = relax(Dynamics(problem, state), Stop(1e-6, fallen=1e-4, maximum_steps=20_000))
+    assert settled.reached.settled
+    assert settled.reached.kinetic_energy > 5e-9
+
+
+def test_a_result_says_that_rolling_toes_were_stopped_by_hand(tmp_path):
+    """A pile on a flat floor without rolling resistance: its core holds, and the two disks of its toe roll away."""
+    packing = gr.Pile(layers=5).build()
+    changes = {
+        "contact": {"friction": 0.6, "stiffness_ratio": 0.5},
+        "wall": {"friction": 0.6},
+        "protocol": {"integrator": "leapfrog", "time_step": "auto", "maximum_steps": 40_000},
+        "loads": [],
+    }
+    x, room = packing.position[:, 0] + 5.0, packing.width + 10.0
+    alone = gr.Scene.from_arrays(x, packing.position[:, 1], packing.radius, width=room, scene=gr.Scene(**changes))
+    result = gr.solve(alone)
+    assert result.rest.reached.stopped_rattlers == result.certificate.loose_disks == 2
+    assert "2 rolling rattlers stopped by hand" in repr(result)
+    result.save(tmp_path / "pile.nc")
+    assert gr.open_result(tmp_path / "pile.nc").rest.reached.stopped_rattlers == 2
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])

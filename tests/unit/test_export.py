@@ -207,7 +207,7 @@ def test_errors_are_one_line(result, tmp_path):
 def test_a_missing_library_is_named(result, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "gsd", None)
     monkeypatch.setitem(sys.modules, "gsd.hoomd", None)
-    with pytest.raises(ExportError, match=r"needs the package gsd.*install granular-response\[export\]"):
+    with pytest.raises(ExportError, match=r"needs the package gsd.*, pip install gsd$"):
         export(result, tmp_path / "result.gsd")
 
 
@@ -378,3 +378,44 @@ def test_every_format_carries_what_the_user_guide_says(periodic, tmp_path, endin
     known = {"[True, True]": "all", "[False, True]": "one", "[False, False]": "–"}
     assert found == {name: said[name] for name in QUANTITIES}
     assert said["states"] == ("all" if ending == ".nc" else known[str(frames)])
+
+
+def lammps_lines(scene: dict, path: Path, state: int = -1) -> list[str]:
+    made = gr.solve(Scene.from_dict(SCENE).updated(scene), progress=False).export(path, state=state)
+    return made.read_text().splitlines()
+
+
+def test_a_script_for_lammps_has_the_laws_the_box_and_the_load(tmp_path):
+    """The same script, run by LAMMPS of 22 Jul 2025: forces of 2e-11 at step 0 and none after, without friction."""
+    lines = lammps_lines({"wall.friction": 0.1, "contact.damping_ratio": 0.25}, tmp_path / "in.lammps", 0)
+    k, kt = 3000.0, 2400.0
+    part = repr((kt / k) ** 0.5)
+    (pair,) = (line for line in lines if line.startswith("pair_coeff"))
+    numbers = [float(word) for word in pair.split() if re.fullmatch(r"[\d.]+(e-?\d+)?", word)]
+    np.testing.assert_allclose(numbers, [k, 0.5 * k**0.5, kt, float(part), 0.4], rtol=1e-14)
+    assert "hooke" in pair and "linear_history" in pair and pair.endswith("damping velocity")
+    (floor,) = (line for line in lines if line.startswith("fix floor"))
+    assert "granular hooke 6000.0" in floor and floor.endswith("yplane 0.0 NULL") and " 0.1 damping" in floor
+    assert "fix sides" in "\n".join(lines) and lines[-2].startswith("thermo_style")
+    assert "group loaded0 id 17" in lines and "variable y0 equal -1.0*v_factor" in lines
+    assert "variable factor equal 0.0+(1.0)*((step<40000)*step/40000+(step>=40000))" in lines
+    again = FilePacking(path=str(tmp_path / "in.data"), width=14.0, origin=(0.0, 0.0)).build()
+    assert again.n == 20 and "read_data in.data" in lines
+
+
+def test_a_script_for_lammps_of_a_loaded_state_keeps_its_load(tmp_path):
+    lines = lammps_lines(
+        {"packing.sides": "periodic", "wall.friction": 0.2, "loads.0.force": [0.0, -1.0]}, tmp_path / "in.lammps"
+    )
+    assert "variable factor equal 1.0" in lines and "boundary p fs p" in lines
+    assert not any(line.startswith("fix sides") for line in lines)
+    hertz = lammps_lines({"contact.law": "hertz", "protocol.tensile_dashpot": False}, tmp_path / "in.lammps")
+    (pair,) = (line for line in hertz if line.startswith("pair_coeff"))
+    constant = float(pair.split()[4])  # of sqrt(1/2) xi^(3/2) between two mean disks
+    assert pair.split()[3] == "hertz" and constant * 0.5**0.5 == pytest.approx(2000.0**1.5)
+    assert pair.endswith("damping velocity limit_damping")
+
+
+def test_what_lammps_has_not_is_refused(tmp_path):
+    with pytest.raises(ExportError, match=r"in.lammps: loads\[0\].torque: must be left out"):
+        lammps_lines({"loads.0.torque": 0.1}, tmp_path / "in.lammps")

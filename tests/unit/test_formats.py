@@ -555,7 +555,7 @@ ONE_DISK = "x,z,radius,mass\n1,1,1,1\n"
         (f"x,z,radius,Rho\n{TWO_DISKS}", "column rho: unknown, did you mean density? (mass or density, or neither)"),
         (f"x [mm],z [mm],radius [cm],mass\n{TWO_DISKS}", "columns x, z and radius: must have the same unit of length"),
         (f"X,x,z,radius\n{TWO_DISKS}", "column x is given 2 times, header must name x, z and radius"),
-        (f"{ONE_DISK}1e300,1,1,1\n", "x = 1e+300: must be between the side walls 0 and 9"),
+        (f"{ONE_DISK}1e300,1,1,1\n", "reach from 0 to 1e+300, packing.origin says where left wall and floor are"),
         (f"{ONE_DISK}4,1e300,1,1\n", "z = 1e+300: must be at most 1e+09, 1e9 mean radii"),
         (f"{ONE_DISK}4,1,1,1e300\n", "line 2: mass = 1.0: must be at least 1e+288, 1e-12 of the largest"),
         (f"{ONE_DISK}4,1,1e300,1\n", "line 3: radius = 1e+300: must be at most 4.5, half the width of the box"),

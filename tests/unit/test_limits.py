@@ -8,11 +8,12 @@ import pytest
 from small_scenes import free_disks, scene
 
 import granular_response
+import granular_response as gr
 from granular_response.errors import EquilibriumError
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers import solution as solving
 from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop
-from granular_response.solvers.equilibrium import finish
+from granular_response.solvers.equilibrium import check_overlaps, finish
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import CROSSING, PROTOCOL, NotSettled, settle
 from granular_response.solvers.solution import rest_state, solve_scene
@@ -210,3 +211,37 @@ def test_no_certificate_for_a_light_disk_that_does_not_stay(tmp_path, light, con
     }
     with pytest.raises(NotSettled, match="did not come to rest under gravity"):
         solve_scene(Scene.from_dict(described, folder=tmp_path))
+
+
+@pytest.mark.parametrize("most", [1, 50, 99, 100, 101, 250])
+@pytest.mark.parametrize("integrator", ["beeman", "verlet", "leapfrog", "gear"])
+def test_a_limit_of_steps_holds_to_the_step(most, integrator):
+    """It was rounded up to the next hundred. For gravity, for each load, and where a load moves a disk."""
+    protocol = {"method": "dynamics", "static_finish": False, "maximum_steps": most, "time_step": 1e-4,
+                "load_factors": [1.0, 2.0], "integrator": integrator}  # fmt: skip
+    for load in ({"disk": 0, "force": [0, -1.0]}, {"disk": 0, "displacement": [None, -1e-3]}):
+        scene = {"protocol": protocol, "loads": [load]}
+        with pytest.warns(UserWarning, match=rf"not at rest within protocol\.maximum_steps = {most}: gravity"):
+            result = gr.solve(gr.Scene.from_arrays(x=[5], z=[5.0], radius=1.0, width=10, scene=scene), progress=False)
+        assert [one.reached.relaxation_steps for one in (result.rest, *result.loaded)] == [most] * 3
+        assert result.rest.reached.steps == most
+        assert result.rest.reached.time == pytest.approx(most * 1e-4)
+
+
+@pytest.mark.parametrize(("step", "said"), [("auto", "blew up"), (5e-4, "did not come to rest")])
+def test_a_packing_that_sinks_through_itself_is_told_of_its_stiffness(step, said):
+    """A smaller time step, or more steps, which were advised, do not help."""
+    soft = {"packing": {"kind": "slab", "layers": 3, "disks_per_row": 7}, "contact": {"normal_stiffness": 1e-3}}
+    protocol = {"protocol": {"time_step": step, "maximum_steps": 500}}
+    with pytest.raises(gr.SolveError, match=rf"{said} .*so soft \(contact\.normal_stiffness 0\.001\) that disks sink"):
+        gr.solve({**soft, "loads": [], **protocol}, progress=False)
+
+
+def test_walls_have_names_in_messages():
+    scene = gr.Scene.from_arrays(x=[1, 5], z=[1, 1], radius=1.0, width=10, scene={"loads": []})
+    problem = Problem.from_scene(scene)
+    for place, wall in (([-0.5, 3.0], "left wall"), ([10.5, 3.0], "right wall"), ([5.0, -0.5], "floor")):
+        state = problem.bare_state()
+        sunk = problem.relisted(replace(state, position=np.array([place, [5.0, 6.0]])))
+        with pytest.raises(gr.SolveError, match=rf"^disk 0 and the {wall} overlap by 1\.5 mean radii at load"):
+            check_overlaps(problem, sunk)

@@ -198,7 +198,7 @@ def _without_turn(system, trial, c):
     turn = np.outer(trial.normal[c] * along - trial.tangential[c] * normal, along) / np.hypot(*d)
     local = trial.tangent.copy()
     local[c, :2, :2] -= turn
-    return replace(trial, tangent=local)
+    return replace(trial, local=lambda: local)
 
 
 def of_all(change):

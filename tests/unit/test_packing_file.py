@@ -71,9 +71,13 @@ def test_layout_of_the_file(build):
         ("x,z,radius\n1,1,1\n3,inf,1\n", "line 3: z = 'inf': must be a finite number"),
         ("x,z,radius\n1,1,1\n3,1,0\n", "line 3: radius = 0.0: must be greater than 0"),
         ("x,z,radius\n1,1,-1\n", "line 2: radius = -1.0: must be greater than 0"),
-        ("x,z,radius\n1,1,1\n10,1,1\n", "line 3: x = 10.0: must be between the side walls 0 and 10"),
+        (
+            "x,z,radius\n1,1,1\n10,1,1\n",
+            "line 3: x = 10.0: must be between the side walls 0 and 10; the disks reach from 0 to 11, "
+            "packing.origin says where left wall and floor are",
+        ),
         ("x,z,radius\n1,1,1\n5,6,5.1\n", "line 3: radius = 5.1: must be at most 5, half the width of the box"),
-        ("x,z,radius\n1,-1,1\n", "line 2: z = -1.0: must be above the floor 0"),
+        ("x,z,radius\n1,-1,1\n", "line 2: z = -1.0: must be above the floor 0, which packing.origin says"),
         ("x,z,radius\n1,1,1\n3,1,1\n1,1,2\n", "line 4: disk is in the same place as that of line 2"),
     ],
 )

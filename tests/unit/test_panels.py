@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from granular_response.plot import style
+from granular_response.state import FLOOR, LEFT_WALL
 from granular_response_paper import panels
 
 
@@ -34,6 +36,34 @@ def test_titles_have_the_letters_of_their_picture():
     figure, axes = style.figure(1, 3)
     panels.titles(axes.flat, ("one", "two"), stem="fig05b_stiffness")
     assert style.drawn_letters(figure) == ["e", "f"]
+
+
+def test_lines_of_forces_and_their_key_have_one_scale():
+    """Length and width are proportional to the force, as the captions of Figs. 2, 13 and 17 ask."""
+    axes = style.figure()[1][0, 0]
+    along = np.array([[0.6, 0.8], [1.0, 0.0]])
+    contacts = panels.Contacts(np.array([[1.0, 2.0], [5.0, 2.0]]), along)
+    panels.forces(axes, contacts, np.array([[3.0, 4.0], [2.5, 0.0]]), 5.0)
+    panels.force_key(axes, (8.0, 6.0), 1.0, 5.0, style.WEIGHT)
+    drawn, key = axes.collections
+    length = np.linalg.norm(np.diff(np.array([*drawn.get_segments(), *key.get_segments()]), axis=1)[:, 0], axis=1)
+    np.testing.assert_allclose(length, panels.LONGEST * np.array([1.0, 0.5, 0.2]))
+    width = np.concatenate([drawn.get_linewidth(), key.get_linewidth()])
+    np.testing.assert_allclose(width, panels.WIDEST * np.array([1.0, 0.5, 0.2]))
+    panels.forces(axes, contacts, np.zeros((2, 2)), 0.0)
+    assert len(axes.collections) == 2
+
+
+def test_contacts_with_walls_come_last_and_their_normals_point_inwards():
+    data = xr.Dataset(
+        {
+            "radius": ("disk", [1.0, 1.0]), "contact_disk": ("contact", [0]), "contact_partner": ("contact", [1]),
+            "wall_disk": ("wall_contact", [0, 1]), "wall_index": ("wall_contact", [FLOOR, LEFT_WALL]),
+        }
+    )  # fmt: skip
+    found = panels.Contacts.of(data, np.array([[3.0, 1.0], [1.0, 1.0]]))
+    np.testing.assert_allclose(found.point, [[2.0, 1.0], [3.0, 0.0], [0.0, 1.0]])
+    np.testing.assert_allclose(found.normal, [[2.0, 0.0], [0.0, 1.0], [1.0, 0.0]])
 
 
 def test_packings_have_names():

@@ -65,7 +65,7 @@ def test_folders_parameters_and_lock_have_the_same_groups(collection):
         assert set(given[group]) <= set(found) <= set(type(described).model_fields)
     # DVC keeps what it once wrote of a stage that is gone, and reads it around every other stage.
     locked = set(re.findall(r"^  ([\w@]+):$", (base / "dvc.lock").read_text(), re.M))
-    assert locked == set(reproduce.stage_names(collection))
+    assert locked == set(reproduce.stage_names(collection, ROOT))
 
 
 @pytest.mark.parametrize("group", reduced.GROUPS)

@@ -62,7 +62,7 @@ def test_contacts_as_a_table(result, tmp_path):
     assert floor.normal_force.sum() == pytest.approx(float(data["floor_force"].isel(load=1).sum()))
     assert set(table.status) <= {"sticking", "sliding"}
     assert (table.status == "sliding").sum() == state.pairs.sliding.sum() + state.walls.sliding.sum()
-    assert len(result.contacts_table(state=0)) != len(table)
+    assert len(result.contacts_table(0)) != len(table)
     table.to_csv(tmp_path / "contacts.csv")
     assert (tmp_path / "contacts.csv").read_text().startswith("contact,first,second,wall,x,z,status,")
     with pytest.raises(IndexError, match="state = 3: must be from -3 to 2"):
@@ -78,6 +78,27 @@ def test_the_response_at_a_place(result):
     for mistake in ({"x": np.nan}, {"smooth": 0.0}):
         with pytest.raises(ValueError, match="must be"):
             result.response_at(**mistake)
+
+
+def test_the_response_at_many_places_is_that_at_each(result):
+    places = [-3.2, 0.0, 5.0]
+    together, smooth = result.response_at(places), result.response_at(np.array(places), smooth=3.0)
+    for k, x in enumerate(places):
+        xr.testing.assert_identical(together.isel(floor_disk=k), result.response_at(x))
+        xr.testing.assert_allclose(smooth.isel(x=k), result.response_at(x, smooth=3.0), rtol=1e-14)
+    assert smooth["x"].values.tolist() == places
+    with pytest.raises(ValueError, match=r"^x = \[\[0, 2\]\]: must be a list of finite numbers$"):
+        result.response_at([[0, 2]])
+
+
+def test_displacements_are_from_the_initial_equilibrium(result):
+    moved, (disk,) = result.displacement, result.loaded_disks
+    assert moved.dims == ("load", "disk", "axis") and moved["force"].values.tolist() == [2.0, 4.0]
+    expected = result.loaded[1].position - result.rest.position
+    np.testing.assert_array_equal(moved.isel(load=1), expected)
+    down = moved.sel(axis="z").isel(disk=disk)
+    assert down[1] < down[0] < 0.0 and abs(expected).max() == -float(down[1])
+    assert gr.solve(gr.Scene(packing=gr.Slab(layers=2, disks_per_row=4), loads=[])).displacement.shape == (0, 7, 2)
 
 
 def test_results_are_subtracted_disk_by_disk_as_no_place_is_the_same(result):

@@ -3,7 +3,6 @@
 import base64
 import copy
 import dataclasses
-import gzip
 import io
 import itertools
 import json
@@ -125,7 +124,6 @@ def root(tmp_path_factory):
         path.parent.mkdir(parents=True, exist_ok=True)
         shade = np.linspace(0, 255, size[0] * size[1] * 3).reshape(size[1], size[0], 3).astype(np.uint8)
         Image.fromarray(shade).save(path)
-        path.with_suffix(".pdf").write_bytes(b"%PDF")
         beside = path.with_name("captions.json")
         said = json.loads(beside.read_text()) if beside.exists() else {}
         said[path.stem] = {"caption": f"What {path.stem} <shows>.", "alternative": "How it looks."}
@@ -222,7 +220,7 @@ def test_pictures_lead_to_the_files_that_are_there(root, page, tmp_path):
     assert all((root / "figures" / link).exists() for link in links)
     part = page.partition('<figure id="picture-fig06_linear_range"')[2].partition("</figure>")[0]
     assert re.findall(r'<a href="([^#"]+)">([\w ]+)</a>', part) == [
-        ("friction_linear_range/fig06_linear_range.pdf", "PDF"),
+        ("friction_linear_range/fig06_linear_range.png", "PNG"),
         ("../data/friction_linear_range.nc", "data"),
     ]
     elsewhere = report.write(tmp_path / "elsewhere" / "page.html", root).read_text()
@@ -318,7 +316,7 @@ def test_the_stored_page_shows_the_stored_benchmarks():
     stored = (ROOT / report.OUTPUT).read_text()
     shown = [one.picture for one in benchmarks.collect(ROOT / "benchmarks")]
     assert len(shown) > 5
-    assert [one.stem for one in shown if one.source not in stored or one.vector not in stored] == [], "make reproduce"
+    assert [one.stem for one in shown if one.source not in stored] == [], "make reproduce"
 
 
 def test_every_figure_with_parameters_stands_beside_its_caption():
@@ -377,23 +375,6 @@ def test_embedded_pictures_are_as_drawn(root):
         assert shown.format == "WEBP"
         difference = np.abs(np.asarray(shown).astype(int) - np.asarray(drawn))
         assert difference.shape == (500, 1400, 3) and difference.max() <= 16 and np.mean(difference) < 4
-
-
-def test_a_vector_picture_takes_the_place_of_a_raster_one(root, tmp_path, tab):
-    shutil.copytree(root, tmp_path / "copy")
-    path = tmp_path / "copy" / "figures" / "theory" / "fig01_predictions.png"
-    Image.new("RGB", (1400, 500), "white").save(path)
-    plain = pictures.embed(path)
-    drawn = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 14 5"><path d="M 0 0 L 14 5" stroke="red"/></svg>'
-    path.with_suffix(".svgz").write_bytes(gzip.compress(drawn.encode(), mtime=0))
-    assert plain.plot and not plain.vector and pictures.embed(path).vector
-    report.write(tmp_path / "copy" / "figures" / "report.html", tmp_path / "copy")
-    del tab.problems[:], tab.requests[:]
-    tab.open(tmp_path / "copy" / "figures" / "report.html", 1400)
-    source = "document.querySelector('#picture-fig01_predictions img').src"
-    tab.wait(f"{source}.startsWith('data:image/svg+xml,')")
-    assert tab.run(f"decodeURIComponent({source})").endswith(drawn)
-    assert tab.problems == [] and {Path(url).name for url in tab.requests} == {"report.html"}
 
 
 def test_every_picture_has_an_alternative_text_of_its_own(page):

@@ -12,7 +12,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.store import atomic
 from granular_response.sweeps import rest as settled
 from granular_response.sweeps.keys import key
-from granular_response.sweeps.memory import MemoryWarning
+from granular_response.sweeps.memory import MISSING, Memory, MemoryWarning
 from granular_response.sweeps.resources import using
 
 SCENE = Scene.from_dict(
@@ -156,3 +156,11 @@ def test_a_full_disk_costs_a_warning(folder, computed, monkeypatch):
     with pytest.warns(MemoryWarning, match="No space left on device"):
         settled.rest_state(Problem.from_scene(SCENE))
     assert len(computed) == 1 and files(folder) == []
+
+
+def test_a_pipe_in_the_folder_counts_as_absent(folder):
+    """It has no end: who reads it waits for ever."""
+    memory = Memory(folder)
+    memory.save("kept", 1)
+    os.mkfifo(memory.shelf / "pipe.kept")
+    assert memory.load("pipe") is MISSING and memory.load("kept") == 1

@@ -40,10 +40,10 @@ MALFORMED = {
         "loads[0].torqe = 1: unknown key, did you mean torque? (allowed: disk, force, displacement, torque)"
     ),
     "preparation: {gravty: slow}": (
-        "preparation.gravty = 'slow': unknown key, did you mean gravity? (allowed: gravity, ramp_time)"
+        "preparation.gravty = 'slow': unknown key, did you mean gravity? (allowed: gravity, ramp_time, taps)"
     ),
     "packing: {kind: file, path: a.csv, width: 1.0, layers: 3}": (
-        "packing.layers = 3: unknown key (allowed: kind, path, format, width, origin, sides, columns)"
+        "packing.layers = 3: unknown key (allowed: kind, path, format, width, origin, sides, columns, overlaps)"
     ),
     # Wrong types and values out of range.
     "contact: 3": f"contact = 3: must be a mapping with keys among {CONTACT_KEYS}",
@@ -172,6 +172,16 @@ def test_constructors_raise_the_same_error():
     ("changes", "message"),
     [
         ({"contact.fricton": 1.0}, r"^contact\.fricton = 1\.0: unknown key, did you mean friction\?"),
+        ({"friction": 1.0}, r"^friction = 1\.0: unknown key, did you mean contact\.friction or wall\.friction\? \("),
+        (
+            {"protocol.friction": 1.0},
+            r"^protocol\.friction = 1\.0: unknown key, did you mean contact\.friction or wall",
+        ),
+        ({"layers": 3}, r"^layers = 3: unknown key, did you mean packing\.layers\?"),
+        (
+            {"loads.force": [0.0, -1.0]},
+            r"^loads\.force: loads has 1 items, no item 'force', did you mean loads\.0\.force",
+        ),
         ({"contacts.friction": 1.0}, r"^contacts = \{'friction': 1\.0\}: unknown key, did you mean contact\?"),
         ({"loads.1.torque": 1.0}, r"^loads\.1: loads has 1 items, no item '1'$"),
         ({"contact.friction.x": 1.0}, r"^contact\.friction = \{'x': 1\.0\}: must be a number from 0 to 1e6"),
@@ -191,3 +201,24 @@ def test_updates_are_checked(changes, message):
     scene = Scene(loads=[Load(disk=900, force=(0.0, -1.0))])
     with pytest.raises(SceneError, match=message):
         scene.updated(changes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (
+            {"contact.normal_stiffness": "3000 N/m"},
+            "at most 1e12; the unit is mg / mean radius, gr.LaboratoryUnits converts",
+        ),
+        ({"contact.normal_stiffness": "3000N/m"}, "the unit is mg / mean radius, gr.LaboratoryUnits converts"),
+        ({"protocol.ramp_time": "2 s"}, "the unit is sqrt(R/g), gr.LaboratoryUnits converts"),
+        ({"contact.normal_stiffness": "stiff"}, "must be a number greater than 0, at most 1e12"),
+        ({"contact.normal_stiffness": "3000"}, "must be a number greater than 0, at most 1e12"),
+        ({"loads.force": [0, -1]}, "loads.force: loads has 1 items, no item 'force', did you mean loads.0.force?"),
+        ({"loads.1.force": [0, -1]}, "loads.1: loads has 1 items, no item '1'"),
+    ],
+)
+def test_units_and_paths_are_named_where_they_are_missed(changes, said):
+    with pytest.raises(SceneError) as caught:
+        Scene().updated(changes)
+    assert str(caught.value).endswith(said)

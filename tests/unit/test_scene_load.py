@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from granular_response.scene import (
+    Load,
     Packing,
     PilePacking,
     RowSelector,
@@ -149,3 +150,7 @@ def test_sideways_forces_that_sum_to_zero_but_for_rounding_are_allowed():
     loads[0]["force"] = [0.1001, 0.0]
     with pytest.raises(SceneError, match="sum of the forces along x, must be 0"):
         Scene().updated({"packing.sides": "periodic", "loads": loads})
+
+
+def test_the_other_spelling_of_the_middle_of_the_top():
+    assert Load(disk="top-center", force=(0.0, -1.0)) == Load(disk="top-centre", force=(0.0, -1.0))

@@ -9,7 +9,7 @@ import pytest
 from small_scenes import free_disks, scene, shaken, started
 
 from granular_response.contact import LAWS
-from granular_response.kernels.statics import SMALL_TURN, _angle
+from granular_response.kernels.statics import SMALL_TURN, Response, _angle, _one_pair
 from granular_response.solvers import stability
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.pattern import Pattern
@@ -56,26 +56,28 @@ def test_forces_agree_with_dynamics_at_rest(friction, spring, law):
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("friction", FRICTION)
 @pytest.mark.parametrize("size", [1e-4, 0.1])
-def test_contacts_that_keep_their_status_have_the_same_bits_in_vectors(friction, law, size):
-    """Statuses at random, small and large turns; and by which force the return map would give others."""
-    problem = problem_with(friction, law)
+def test_pairs_have_the_bits_in_vectors_that_each_has_alone(law, size):
+    """Random displacements, small and large turns, kept statuses, and contacts that keep the statuses of their own."""
+    problem = problem_with("both", law)
     system, known = started(problem, shaken(problem, spring=5e-3))
     rng = np.random.default_rng(1)
-    rubs = system.friction > 0.0
-    sense = np.where(rubs, rng.integers(-2, 3, len(rubs)), rng.integers(0, 2, len(rubs))).astype(np.int8)
-    sense[sense == -1] = OPEN
-    q = known.q + size * rng.normal(size=system.dof)
-    fixed, kept = system.trial(known, q, fixed=sense), system.kept(known, q, sense, np.zeros(system.dof), 1.0)
-    for name in ("contact_force", "normal", "tangential", "status"):
-        assert np.array_equal(getattr(kept, name), getattr(fixed, name)), name
-    assert np.array_equal(kept.normals, fixed.normals)
-    assert np.array_equal(kept.configuration.spring, fixed.configuration.spring)
+    q, rates = known.q + size * rng.normal(size=system.dof), rng.normal(size=system.dof)
+    sense = rng.choice([OPEN, STICKING, SLIDING, -SLIDING], len(known.spring)).astype(np.int8)
     free = system.trial(known, q)
-    own = system.kept(known, q, free.sense, np.zeros(system.dof), 1.0)
+    for fixed in (sense, None):
+        trial = system.trial(known, q, fixed=fixed, velocity=rates, length=1e-3)
+        alone = Response.empty(len(sense))
+        for c in range(len(system.first)):
+            _one_pair(
+                c, q, known.q, rates, 1e-3, problem.n, problem.packing.radius, system.pairs, system.pairs.shape,
+                known.overlap, known.spring, None, None if fixed is None else fixed.astype(float), alone, 0.0, 0.0,
+            )  # fmt: skip
+        for name, found in alone._asdict().items():
+            assert np.array_equal(found[: len(system.first)], getattr(trial.contacts, name)[: len(system.first)]), name
+    own = system.trial(known, q, fixed=free.sense)
     assert own.contradiction == 0.0 and np.array_equal(own.contact_force, free.contact_force)
-    assert kept.contradiction > 1.0
+    assert system.trial(known, q, fixed=sense).contradiction > 1.0
 
 
 def dense_tangent(system, trial):

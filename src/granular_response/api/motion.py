@@ -69,36 +69,25 @@ def motion(
     with shown(progress) as report, compiling.logged(report):
         found = trajectory(asked, times, start=start, progress=report)
     packing, states = found.problem.packing, found.states
-    work, of_disks = f"{FORCE} * {LENGTH}", ("time", "disk")
-    energies = {
-        "kinetic_energy": found.translation,
-        "rotational_energy": found.rotation,
-        "potential_energy": found.height,
-        "elastic_energy": found.elastic,
+    work, velocity = f"{FORCE} * {LENGTH}", f"{LENGTH} / {TIME}"
+    momentum = {"momentum": f"{MASS} * {velocity}", "angular_momentum": f"{MASS} * {LENGTH} * {velocity}"}
+    of_disks = {"position": LENGTH, "velocity": velocity, "angle": "radian", "angular_velocity": f"radian / {TIME}"}
+    columns: dict[str, tuple[np.ndarray, str]] = {
+        **{name: (np.stack([getattr(state, name) for state in states]), unit) for name, unit in of_disks.items()},
+        **{name: (values, momentum.get(name, work)) for name, values in found.sums().items()},
+        "contacts": (np.array([state.pairs.touching.sum() + state.walls.touching.sum() for state in states]), "1"),
+        "load_factor": (np.array([state.load_factor for state in states]), "1"),
     }
-    energies["energy"] = np.sum(list(energies.values()), axis=0)
-    touching = [int(s.pairs.touching.sum() + s.walls.touching.sum()) for s in states]
-    velocity = f"{LENGTH} / {TIME}"
-
-    def of(name: str) -> np.ndarray:
-        return np.stack([getattr(state, name) for state in states])
-
-    data: dict[str, tuple[Any, np.ndarray, str]] = {
-        "position": ((*of_disks, "axis"), of("position"), LENGTH),
-        "velocity": ((*of_disks, "axis"), of("velocity"), velocity),
-        "angle": (of_disks, of("angle"), "radian"),
-        "angular_velocity": (of_disks, of("angular_velocity"), f"radian / {TIME}"),
-        **{name: ("time", values, work) for name, values in energies.items()},
-        "momentum": (("time", "axis"), found.momentum, f"{MASS} * {velocity}"),
-        "angular_momentum": ("time", found.angular_momentum, f"{MASS} * {LENGTH} * {velocity}"),
-        "contacts": ("time", np.array(touching), "1"),
-        "load_factor": ("time", np.array([state.load_factor for state in states]), "1"),
-        "radius": ("disk", packing.radius, LENGTH),
-        "mass": ("disk", packing.mass, MASS),
+    data = {
+        name: (_dimensions(name, name in of_disks), values, {"long_name": name.replace("_", " "), "units": unit})
+        for name, (values, unit) in columns.items()
     }
-    labels = {name: name.replace("_", " ") for name in data} | {"contacts": "closed contacts"}
+    data["radius"], data["mass"] = (
+        (("disk",), values, {"long_name": name, "units": unit})
+        for name, values, unit in (("radius", packing.radius, LENGTH), ("mass", packing.mass, MASS))
+    )
     return xr.Dataset(
-        {name: (dims, one, {"long_name": labels[name], "units": unit}) for name, (dims, one, unit) in data.items()},
+        data,
         {"time": ("time", found.times, {"long_name": "time", "units": TIME}), "axis": ["x", "z"]},
         {
             "title": "motion of a granular packing",
@@ -109,3 +98,8 @@ def motion(
             "units": UNITS,
         },
     )
+
+
+def _dimensions(name: str, of_disks: bool) -> tuple[str, ...]:
+    axis = ("axis",) if name in ("position", "velocity", "momentum") else ()
+    return ("time", *(("disk",) if of_disks else ()), *axis)

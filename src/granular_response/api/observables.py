@@ -55,16 +55,15 @@ def coordination_number(result: Result) -> xr.Dataset:
     (array([4.382, 4.382]), array([0, 0]))
     """
 
-    def counted(state: State, without_rattlers: bool) -> float:
-        if without_rattlers and network.rattlers(state).all():
-            return float("nan")
-        return network.coordination_number(state, without_rattlers=without_rattlers)
-
     states = _states(result)
+    loose = [network.rattlers(state) for state in states]
     columns = {
-        "coordination_number": [counted(state, False) for state in states],
-        "without_rattlers": [counted(state, True) for state in states],
-        "rattlers": [int(network.rattlers(state).sum()) for state in states],
+        "coordination_number": [network.coordination_number(state) for state in states],
+        "without_rattlers": [
+            np.nan if gone.all() else network.coordination_number(state, without_rattlers=True)
+            for state, gone in zip(states, loose, strict=True)
+        ],
+        "rattlers": [int(gone.sum()) for gone in loose],
     }
     return xr.Dataset({name: ("state", values) for name, values in columns.items()}, _along(result))
 

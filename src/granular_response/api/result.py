@@ -139,32 +139,72 @@ class Result:
         """
         return self._data["floor_force_change"].copy()
 
-    def response_at(self, x: float = 0.0, *, smooth: float | None = None) -> xr.DataArray:
-        """The floor response at the place ``x`` from the loaded disk, for each load.
+    def response_at(
+        self, x: float | Sequence[float] | np.ndarray = 0.0, *, smooth: float | None = None
+    ) -> xr.DataArray:
+        """The floor response at the place ``x`` from the loaded disk, or at many places, for each load.
 
         Parameters
         ----------
-        x : place in mean radii; the response is that of the nearest floor disk.
+        x : a place in mean radii, or a list of them; the response is that of the nearest floor disk.
         smooth : width in mean radii of a Gaussian average over floor disks (Sec. VI); then the stress per force at x,
             per mean radius.
 
-        Raises ValueError for a place that is not finite, and a width that is not positive.
+        Returns
+        -------
+        Dimension ``load``; of a list also ``floor_disk``, the nearest one to each place, or with ``smooth`` the places
+        themselves as ``x``.
+
+        Raises ValueError for places that are not finite, and a width that is not positive.
 
         Examples
         --------
-        >>> result.response_at(0.0).sizes
-        Frozen({'load': 1})
+        >>> result.response_at(0.0).sizes, result.response_at([-2.0, 0.0, 2.0], smooth=2.0).sizes
+        (Frozen({'load': 1}), Frozen({'load': 1, 'x': 3}))
         """
-        (place,) = _places("x", [x])
-        data = self._data
+        many, data, box = np.ndim(x) > 0, self._data, self.rest.box
+        places = _places("x", x if isinstance(x, (Sequence, np.ndarray)) and many else [x])
+        at = data["x"].values
         if smooth is None:
-            away = self.rest.box.separation(np.c_[data["x"], np.zeros_like(data["x"])], np.array([place, 0.0]))[:, 0]
-            return data["floor_response"].isel(floor_disk=int(np.abs(away).argmin())).copy()
-        at, response, period = data["x"].values, data["floor_response"].values, self.rest.box.period
-        smoothed = smoothed_response([place], at, response, smooth, period)[:, 0]
+            away = box.separation(np.c_[at, 0.0 * at][:, None], np.c_[places, 0.0 * places])[..., 0]
+            nearest = np.abs(away).argmin(axis=0)
+            return data["floor_response"].isel(floor_disk=nearest if many else int(nearest[0])).copy()
+        smoothed = smoothed_response(places, at, data["floor_response"].values, smooth, box.period)
         labels = {"long_name": "smoothed floor response", "units": f"1 / {LENGTH}"}
         along = {name: data[name] for name in ("load", "load_factor", "step", "branch")}
-        return xr.DataArray(smoothed, {**along, "x": place}, ("load",), "smoothed_response", labels)
+        found = xr.DataArray(smoothed, {**along, "x": places}, ("load", "x"), "smoothed_response", labels)
+        return found if many else found.isel(x=0)
+
+    @property
+    def displacement(self) -> xr.DataArray:
+        """(load, disk, axis) way of each disk from the initial equilibrium, in mean radii.
+
+        With the coordinate ``force`` (load), the total magnitude of the applied forces in mg, for a curve of force and
+        displacement; :attr:`loaded_disks` says which disks are loaded.
+
+        Examples
+        --------
+        >>> growing = gr.solve(result.scene, load_factors=[0.5, 1.0])
+        >>> growing.displacement.sel(axis="z").isel(disk=growing.loaded_disks[0]).plot(x="force")  # doctest: +ELLIPSIS
+        [<matplotlib...
+        """
+        data = self._data
+        position = data["position"]
+        moved = (position.isel(state=slice(1, None)) - position.isel(state=0)).rename(state="load")
+        along = {name: data[name] for name in ("load", "load_factor", "step", "branch")}
+        moved.attrs = {"long_name": "displacement", "units": LENGTH}
+        return moved.assign_coords(along | {"force": data["total_force"]}).rename("displacement")
+
+    @property
+    def loaded_disks(self) -> np.ndarray:
+        """(load_point,) the disk of each load of the scene.
+
+        Examples
+        --------
+        >>> result.loaded_disks.tolist() == result.to_dataset()["loaded_disk"].values.tolist()
+        True
+        """
+        return self._data["loaded_disk"].values.copy()
 
     @property
     def reaction(self) -> xr.DataArray:
@@ -186,7 +226,7 @@ class Result:
         names = [name for name in map(str, self._data.data_vars) if name.startswith(("contact_", "wall_"))]
         return self._data[names].copy(deep=True)
 
-    def contacts_table(self, *, state: int = -1) -> Any:
+    def contacts_table(self, state: int = -1) -> Any:
         """The closed contacts of one state, a row for each, as a ``pandas.DataFrame``.
 
         ``first`` and ``second`` are the disks, ``second`` is -1 at a ``wall`` ("floor", "left_wall" or "right_wall", ""
@@ -363,19 +403,23 @@ class Result:
         Parameters
         ----------
         path : its ending is the format: ``.gsd`` and ``.xyz`` for OVITO, ``.vtu`` and ``.pvd`` for ParaView, ``.data``
-            and ``.dump`` for LAMMPS, ``.txt`` for YADE, ``.csv`` for disks, ``.contacts.csv`` and ``.events.csv``.
+            and ``.dump`` for LAMMPS, ``in.lammps`` for a script with the disks beside it, ``.txt`` for YADE, ``.csv``
+            for disks, ``.contacts.csv`` and ``.events.csv``.
         state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last
             in a file of one.
 
         Raises
         ------
         granular_response.ExportError
-            For another ending, a state that does not exist, a missing library, or a place that cannot be written.
+            For another ending, a state that does not exist, a scene that the program cannot have, a missing library, or
+            a place that cannot be written.
 
         Examples
         --------
         >>> result.export("slab.contacts.csv").name
         'slab.contacts.csv'
+        >>> result.export("in.lammps", state=0).read_text().splitlines()[8]
+        'pair_style granular'
         """
         return exporting.export(self._data, path, state=state)
 
@@ -421,7 +465,10 @@ class Result:
             name = f"load factor {state.load_factor:g}" if k else "initial equilibrium"
             stable = {True: "stable", False: "unstable", None: "stability not determined"}[state.certificate.stable]
             stable = stable if state.certificate.balanced else "not in balance"
-            rows.append((name, f"{stable}, max. unbalanced force {state.certificate.force_residual:.1e}, {contacts}"))
+            text = f"{stable}, max. unbalanced force {state.certificate.force_residual:.1e}, {contacts}"
+            if stopped := state.reached.stopped_rattlers:
+                text += f", {stopped} rolling rattler{'s' if stopped > 1 else ''} stopped by hand"
+            rows.append((name, text))
         return [*rows, *([moved] if (moved := self._moved()) else [])]
 
     def _moved(self) -> tuple[str, str] | None:
@@ -510,7 +557,7 @@ def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scen
     return scene if isinstance(scene, Scene) else Scene.from_dict(scene)
 
 
-def _places(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:
+def _places(name: str, given: Sequence[Any] | np.ndarray) -> np.ndarray:
     """Coordinates of a grid along one axis."""
     try:
         places = np.array(np.nan if unordered(given) else plain(given), float)

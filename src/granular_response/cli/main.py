@@ -119,8 +119,9 @@ def _keep(output: Path, solution: Solution, started: float, allow_unsettled: boo
     from ..store import files as store
     from ..store.result import to_dataset
 
+    replaced = f" (replaces an earlier {output.name})" if output.exists() else ""
     store.write(output, to_dataset(solution), {"wall_clock_seconds": time.perf_counter() - started}, keep=True)
-    typer.echo(f"{output}: {said}, {time.perf_counter() - started:.1f} s")
+    typer.echo(f"{output}: {said}, {time.perf_counter() - started:.1f} s{replaced}")
     for remark in solution.remarks:
         commands.say(f"{output}: {remark}")
     if solution.unsettled and not allow_unsettled:

@@ -12,7 +12,7 @@ from ..contact.law import stiffness
 from ..machine.lanes import WIDTH, anywhere, gather, magnitude, put, select, spread, take
 from ..machine.machine_code import kernel
 from ..state.status import OPEN, SLIDING, STICKING
-from .statics import _contact_at, _item, _shapes
+from .statics import _contact_at
 
 #: What a contact does next; ``SLIDES`` is negative where it will slide under a negative force.
 NOTHING, OPENS, CLOSES, SLIDES, STICKS = 0, 1, 2, 3, 4
@@ -165,7 +165,7 @@ def next_changes(
             along = along - (turn + gather(radius, 0, table, c, 1) * gather(v, 2 * n, table, c, 1))
         xi, fn, sense = take(overlap, c, like), take(normal, c, like), take(status, c, like)
         rests = rests or anywhere((magnitude(sense) > 0.0) & (fn <= tip))
-        k = stiffness(pairs.law, xi, _shapes(pair_shape, c, like))
+        k = stiffness(pairs.law, xi, take(pair_shape, c, like))
         does, until, speed = _next(
             sense, wx * x + wz * z, along, xi, fn, take(tangential, c, like), k, pairs.law, tip, negligible
         )
@@ -178,12 +178,12 @@ def next_changes(
         apart, along = _motion(v, i, j, nx[c], nz[c], n, radius)
         rests = rests or (status[c] != 0.0 and normal[c] <= tip)
         if c < m:
-            k = stiffness(pairs.law, overlap[c], _item(pair_shape, c))
+            k = stiffness(pairs.law, overlap[c], take(pair_shape, c, 0.0))
             does, until, speed = _next(
                 status[c], apart, along, overlap[c], normal[c], tangential[c], k, pairs.law, tip, negligible
             )
         else:
-            k = stiffness(walls.law, overlap[c], _item(walls.shape, c - m))
+            k = stiffness(walls.law, overlap[c], take(walls.shape, c - m, 0.0))
             does, until, speed = _next(
                 status[c], apart, along, overlap[c], normal[c], tangential[c], k, walls.law, tip, negligible
             )
@@ -193,9 +193,9 @@ def next_changes(
             i = pairs.first[c] if c < m else walls.disk[c - m]
             j = pairs.second[c] if c < m else -1
             if c < m:
-                k = stiffness(pairs.law, overlap[c], _item(pair_shape, c))
+                k = stiffness(pairs.law, overlap[c], take(pair_shape, c, 0.0))
             else:
-                k = stiffness(walls.law, overlap[c], _item(walls.shape, c - m))
+                k = stiffness(walls.law, overlap[c], take(walls.shape, c - m, 0.0))
             apart, _ = _motion(v, i, j, nx[c], nz[c], n, radius)
             grows, falls = _rolling_rates(c, v, i, j, apart, k, n, rolls)
             does, until, speed, turned = 0.0, 0.0, 0.0, status[size + c]

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from ..contact.coulomb import return_map
 from ..contact.law import elastic_force, energy, stiffness
-from ..machine.lanes import take
+from ..machine.lanes import WIDTH, anywhere, gather, magnitude, put, quotient_where, root, select, spread, take
 from ..machine.machine_code import kernel
 from ..state.status import AT_LIMIT, OPEN, SLIDING, STICKING
 
@@ -72,13 +72,13 @@ class Response(NamedTuple):
     spring: Floats
     nx: Floats  #: direction of the normal force on the first body
     nz: Floats
-    status: NDArray[Any]
+    status: Floats  #: negative where it slides under a negative force
 
     @classmethod
     def empty(cls, size: int) -> Response:
         """Room for ``size`` contacts."""
-        overlap, normal, tangential, spring, nx, nz = np.zeros((6, size))
-        return cls(overlap, normal, tangential, spring, nx, nz, np.zeros(size, np.int8))
+        overlap, normal, tangential, spring, nx, nz, status = np.zeros((7, size))
+        return cls(overlap, normal, tangential, spring, nx, nz, status)
 
 
 class RollingResponse(NamedTuple):
@@ -127,14 +127,6 @@ def _item(values, c):
     if values is None:
         return None
     return values[c]
-
-
-@kernel(forceinline=True)
-def _shapes(values, c, like):
-    """What the law needs of the radii of a vector of contacts; None for a law that needs nothing."""
-    if values is None:
-        return None
-    return take(values, c, like)
 
 
 @kernel(forceinline=True)
@@ -197,57 +189,6 @@ def _contact_at(c, q, n, pairs, walls):
 
 
 @kernel(forceinline=True)
-def _open(c, rubs, out, tangent):
-    out.status[c] = OPEN
-    out.normal[c] = 0.0
-    if rubs is not None:
-        out.tangential[c] = 0.0
-        out.spring[c] = 0.0
-    if tangent is not None:
-        tangent[c, :, :] = 0.0
-
-
-@kernel(forceinline=True)
-def _press(c, xi, nx, nz, inverse, form, law, out, tangent):
-    """Closed contact without friction; returns the normal force."""
-    fn = elastic_force(law, xi, form)
-    out.normal[c] = fn
-    out.status[c] = STICKING
-    if tangent is not None:
-        _fill_tangent(tangent[c], nx, nz, fn, 0.0, inverse, stiffness(law, xi, form), 0.0, 0.0, 0.0, 0.0)
-    return fn
-
-
-@kernel(forceinline=True)
-def _rub(
-    c, xi, nx, nz, inverse, slip, mean, distance, slip_n, form, law, overlap0, spring, limits, fixed, out, tangent
-):
-    """Closed contact with friction; returns normal and tangential force.
-
-    ``slip`` : of the increment; ``mean / distance``, ``slip_n`` : its derivatives along tangent and normal;
-    ``spring`` : that before the increment.
-    """
-    fn = elastic_force(law, xi, form)
-    share = _closed_part(overlap0[c], xi)
-    limit = law.friction * fn if limits is None else limits[c]
-    ft, s, sense, _ = _returned(spring + share * slip, limit, law.tangential_stiffness, _item(fixed, c))
-    out.status[c] = SLIDING if sense != 0.0 else STICKING
-    if tangent is not None:
-        k = stiffness(law, xi, form)
-        if sense != 0.0:
-            slides = sense * law.friction if limits is None else 0.0
-            _fill_tangent(tangent[c], nx, nz, fn, ft, inverse, k, 0.0, 0.0, 0.0, slides)
-        else:
-            stiff = law.tangential_stiffness * share
-            by_t = stiff * mean / distance
-            _fill_tangent(tangent[c], nx, nz, fn, ft, inverse, k, by_t, stiff * slip_n, stiff, 0.0)
-    out.normal[c] = fn
-    out.tangential[c] = ft
-    out.spring[c] = s
-    return fn, ft
-
-
-@kernel(forceinline=True)
 def _closed_part(before, overlap):
     """Part of an increment from the overlap ``before`` in which a contact is closed."""
     return 1.0 if before >= 0.0 or overlap <= 0.0 else overlap / (overlap - before)
@@ -269,94 +210,251 @@ def _returned(spring, limit, stiffness, kept):
 
 
 @kernel(forceinline=True)
-def _is_open(fixed, c, xi):
-    if fixed is None:
-        return xi <= 0.0
-    return fixed[c] == OPEN
+def _pair(ux, uz, wx, wz, dx0, dz0, distance0, gap):
+    """Separation, distance and overlap of a pair, its separation and distance before, and sine and cosine of its turn.
+
+    The latter are multiplied by both distances. ``ux``, ``uz`` : relative displacement; ``wx``, ``wz`` : its increment.
+    """
+    dx, dz = dx0 + ux, dz0 + uz
+    distance = root(dx * dx + dz * dz)
+    stretch = (2.0 * (dx0 * ux + dz0 * uz) + ux * ux + uz * uz) / (distance + distance0)
+    px, pz = dx - wx, dz - wz
+    before = root(px * px + pz * pz)
+    return dx, dz, distance, -(gap + stretch), px, pz, before, px * wz - pz * wx, px * dx + pz * dz
+
+
+@kernel(forceinline=True)
+def _curved(px, pz, wx, wz, ax, az, part):
+    """Slip of a pair along a curved way, less mean distance times turn.
+
+    On its way a pair sets out as by a, its displacement were the rates those of the start, and the rest of its
+    displacement grows as the square of the part done. With w the whole, p the separation and d its length, the integral
+    of distance over angle exceeds mean distance times turn by
+    (a x w) / 6 d - (p x a) ((p x a)^2 + 2 (p . a)^2) / 12 d^5, to third order in the displacement. ``part`` : 1 / d.
+    """
+    along_n = (px * ax + pz * az) * part
+    along_t = (px * az - pz * ax) * part
+    turned = along_t * (along_t * along_t + 2.0 * along_n * along_n)
+    return (ax * wz - az * wx - 0.5 * turned * part) * part / 6.0
+
+
+@kernel(forceinline=True)
+def _closed(status, overlap):
+    """Whether contacts are closed: by the ``status`` that they keep or, if that is None, by their overlap."""
+    if status is None:
+        return overlap > 0.0
+    return magnitude(status) > 0.0
+
+
+@kernel(forceinline=True)
+def _most(limit, coulomb):
+    """A limit of the tangential force that is given, or else that of Coulomb."""
+    if limit is None:
+        return coulomb
+    return limit
+
+
+@kernel(forceinline=True)
+def _fill(c, like, status, overlap, before, slip, curved, limit, form, law, spring0, out, bend, worst):
+    """Fill in contact ``c``, or those of a vector; normal and tangential force, and the largest bend and contradiction.
+
+    ``status`` : kept, or None for the return map; ``limit`` : of Coulomb, or None; ``spring0`` : None without friction.
+    """
+    presses = overlap > 0.0
+    closed = _closed(status, overlap)
+    normal = select(closed, elastic_force(law, overlap, form), 0.0)
+    now, wrong, tangential = select(closed, 1.0, 0.0 * overlap), 0.0 * overlap, 0.0 * overlap
+    if status is not None:  # one that is kept open presses, or one that is kept closed pulls
+        now, size = status + 0.0, elastic_force(law, magnitude(overlap), form)
+        wrong = select(closed, select(overlap < 0.0, size, 0.0), select(presses, size, 0.0))
+    if spring0 is not None:
+        spring = take(spring0, c, like)
+        stretched = spring + 0.0
+        if status is not None:
+            stretched = spring + select(magnitude(status) > STICKING, 0.0, magnitude(status)) * curved
+            bent = magnitude(stretched - spring)
+            bend = select(bent > bend, bent, bend)
+        # one that closes collects slip from where it closed
+        share = select(presses, quotient_where(before < 0.0, overlap, overlap - before, 1.0), 1.0)
+        stretched = stretched + share * slip
+        most = _most(limit, law.friction * normal)
+        free = -law.tangential_stiffness * stretched
+        within = magnitude(free) <= most
+        tangential = select(closed, select(within, free, select(free > 0.0, most, -most)), 0.0)
+        if status is None:
+            now = select(closed, select(within, 1.0, select(free > 0.0, float(SLIDING), -float(SLIDING))), 0.0)
+        else:
+            kept = select(magnitude(status) > STICKING, select(status > 0.0, most, -most), free)
+            kept = select(closed, kept, 0.0)
+            off = magnitude(kept - tangential)
+            wrong, tangential = select(off > wrong, off, wrong), kept
+        put(out.tangential, c, tangential)
+        new = quotient_where(magnitude(now) > STICKING, -tangential, law.tangential_stiffness, stretched)
+        put(out.spring, c, select(closed, new, 0.0))
+    put(out.overlap, c, overlap)
+    put(out.normal, c, normal)
+    put(out.status, c, now)
+    return normal, tangential, bend, select(wrong > worst, wrong, worst)
+
+
+@kernel
+def _one_pair(
+    c, q, q0, ahead, length, n, radius, pairs, pair_shape, overlap0, spring0, limits, fixed, out, bend, worst
+):  # fmt: skip
+    """Fill in one pair."""
+    i, j = pairs.first[c], pairs.second[c]
+    ux, uz = q[i] - q[j], q[n + i] - q[n + j]
+    wx, wz = ux - (q0[i] - q0[j]), uz - (q0[n + i] - q0[n + j])
+    dx, dz, distance, overlap, px, pz, before, sine, cosine = _pair(
+        ux, uz, wx, wz, pairs.dx[c], pairs.dz[c], pairs.distance[c], pairs.gap[c]
+    )
+    slip, curved = 0.0, 0.0
+    if spring0 is not None:
+        roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
+        slip = 0.5 * (before + distance) * _angle(sine, cosine) - roll
+        if fixed is not None:
+            ax, az = length * (ahead[i] - ahead[j]), length * (ahead[n + i] - ahead[n + j])
+            curved = _curved(px, pz, wx, wz, ax, az, 1.0 / pairs.distance[c])
+    out.nx[c], out.nz[c] = dx / distance, dz / distance
+    _, _, bend, worst = _fill(
+        c, 0.0, take(fixed, c, 0.0), overlap, overlap0[c], slip, curved, take(limits, c, 0.0),
+        take(pair_shape, c, 0.0), pairs.law, spring0, out, bend, worst,
+    )  # fmt: skip
+    return bend, worst
 
 
 # Shapes are arguments of their own, beside the contacts that hold them: only of an argument does the compiler know
 # that it is None.
 @kernel
 def contacts(
-    q, q0, n, radius, pairs, pair_shape, walls, wall_shape, overlap0, pair_spring, wall_spring, limits, fixed, out,
-    tangent, force,
+    q, q0, ahead, length, n, radius, pairs, pair_shape, walls, wall_shape, overlap0, pair_spring, wall_spring, limits,
+    fixed, table, room, out, force,
 ):  # fmt: skip
-    """Forces of m + w listed contacts at ``q``, one increment after ``q0``, and their local tangents.
+    """Forces of m + w listed contacts at ``q``, one increment after ``q0``; pairs eight at once.
 
     Parameters
     ----------
+    ahead, length : (dof,) and a number: their product is the displacement were the rates those at ``q0``. Where
+        statuses are kept, the slip of pairs that stick along the way that curves from there is counted.
     pairs, walls : :class:`Pairs` and :class:`Walls`, and their ``shape``.
     overlap0 : (m + w,) at ``q0``.
     pair_spring, wall_spring : (m + w,) at ``q0``, None where the contacts have no friction.
     limits : (m + w,) fixed Coulomb limits, None for ``mu f_n``.
-    fixed : (m + w,) statuses that contacts keep whatever happens, negative where they slide under a negative force,
-        None for the return map.
-    out : :class:`Response`, filled, and ``tangent`` (m + w, 3, 3), if not None.
+    fixed : (m + w,) statuses that contacts keep whatever happens, as floats, negative where they slide under a negative
+        force, None for the return map.
+    table, room : (m, 2) disks of the pairs, and (2 WIDTH,) numbers.
+    out : :class:`Response`, filled.
     force : (dof,) generalised contact force, added to.
+
+    Returns
+    -------
+    Longest part of a spring that a curved way has made, and the largest force by which contacts with kept statuses
+    differ from those by the return map.
     """
     m = pairs.first.size
-    law = pairs.law
+    like = spread(0.0)
+    bends, wrongs = spread(0.0), spread(0.0)
+    bend, worst = 0.0, 0.0
+    whole = m - m % WIDTH
+    for c in range(0, whole, WIDTH):
+        ux = gather(q, 0, table, c, 0) - gather(q, 0, table, c, 1)
+        uz = gather(q, n, table, c, 0) - gather(q, n, table, c, 1)
+        wx = ux - (gather(q0, 0, table, c, 0) - gather(q0, 0, table, c, 1))
+        wz = uz - (gather(q0, n, table, c, 0) - gather(q0, n, table, c, 1))
+        distance0 = take(pairs.distance, c, like)
+        dx, dz, distance, overlap, px, pz, before, sine, cosine = _pair(
+            ux, uz, wx, wz, take(pairs.dx, c, like), take(pairs.dz, c, like), distance0, take(pairs.gap, c, like)
+        )
+        slip, curved = like, like
+        if pair_spring is not None:
+            if anywhere(magnitude(sine) >= SMALL_TURN * cosine):  # far turns are for one pair at a time
+                for k in range(c, c + WIDTH):
+                    bend, worst = _one_pair(
+                        k, q, q0, ahead, length, n, radius, pairs, pair_shape, overlap0, pair_spring, limits, fixed,
+                        out, bend, worst,
+                    )  # fmt: skip
+                continue
+            ai, aj = gather(q, 2 * n, table, c, 0), gather(q, 2 * n, table, c, 1)
+            ai, aj = ai - gather(q0, 2 * n, table, c, 0), aj - gather(q0, 2 * n, table, c, 1)
+            roll = gather(radius, 0, table, c, 0) * ai + gather(radius, 0, table, c, 1) * aj
+            slip = 0.5 * (before + distance) * _small_angle(sine, cosine) - roll
+            if fixed is not None:
+                ax = length * (gather(ahead, 0, table, c, 0) - gather(ahead, 0, table, c, 1))
+                az = length * (gather(ahead, n, table, c, 0) - gather(ahead, n, table, c, 1))
+                curved = _curved(px, pz, wx, wz, ax, az, 1.0 / distance0)
+        put(out.nx, c, dx / distance)
+        put(out.nz, c, dz / distance)
+        _, _, bends, wrongs = _fill(
+            c, like, take(fixed, c, like), overlap, take(overlap0, c, like), slip, curved, take(limits, c, like),
+            take(pair_shape, c, like), pairs.law, pair_spring, out, bends, wrongs,
+        )  # fmt: skip
+    for c in range(whole, m):
+        bend, worst = _one_pair(
+            c, q, q0, ahead, length, n, radius, pairs, pair_shape, overlap0, pair_spring, limits, fixed, out, bend,
+            worst,
+        )  # fmt: skip
+    put(room, 0, bends)
+    put(room, WIDTH, wrongs)
+    for k in range(WIDTH):
+        bend, worst = max(bend, room[k]), max(worst, room[WIDTH + k])
     for c in range(m):
-        i, j, ux, uz, dx, dz, d, xi = _pair_at(q, n, pairs, c)
-        out.overlap[c] = xi
-        form = _item(pair_shape, c)
-        nx = dx / d
-        nz = dz / d
-        out.nx[c], out.nz[c] = nx, nz
-        if _is_open(fixed, c, xi):
-            _open(c, pair_spring, out, tangent)
+        if out.status[c] == 0.0:
             continue
-        if pair_spring is None:
-            fn = _press(c, xi, nx, nz, 1.0 / d, form, law, out, tangent)
-            force[i] += fn * nx
-            force[n + i] += fn * nz
-            force[j] -= fn * nx
-            force[n + j] -= fn * nz
-        else:
-            wx = ux - (q0[i] - q0[j])
-            wz = uz - (q0[n + i] - q0[n + j])
-            px = dx - wx
-            pz = dz - wz
-            before = math.sqrt(px * px + pz * pz)
-            turn = _angle(px * wz - pz * wx, px * dx + pz * dz)
-            mean = 0.5 * (before + d)
-            roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
-            fn, ft = _rub(
-                c, xi, nx, nz, 1.0 / d, mean * turn - roll, mean, d, 0.5 * turn,
-                form, law, overlap0, pair_spring[c], limits, fixed, out, tangent,
-            )  # fmt: skip
-            fx = fn * nx - ft * nz
-            fz = fn * nz + ft * nx
-            force[i] += fx
-            force[n + i] += fz
-            force[j] -= fx
-            force[n + j] -= fz
-            force[2 * n + i] -= radius[i] * ft
-            force[2 * n + j] -= radius[j] * ft
-    at_wall = walls.law
+        i, j = pairs.first[c], pairs.second[c]
+        normal, nx, nz = out.normal[c], out.nx[c], out.nz[c]
+        fx, fz = normal * nx, normal * nz
+        if pair_spring is not None:
+            tangential = out.tangential[c]
+            fx, fz = fx - tangential * nz, fz + tangential * nx
+            force[2 * n + i] -= radius[i] * tangential
+            force[2 * n + j] -= radius[j] * tangential
+        force[i] += fx
+        force[n + i] += fz
+        force[j] -= fx
+        force[n + j] -= fz
     for k in range(walls.disk.size):
-        i, nx, nz, xi = _wall_at(q, n, walls, k)
+        i, nx, nz, overlap = _wall_at(q, n, walls, k)
         c = m + k
-        out.overlap[c] = xi
-        out.nx[c], out.nz[c] = nx, nz
-        form = _item(wall_shape, k)
-        if _is_open(fixed, c, xi):
-            _open(c, wall_spring, out, tangent)
-            continue
-        if wall_spring is None:
-            fn = _press(c, xi, nx, nz, 0.0, form, at_wall, out, tangent)
-            ft = 0.0
-        else:
+        slip = 0.0
+        if wall_spring is not None:
             slip = (q[n + i] - q0[n + i]) * nx - (q[i] - q0[i]) * nz
             slip -= radius[i] * (q[2 * n + i] - q0[2 * n + i])
-            fn, ft = _rub(
-                c, xi, nx, nz, 0.0, slip, 1.0, 1.0, 0.0, form, at_wall, overlap0, wall_spring[c], limits, fixed, out,
-                tangent,
-            )  # fmt: skip
-            force[2 * n + i] -= radius[i] * ft
-        force[i] += fn * nx - ft * nz
-        force[n + i] += fn * nz + ft * nx
+        out.nx[c], out.nz[c] = nx, nz
+        normal, tangential, _, worst = _fill(
+            c, 0.0, take(fixed, c, 0.0), overlap, overlap0[c], slip, 0.0, take(limits, c, 0.0),
+            take(wall_shape, k, 0.0), walls.law, wall_spring, out, 0.0, worst,
+        )  # fmt: skip
+        force[i] += normal * nx - tangential * nz
+        force[n + i] += normal * nz + tangential * nx
+        if wall_spring is not None:
+            force[2 * n + i] -= radius[i] * tangential
+    return bend, worst
+
+
+@kernel
+def tangents(q, q0, n, pairs, walls, overlap0, limits, out, tangent):
+    """Fill ``tangent`` (m + w, 3, 3) with those of contacts whose forces are ``out``, as :func:`contacts` made them."""
+    for c in range(overlap0.size):
+        status, xi = out.status[c], out.overlap[c]
+        if status == 0.0:
+            tangent[c, :, :] = 0.0
+            continue
+        i, j, nx, nz, k, _, mu, kt = _contact_at(c, q, n, pairs, walls)
+        stiff, slip_n, slides, inverse = kt * _closed_part(overlap0[c], xi), 0.0, 0.0, 0.0
+        mean, distance = 1.0, 1.0
+        if j >= 0:
+            _, _, ux, uz, dx, dz, distance, _ = _pair_at(q, n, pairs, c)
+            wx, wz = ux - (q0[i] - q0[j]), uz - (q0[n + i] - q0[n + j])
+            px, pz, inverse = dx - wx, dz - wz, 1.0 / distance
+            mean = 0.5 * (math.sqrt(px * px + pz * pz) + distance)
+            slip_n = 0.5 * _angle(px * wz - pz * wx, px * dx + pz * dz)
+        if abs(status) > STICKING:
+            stiff = 0.0
+            slides = (mu if status > 0.0 else -mu) if limits is None else 0.0
+        by_t = stiff * mean / distance
+        _fill_tangent(
+            tangent[c], nx, nz, out.normal[c], out.tangential[c], inverse, k, by_t, stiff * slip_n, stiff, slides
+        )
 
 
 @kernel

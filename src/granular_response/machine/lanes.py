@@ -148,7 +148,9 @@ def _at(context, builder, kind, array, k, element):
 
 @intrinsic
 def take(typing, array, k, like):
-    """``array[k]`` or, where ``like`` is lanes, ``array[k : k + WIDTH]``; nothing is checked."""
+    """``array[k]`` or, where ``like`` is lanes, ``array[k : k + WIDTH]``; nothing is checked. Of None it is None."""
+    if array == types.none:
+        return types.none(array, types.intp, like), lambda context, builder, sig, args: context.get_dummy_value()
     if not _is_line(array) or like not in (LANES, types.float64):
         return None
 
@@ -291,6 +293,8 @@ if config.DISABLE_JIT:  # the same functions for numpy arrays and floats
         return value[0]
 
     def take(array, k, like):
+        if array is None:
+            return None
         return array[k : k + WIDTH].copy() if isinstance(like, np.ndarray) else array[k]
 
     def put(array, k, value):

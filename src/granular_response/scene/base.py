@@ -86,7 +86,7 @@ class Description(BaseModel, metaclass=_Public):
         try:
             super().__init__(**data)
         except ValidationError as error:
-            raise from_validation(error, PACKING_KINDS) from None
+            raise from_validation(error, PACKING_KINDS, UNITS) from None
 
     # Without this mark pydantic would call __init__ for nested descriptions too and lose the path of the key.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
@@ -128,12 +128,24 @@ class Description(BaseModel, metaclass=_Public):
             raise Problem(f"must be a mapping with keys among {keys}" if keys else "must be {}")
         for key, value in data.items():
             if key not in cls.model_fields:
+                meant = cls._elsewhere(key) or suggestion(key, cls.model_fields)
                 raise Problem(
-                    f"unknown key{suggestion(key, cls.model_fields)} (allowed: {keys or 'none'})",
+                    f"unknown key{meant} (allowed: {keys or 'none'})",
                     key=(key if isinstance(key, str) else str(key),),
                     value=value,
                 )
         return {key: plain(value) for key, value in data.items()}
+
+    @classmethod
+    def _elsewhere(cls, key: Any) -> str:
+        """', did you mean ...?' for the other parts of a scene that have the key, or nothing."""
+        others = {part: models for part, models in PLACES.items() if cls not in models}
+        found = [f"{part}.{key}" for part, models in others.items() if any(key in one.model_fields for one in models)]
+        return f", did you mean {' or '.join(found)}?" if found else ""
+
+
+#: The parts of a scene by their place in it, for keys that stand in another one; ``scene.scene`` names them.
+PLACES: dict[str, tuple[type[Description], ...]] = {}
 
 
 class Sparse(Description):
@@ -147,8 +159,9 @@ class Sparse(Description):
     @model_serializer(mode="wrap")
     def _written(self, written: SerializerFunctionWrapHandler) -> dict[str, Any]:
         data: dict[str, Any] = written(self)
-        fields = type(self).model_fields
-        usual = {key for key in self.sparse if key in fields and getattr(self, key) == fields[key].default}
+        fields = {key: info for key, info in type(self).model_fields.items() if key in self.sparse}
+        defaults = {key: info.get_default(call_default_factory=True) for key, info in fields.items()}
+        usual = {key for key, default in defaults.items() if getattr(self, key) == default}
         return {key: value for key, value in data.items() if key not in usual}
 
 

@@ -39,12 +39,16 @@ def packed(table: Table, left: float, floor: float, width: float, periodic: bool
     half = 0.5 * width
     wide = half * (1.0 + ROUNDING)
     large, heavy = LEAST_RADIUS * radius.max(), LEAST_MASS * mass.max()
-    between = f"must be between the side walls {left:g} and {left + width:g}"
+    reach = f"from {float((table.x - radius).min()):.6g} to {float((table.x + radius).max()):.6g}"
+    between = (
+        f"must be between the side walls {left:g} and {left + width:g}; the disks reach {reach}, packing.origin says "
+        "where left wall and floor are"
+    )
     for name, values, good, rule in (
         ("x", table.x, periodic | ((x > 0.0) & (x < width)), between),
         ("radius", radius, radius <= wide, f"must be at most {half:g}, half the width of the box"),
         ("radius", radius, radius >= large, f"must be at least {large:g}, a millionth of the largest"),
-        ("z", table.z, z > 0.0, f"must be above the floor {floor:g}"),
+        ("z", table.z, z > 0.0, f"must be above the floor {floor:g}, which packing.origin says"),
         ("z", table.z, z <= far, f"must be at most {floor + far:g}, 1e9 mean radii"),
         ("mass", mass, mass > 0.0, "must be greater than 0"),
         ("mass", mass, mass >= heavy, f"must be at least {heavy:g}, 1e-12 of the largest"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 import reprlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError
@@ -72,10 +72,11 @@ def describe(path: Iterable[str | int], value: object, allowed: str) -> str:
     return f"{key} = {show(value)}: {allowed}" if key else f"{show(value)}: {allowed}"
 
 
-def from_validation(error: ValidationError, kinds: Iterable[str]) -> SceneError:
+def from_validation(error: ValidationError, kinds: Iterable[str], units: Mapping[str, str]) -> SceneError:
     """The first mistake that pydantic found, with the number of further ones.
 
-    ``kinds`` are the tags that pydantic puts in the path of a tagged union and that no scene file has.
+    ``kinds`` are the tags that pydantic puts in the path of a tagged union and that no scene file has; ``units`` are
+    those of keys, for numbers that are given with a unit.
     """
     found = error.errors(include_url=False)
     first = found[0]
@@ -95,5 +96,8 @@ def from_validation(error: ValidationError, kinds: Iterable[str]) -> SceneError:
     else:
         said = first["msg"].replace("Input should be", "must be")
         message = describe(path, value, said.replace("valid tuple", "list").replace("valid dictionary", "mapping"))
+    unit = units.get(str(path[-1]) if path else "", "")
+    if unit and isinstance(value, str) and re.match(r"\s*[-+]?(?!0x)\.?\d[\d.]*(e[-+]?\d+)?\s*[a-zµ]", value, re.I):
+        message += f"; the unit is {unit}, gr.LaboratoryUnits converts"
     more = len(found) - 1
     return SceneError(message + (f" (and {more} more mistake{'s' * (more > 1)})" if more else ""))

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
+from pydantic import BeforeValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from .base import Description, Finite, Vector, allowed
 from .errors import Problem, SceneError, show, show_key
@@ -58,6 +58,7 @@ class TopSelector(Description):
 
 Selector = Annotated[
     Literal["top-centre"] | Annotated[int, Field(strict=True, ge=0)] | RowSelector | TopSelector,
+    BeforeValidator(lambda value: TOP_CENTRE if isinstance(value, str) and value == "top-center" else value),
     allowed(
         "must be top-centre, the index of a disk, {x: number}, or {row: top | bottom | number, offset: whole number}"
     ),

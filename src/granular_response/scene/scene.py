@@ -16,14 +16,14 @@ from pydantic import BeforeValidator, Field, ValidationError, model_validator
 from ..inputs import read_text
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
-from .base import MOST_STIFFNESS, PACKING_KINDS, Description, PackingDescription, Sparse
+from .base import MOST_STIFFNESS, PACKING_KINDS, PLACES, UNITS, Description, PackingDescription, Sparse
 from .errors import Problem, SceneError, SceneFileError, from_validation, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
 from .material import Contact, Wall
 from .motion import COLUMN, COMPONENTS, Motion
 from .poured import PouredPacking
-from .protocol import Preparation, Protocol
+from .protocol import Preparation, Protocol, Taps
 from .table import FilePacking
 
 
@@ -187,7 +187,7 @@ class Scene(Sparse):
         try:
             return cls.model_validate(data, context={"folder": folder})
         except ValidationError as error:
-            raise from_validation(error, PACKING_KINDS) from None
+            raise from_validation(error, PACKING_KINDS, UNITS) from None
 
     @classmethod
     def from_arrays(
@@ -346,6 +346,18 @@ class Scene(Sparse):
         return _merged(self.to_dict(), named, ())
 
 
+PLACES |= {
+    "packing": (SlabPacking, PilePacking, PouredPacking, FilePacking, ArrayPacking),
+    "contact": (Contact,),
+    "wall": (Wall,),
+    "loads.0": (Load,),
+    "preparation": (Preparation,),
+    "preparation.taps": (Taps,),
+    "protocol": (Protocol,),
+    "motion": (Motion,),
+}
+
+
 class _Whole(dict[str, Any]):
     """The data of a description, and which of its keys its maker named."""
 
@@ -384,8 +396,9 @@ def _merged(old: Any, change: Any, path: tuple[str, ...]) -> Any:
         new = list(old)
         for part, value in change.items():
             if not str(part).isdecimal() or int(part) >= len(old):
+                meant = f", did you mean {show_key(path)}.0.{part}?" if old and part in Load.model_fields else ""
                 raise SceneError(
-                    f"{show_key((*path, part))}: {show_key(path)} has {len(old)} items, no item {show(part)}"
+                    f"{show_key((*path, part))}: {show_key(path)} has {len(old)} items, no item {show(part)}{meant}"
                 )
             new[int(part)] = _merged(old[int(part)], value, (*path, part))
         return new

@@ -58,6 +58,11 @@ class RelaxationOptions:
     envelope_time: float = 20.0
     #: Kinetic energy per disk that is rounding: what is left of it need not fall any more.
     motionless: float = 1e-24
+    #: Kinetic energy, over the one of a quiet end, that it may have had within the period before: a single reading may
+    #: be low because the slowest motion is about to turn.
+    watched: float = 10.0
+    #: Part of Coulomb's limit from which on a contact slides: one that has just slid is at the limit but for rounding.
+    sliding: float = 1.0 - 1e-9
 
 
 OPTIONS = RelaxationOptions()
@@ -75,6 +80,9 @@ class Stop:
     the first reading below it, ``envelope`` when the largest of the last ``RelaxationOptions.envelope_time`` is.
     ``least_time`` since the ramps began: what starts without motion and out of balance has no kinetic energy yet.
     ``fallen`` : part of its largest value since then to which the kinetic energy must have fallen.
+    ``quiet_energy`` : a relaxation also ends at the first reading below it before which no contact with friction has
+    opened, closed or slid during a whole period of the slowest motion (``Problem.swing_time``). What is left is an
+    elastic vibration: nothing remembers it.
     """
 
     kinetic_energy: float = 1e-13
@@ -82,6 +90,7 @@ class Stop:
     maximum_steps: int = 5_000_000
     least_time: float = 0.0
     fallen: float = 1.0
+    quiet_energy: float = 0.0
 
 
 class Dynamics:
@@ -139,6 +148,8 @@ class Dynamics:
             self.wall_rolls = Rolls(
                 disk, disk, np.arange(len(disk)), problem.wall_arms(disk), wall_roll, problem.wall_rolling
             )
+        #: which listed contacts (pairs, then walls) have friction, and so remember
+        self.rubs = np.repeat([problem.pair_friction, problem.wall_friction], [len(c.first), len(c.wall)])
         self.wall_normal = wall_normals(c.wall)
         self.model = Model(
             problem.n, problem.weight, self._inverse_mass, problem.packing.radius, self.rim,
@@ -149,6 +160,12 @@ class Dynamics:
             ),
             Walls(c.wall_disk, self.wall_normal, c.wall_gap, c.wall_shape, self.wall_spring, problem.wall_law),
             problem.rule, self.pair_rolls, self.wall_rolls,
+        )  # fmt: skip
+        pairs, walls = self.model.pairs, self.model.walls
+        self.slippery = self.model._replace(
+            pairs=pairs._replace(law=pairs.law._replace(friction=OPTIONS.sliding * pairs.law.friction)),
+            walls=walls._replace(law=walls.law._replace(friction=OPTIONS.sliding * walls.law.friction)),
+            pair_rolls=None, wall_rolls=None,
         )  # fmt: skip
 
     def _fill_history(self) -> None:
@@ -227,7 +244,9 @@ class Dynamics:
 
     def _blow_up(self) -> str:
         load = float(np.abs(self.load[1] * self.problem.load[:, :2]).max(initial=0.0))
-        if load > self.problem.stiffness:
+        if self.problem.too_soft:
+            cure = self.problem.too_soft
+        elif load > self.problem.stiffness:
             cure = f"the largest load, {load:.3g} mg, is more than the contacts bear: take a smaller one"
         else:
             cure = "take a smaller protocol.time_step"
@@ -282,6 +301,17 @@ class Dynamics:
             c.wall_disk, self.wall_normal, c.wall_gap, closed,
         )  # fmt: skip
         return closed
+
+    def slides(self) -> bool:
+        """Whether a contact was at Coulomb's limit in the last step: the limit a little lower, it is cut again."""
+        springs = [spring for spring in (self.spring, self.wall_spring) if spring is not None]
+        before = [spring.copy() for spring in springs]
+        gravity, load = self._now(self.gravity), self._now(self.load)
+        accelerations(self.q, self.rows.seen, self.rows.force[: self.q.size], gravity, load, 0.0, self.slippery)
+        slid = any((spring != old).any() for spring, old in zip(springs, before, strict=True))
+        for spring, old in zip(springs, before, strict=True):
+            spring[:] = old
+        return slid
 
     def contact_count(self, touching: NDArray[np.bool_] | None = None) -> NDArray[np.int64]:
         """(n,) number of closed contacts of each disk; ``touching`` if it is known."""
@@ -378,7 +408,7 @@ class Relaxation:
         checks = max(1, round(OPTIONS.envelope_time / (OPTIONS.check_every * dynamics.time_step)))
         self.envelope: deque[float] = deque(maxlen=checks if stop.rule == "envelope" else 1)
         self.network: NDArray[np.bool_] | None = None
-        self.fixed = 0
+        self.fixed = self.quiet = 0
         self.largest = 0.0
         self.settled = self.rolling = False
         self.scale = 1e6 * (1.0 + abs(load[1]) * float(np.abs(dynamics.problem.load).sum()))
@@ -401,7 +431,7 @@ class Relaxation:
         if not energy < self.scale:
             raise DynamicsError(dynamics._blow_up())
         self.largest = max(self.largest, energy)
-        fallen = energy <= stop.fallen * self.largest or energy < OPTIONS.motionless
+        fallen = max(stop.fallen * self.largest, OPTIONS.motionless)
         if self.progress is not None:
             self.progress(dynamics, energy)
         if dynamics.time < self.ramp_time:
@@ -409,31 +439,43 @@ class Relaxation:
         if dynamics.load[1] and (lifted := dynamics.lifted_disk()) is not None:
             raise DynamicsError(f"a load lifts disk {lifted} off the packing for good; nothing can hold it")
         slow = energy < OPTIONS.slow_rolling * stop.kinetic_energy
+        watched = slow or energy < OPTIONS.watched * stop.quiet_energy
         look_at_rolling = (dynamics.steps // OPTIONS.check_every) % OPTIONS.rolling_checks == 0
-        if not (slow or look_at_rolling or self.rolling):  # far from rest, whatever touches
+        if not (watched or look_at_rolling or self.rolling):  # far from rest, whatever touches
             self.envelope.append(energy)
-            self.settled = False
+            self.settled, self.network = False, None
             return
         touching = dynamics.touching()
-        count = dynamics.contact_count(touching)
-        if look_at_rolling or (energy > stop.kinetic_energy and (slow or self.rolling)):
-            rollers, of_rolling = dynamics.rolling(touching, count)
+        if look_at_rolling or (energy > min(stop.kinetic_energy, fallen) and (slow or self.rolling)):
+            rollers, of_rolling = dynamics.rolling(touching, dynamics.contact_count(touching))
             if look_at_rolling:
                 self.rolling = 0 < rollers <= OPTIONS.most_rollers * dynamics.problem.n
             if slow or self.rolling:
                 energy -= of_rolling
         self.envelope.append(energy)
-        if energy < OPTIONS.slow_rolling * stop.kinetic_energy:
-            same = self.network is not None and np.array_equal(touching, self.network)
-            self.fixed = self.fixed + OPTIONS.check_every if same else 0
+        if watched:
+            changed = np.ones_like(touching)
+            if self.network is not None and self.network.shape == touching.shape:
+                changed = touching ^ self.network
+            self.fixed = 0 if changed.any() else self.fixed + OPTIONS.check_every
+            if stop.quiet_energy:
+                moves = changed[dynamics.rubs].any() or dynamics.slides()
+                self.quiet = 0 if moves else self.quiet + OPTIONS.check_every
             self.network = touching
-        quiet = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
-        self.settled = quiet and fallen and dynamics.time >= stop.least_time and not dynamics.in_flight(touching)
+        ends = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
+        if energy < stop.quiet_energy:
+            ends = ends or self.quiet * dynamics.time_step >= dynamics.problem.swing_time
+        late = dynamics.time >= stop.least_time
+        self.settled = ends and energy <= fallen and late and not dynamics.in_flight(touching)
 
     def state(self) -> State:
         """The state reached, with all that :class:`Reached` says of dynamics."""
         dynamics = self.dynamics
         state = dynamics.state()
+        loose, problem = dynamics.contact_count() < 2, dynamics.problem
+        # what rolls on the floor alone never stops by itself: its energy is left out of the criterion of rest
+        energy = problem.weight * (state.velocity**2).sum(axis=1) + problem.packing.inertia * state.angular_velocity**2
+        rolling = int((loose & (0.5 * energy > self.stop.kinetic_energy)).sum()) if self.settled else 0
         reached = replace(
             state.reached,
             kinetic_energy=dynamics.kinetic_energy(),
@@ -442,7 +484,8 @@ class Relaxation:
             network_fixed_steps=self.fixed,
             sliding_contacts=int(state.pairs.sliding.sum() + state.walls.sliding.sum()),
             mean_acceleration=dynamics.mean_acceleration(),
-            loose_disks=int((dynamics.contact_count() < 2).sum()),
+            loose_disks=int(loose.sum()),
+            stopped_rattlers=rolling or None,
         )
         return replace(state, reached=reached)
 
@@ -464,6 +507,7 @@ def relax(
     """
     relaxation = Relaxation(dynamics, stop, gravity=gravity, load=load, progress=progress)
     while not relaxation.ended:
-        dynamics.advance(OPTIONS.check_every)
+        left = stop.maximum_steps - (dynamics.steps - relaxation.started)
+        dynamics.advance(min(OPTIONS.check_every, left))  # not a step more than the scene allows
         relaxation.look()
     return relaxation.state()

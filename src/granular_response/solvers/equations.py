@@ -8,6 +8,7 @@ for displacements ``q`` (``[x | z | angle]``) from reference positions, so that 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,7 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from ..kernels import events, kept, statics
+from ..kernels import events, statics
 from ..linalg import REMEMBERED, elimination
 from ..machine.lanes import WIDTH
 from ..state import OPEN, SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
@@ -23,8 +24,6 @@ from .close_pairs import close_pairs
 from .pattern import pattern
 from .problem import Problem
 
-#: Local tangents that were not asked for.
-NO_TANGENT = np.empty((0, 3, 3))
 #: Ties that a load counts as: more than any disk has freedoms, so that a loaded disk is no rattler.
 LOADED = 4
 #: Part of a distance by which rounding may part two disks that touch.
@@ -50,7 +49,7 @@ class Rolled:
 
     force: FloatArray  #: (m + w,)
     status: np.ndarray  #: (m + w,)
-    tangent: FloatArray  #: (m + w, 3) derivative of the couple on the first body; (0, 3) where it was not asked for
+    tangent: FloatArray  #: (m + w, 3) derivative of the couple on the first body
 
 
 @dataclass(frozen=True)
@@ -59,14 +58,31 @@ class Trial:
 
     configuration: Configuration
     contact_force: FloatArray  #: (dof,) sum of contact forces and torques on each disk, 0 where it is held
-    normal: FloatArray  #: (m + w,)
-    tangential: FloatArray  #: (m + w,)
-    status: np.ndarray  #: (m + w,)
-    normals: tuple[FloatArray, FloatArray]  #: (m + w,) each: directions of the normal forces on the first bodies
-    tangent: FloatArray  #: (m + w, 3, 3); (0, 3, 3) where it was not asked for
+    contacts: statics.Response  #: (m + w,) forces, normals and statuses
+    local: Callable[[], FloatArray]  #: makes :attr:`tangent`
     rolled: Rolled | None = None
     bend: float = 0.0  #: largest part of a spring that the curved way of a contact has made
     contradiction: float = 0.0  #: largest force by which statuses that were kept differ from the return map
+
+    @property
+    def normal(self) -> FloatArray:
+        """(m + w,) normal forces."""
+        return self.contacts.normal
+
+    @property
+    def tangential(self) -> FloatArray:
+        """(m + w,) tangential forces."""
+        return self.contacts.tangential
+
+    @cached_property
+    def status(self) -> np.ndarray:
+        """(m + w,) statuses."""
+        return np.abs(self.contacts.status).astype(np.int8)
+
+    @cached_property
+    def tangent(self) -> FloatArray:
+        """(m + w, 3, 3) local tangents."""
+        return self.local()
 
     @cached_property
     def sense(self) -> np.ndarray:
@@ -115,7 +131,8 @@ class Equations:
         )
         #: (m, 2) disks of the pairs, and room for what kernels sum up and count
         self.disks = np.stack([self.first, self.second], axis=1)
-        self._room, self.count = np.zeros(2 * WIDTH), np.zeros((3, problem.n), np.int64)
+        self._room, self._no_rates = np.zeros(2 * WIDTH), np.zeros(self.dof)
+        self.count = np.zeros((3, problem.n), np.int64)
         self.loaded = np.zeros(problem.n, np.int64)
         self.loaded[problem.load_disk] = LOADED
         self.rolls = self._rolls() if problem.rolls else None
@@ -210,61 +227,41 @@ class Equations:
         *,
         limits: FloatArray | None = None,
         fixed: np.ndarray | None = None,
+        velocity: FloatArray | None = None,
+        length: float = 0.0,
     ) -> Trial:
         """Forces at ``q``, one increment after ``known``; none on what is held, where the reaction balances all.
 
         ``limits`` (m + w,) fixes the Coulomb limits in place of ``mu f_n``; ``fixed`` (m + w,) the statuses, as of
-        :func:`signed_status`, in place of the return map; both go on along the rolling where there is any.
+        :func:`signed_status`, in place of the return map; both go on along the rolling where there is any. ``velocity``
+        (dof,), with ``fixed`` : rates at ``known``, by which displacements would have grown for a ``length`` of the
+        load factor; the slip along the way that curves from there is counted. Walls do not turn.
         """
         problem, count = self.problem, len(self.first) + len(self.wall_disk)
-        force, local = np.zeros(self.dof), np.empty((count, 3, 3))
-        out = statics.Response.empty(count)
-        statics.contacts(
-            q, known.q, problem.n, problem.packing.radius, self.pairs, self.pairs.shape, self.walls, self.walls.shape,
-            known.overlap, known.spring if problem.pair_friction else None,
-            known.spring if problem.wall_friction else None, limits, fixed, out, local, force,
+        force, out, roll, rolled = np.zeros(self.dof), statics.Response.empty(count), None, None
+        bend, contradiction = statics.contacts(
+            q, known.q, self._no_rates if velocity is None else velocity, length, problem.n, problem.packing.radius,
+            self.pairs, self.pairs.shape, self.walls, self.walls.shape, known.overlap,
+            known.spring if problem.pair_friction else None, known.spring if problem.wall_friction else None, limits,
+            None if fixed is None else fixed.astype(float), self.disks, self._room, out, force,
         )  # fmt: skip
-        return self._tried(known, q, limits, fixed, out, local, force)
-
-    def kept(
-        self, known: Configuration, q: FloatArray, sense: np.ndarray, velocity: FloatArray, length: float
-    ) -> Trial:
-        """As :meth:`trial` with statuses fixed to ``sense``, without tangents.
-
-        ``velocity`` (dof,) : rates at ``known``, by which displacements would have grown for a ``length``; the slip
-        along the way that curves from there is counted. Walls do not turn.
-        """
-        problem, count = self.problem, len(self.first) + len(self.wall_disk)
-        force = np.zeros(self.dof)
-        out = statics.Response.empty(count)
-        np.abs(sense[:count], out=out.status)
-        bend, contradiction = kept.kept_contacts(
-            q, known.q, velocity, length, problem.n, problem.packing.radius, self.pairs, self.pairs.shape, self.walls,
-            self.walls.shape, known.overlap, known.spring if problem.pair_friction else None,
-            known.spring if problem.wall_friction else None, sense.astype(float), self.disks, self._room, out, force,
-        )  # fmt: skip
-        return self._tried(known, q, None, sense, out, None, force, bend, contradiction)
-
-    def _tried(self, known, q, limits, fixed, out, local, force, bend=0.0, contradiction=0.0) -> Trial:
-        """A trial, with the resistance to rolling that there is."""
-        roll, rolled, problem = None, None, self.problem
         if self.rolls is not None:
-            count = len(out.normal)
-            found = statics.RollingResponse.empty(count)
-            couple = None if local is None else np.zeros((count, 3))
+            found, couple = statics.RollingResponse.empty(count), np.zeros((count, 3))
             along_rolling = statics.rolling(
                 q, known.q, problem.n, self.pairs, self.walls, self.rolls, out, known.overlap, known.roll, limits,
                 fixed, found, couple, force,
             )  # fmt: skip
             contradiction = max(contradiction, along_rolling)
-            couples = NO_TANGENT[:, 0] if couple is None else couple
-            roll, rolled = found.spring, Rolled(found.force, found.status, couples)
+            roll, rolled = found.spring, Rolled(found.force, found.status, couple)
         if self.held.size:
             force[self.held] = 0.0
-        return Trial(
-            Configuration(q, out.spring, out.overlap, roll), force, out.normal, out.tangential, out.status,
-            (out.nx, out.nz), NO_TANGENT if local is None else local, rolled, bend, contradiction,
-        )  # fmt: skip
+
+        def tangent() -> FloatArray:
+            local = np.empty((count, 3, 3))
+            statics.tangents(q, known.q, problem.n, self.pairs, self.walls, known.overlap, limits, out, local)
+            return local
+
+        return Trial(Configuration(q, out.spring, out.overlap, roll), force, out, tangent, rolled, bend, contradiction)
 
     def _stiffness(self, trial: Trial) -> FloatArray:
         """(e,) entries of -dF/dq as if nothing were held."""
@@ -358,7 +355,7 @@ class Equations:
         turned = trial.normal[:m] * along - trial.tangential[:m] * normal
         tangent = trial.tangent.copy()
         tangent[:m, :2, :2] -= np.einsum("ac,bc->cab", turned, along / distance)
-        return replace(trial, tangent=tangent)
+        return replace(trial, local=lambda: tangent)
 
     def meets_unlisted(self, q: FloatArray) -> bool:
         """Whether disks overlap each other or a wall that are not among the candidates: the packing has rearranged."""

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..errors import EquilibriumError
 from ..state import Certificate, FloatArray, State
+from ..state.box import WALL_MEANINGS
 from .problem import Problem
 from .stability import Spectrum
 from .system import Configuration, StaticSystem, Trial
@@ -215,14 +216,14 @@ def check_overlaps(problem: Problem, state: State) -> None:
     """
     radius = problem.packing.radius
     for contacts, size, other in (
-        (state.pairs, np.minimum(radius[state.pairs.first], radius[state.pairs.second]), "disk {}"),
-        (state.walls, radius[state.walls.first], "wall {} (0 floor, 1 left, 2 right)"),
+        (state.pairs, np.minimum(radius[state.pairs.first], radius[state.pairs.second]), "disk {}".format),
+        (state.walls, radius[state.walls.first], lambda wall: f"the {WALL_MEANINGS[wall].replace('_', ' ')}"),
     ):
         beyond = np.flatnonzero(contacts.overlap >= size)
         if len(beyond):
             k = beyond[np.argmax((contacts.overlap / size)[beyond])]
             raise EquilibriumError(
-                f"disk {contacts.first[k]} and {other.format(contacts.second[k])} overlap by "
+                f"disk {contacts.first[k]} and {other(contacts.second[k])} overlap by "
                 f"{contacts.overlap[k]:.3g} mean radii at load factor {state.load_factor:g}, as much as a radius: "
                 "take a smaller load or a larger contact.normal_stiffness"
             )

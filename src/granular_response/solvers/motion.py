@@ -26,64 +26,36 @@ from .work import stored
 
 #: Part of a time step within which a time is that of a whole step.
 SAME = 1e-9
+_MOTION = ("position", "velocity", "angular_velocity")
 
 
 @dataclass(frozen=True)
 class Trajectory:
-    """States of a motion at ``times`` (t,), and what is summed over their disks. Energies are in mg R."""
+    """States of a motion at ``times`` (t,)."""
 
     problem: Problem
     times: FloatArray
     states: tuple[State, ...]
     time_step: float
 
-    @property
-    def gravity(self) -> float:
-        """Part of g under which the disks move."""
-        return _gravity(self.problem)
+    def sums(self) -> dict[str, FloatArray]:
+        """(t,) energies of all disks in mg R, and their sum; (t, 2) momentum; (t,) angular momentum, counter-clockwise.
 
-    @property
-    def translation(self) -> FloatArray:
-        """(t,) kinetic energy of the centres."""
-        return np.array([0.5 * self.problem.packing.mass @ np.sum(s.velocity**2, axis=1) for s in self.states])
-
-    @property
-    def rotation(self) -> FloatArray:
-        """(t,) kinetic energy of the spins."""
-        return np.array([0.5 * self.problem.packing.inertia @ s.angular_velocity**2 for s in self.states])
-
-    @property
-    def height(self) -> FloatArray:
-        """(t,) energy in gravity, above the floor."""
-        return self.gravity * self._weights
-
-    @property
-    def elastic(self) -> FloatArray:
-        """(t,) energy of all springs, normal, tangential and rolling."""
-        return np.array([stored(self.problem, s) for s in self.states]) - self._weights
-
-    @property
-    def momentum(self) -> FloatArray:
-        """(t, 2)."""
-        return np.array([self.problem.packing.mass @ s.velocity for s in self.states])
-
-    @property
-    def angular_momentum(self) -> FloatArray:
-        """(t,) about the lower left corner of the box, spins included, counter-clockwise."""
-        mass, inertia = self.problem.packing.mass, self.problem.packing.inertia
-        found = []
-        for s in self.states:
-            (x, z), (vx, vz) = s.position.T, s.velocity.T
-            found.append(mass @ (x * vz - z * vx) + inertia @ s.angular_velocity)
-        return np.array(found)
-
-    @property
-    def _weights(self) -> FloatArray:
-        return np.array([self.problem.weight @ s.position[:, 1] for s in self.states])
-
-
-def _gravity(problem: Problem) -> float:
-    return 0.0 if problem.scene.motion.weightless else 1.0
+        The energy in gravity is counted from the floor; the angular momentum about the lower left corner of the box,
+        spins included.
+        """
+        packing, weight = self.problem.packing, self.problem.weight
+        x, v, spin = (np.stack([getattr(s, name) for s in self.states]) for name in _MOTION)
+        height = x[..., 1] @ weight
+        parts = {
+            "kinetic_energy": 0.5 * np.sum(v**2, axis=2) @ packing.mass,
+            "rotational_energy": 0.5 * spin**2 @ packing.inertia,
+            "potential_energy": 0.0 * height if self.problem.scene.motion.weightless else height,
+            "elastic_energy": np.array([stored(self.problem, s) for s in self.states]) - height,
+        }
+        turning = (x[..., 0] * v[..., 1] - x[..., 1] * v[..., 0]) @ packing.mass + spin @ packing.inertia
+        momentum = np.einsum("tna,n->ta", v, packing.mass)
+        return {**parts, "energy": sum(parts.values()), "momentum": momentum, "angular_momentum": turning}
 
 
 def trajectory(
@@ -96,7 +68,7 @@ def trajectory(
     """The motion of the disks of a scene at ``times``, in sqrt(R/g) since the start.
 
     ``start`` : a state to begin with, in place of the packing without springs. Its motion is that of the scene, if the
-    scene has one. The loads grow to their values over ``protocol.ramp_time``.
+    scene has one. The loads grow from those of the start to their values over ``protocol.ramp_time``.
 
     Raises
     ------
@@ -120,8 +92,10 @@ def trajectory(
     if start is None or given.any():
         state = replace(state, velocity=given[:, :2].copy(), angular_velocity=given[:, 2].copy())
     problem = problem.with_loads(state.position)
-    load: Ramp = (0.0, 1.0, protocol.ramp_time) if scene.loads else (0.0, 0.0, 0.0)
-    gravity: Ramp = (_gravity(problem), _gravity(problem), 0.0)
+    if state.load_factor and len(problem.held):
+        raise SceneError("start: a state under load, must be one without where a load displaces a disk, from there")
+    load: Ramp = (state.load_factor, 1.0, protocol.ramp_time) if scene.loads else (0.0, 0.0, 0.0)
+    g = 0.0 if scene.motion.weightless else 1.0
     step = resolve_time_step(problem)
     if wanted[-1] > step * protocol.maximum_steps:
         raise SceneError(
@@ -129,7 +103,7 @@ def trajectory(
             f"protocol.maximum_steps = {protocol.maximum_steps}"
         )
     dynamics = Dynamics(problem, state, protocol.integrator, step)
-    dynamics.set_ramps(gravity, load)
+    dynamics.set_ramps((g, g, 0.0), load)
     states = []
     for time in wanted:
         steps = math.floor(time / step + SAME) - dynamics.steps

@@ -496,7 +496,8 @@ class _Path:
         before, enough, stalled = np.inf, NEWTON.enough if event is None else OPTIONS.passing, False
         self.steps = 0
         for done in range(OPTIONS.newton):
-            trial = system.kept(known, q, rates.sense, rates.velocity, abs(factor - point.factor))
+            along = abs(factor - point.factor)
+            trial = system.trial(known, q, fixed=rates.sense, velocity=rates.velocity, length=along)
             force = trial.contact_force + external_force(self.problem, factor)
             size = float(np.abs(force).max(initial=0.0))
             left, rate = (0.0, 0.0) if event is None else self.rates.until(trial, *event, velocity)

@@ -66,11 +66,11 @@ def next_changes(
     ``sense`` (m + w,) : signed statuses; ``force``, ``negligible`` : a force and a rate of a force that are none.
     """
     what, left, rate = np.empty((3, len(sense)))
-    rolling, pairs = None if trial.rolled is None else trial.rolled.force, system.pairs
+    problem, pairs, here = system.problem, system.pairs, trial.contacts
     due = events.next_changes(
-        velocity, system.problem.n, system.problem.packing.radius, pairs, pairs.shape, system.walls, system.rolls,
-        *trial.normals, trial.normal, trial.tangential, rolling, trial.configuration.overlap, sense.astype(float),
-        force, negligible, system.loaded, system.disks, system.count, what, left, rate,
+        velocity, problem.n, problem.packing.radius, pairs, pairs.shape, system.walls, system.rolls, here.nx, here.nz,
+        here.normal, here.tangential, None if trial.rolled is None else trial.rolled.force, here.overlap,
+        sense.astype(float), force, negligible, system.loaded, system.disks, system.count, what, left, rate,
     )  # fmt: skip
     return Changes(what, left, rate, due)
 

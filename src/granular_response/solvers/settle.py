@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from ..errors import EquilibriumError, SolveError
+from ..kernels.integrators import INTEGRATORS
 from ..state import FloatArray, State
 from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
@@ -121,13 +122,17 @@ def not_settled(problem: Problem, state: State, what: str) -> str:
     return (
         f"the packing did not come to rest under {what} within protocol.maximum_steps = "
         f"{problem.scene.protocol.maximum_steps} (kinetic energy {state.reached.kinetic_energy:.1e} per disk)"
+        + (f"; {problem.too_soft}" if problem.too_soft else "")
     )
 
 
 def _statics(problem: Problem, settled: State) -> State:
     """The equilibrium beside a nearly settled state: without friction the minimum of the energy."""
     if problem.rotations:
-        return finish(problem, settled)
+        # springs are ahead of displacements: where these will be when springs are there
+        time = INTEGRATORS[problem.scene.protocol.integrator].lead * (settled.reached.time_step or 0.0)
+        position, angle = settled.position + time * settled.velocity, settled.angle + time * settled.angular_velocity
+        return finish(problem, problem.with_static_forces(replace(settled, position=position, angle=angle)))
     found = minimise(problem, problem.relisted(settled), load_factor=settled.load_factor)
     return replace(found, reached=found.reached.after(settled.reached))
 

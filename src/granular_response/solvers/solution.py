@@ -356,7 +356,8 @@ def _by_dynamics(problem: Problem, start: State, factor: float, progress: Progre
 def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | None, **ramps: Any) -> State:
     """Dynamics to rest as the protocol says, and the static finish; ``ramps`` of gravity and load."""
     protocol = problem.scene.protocol
-    stop = Stop(problem.plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
+    plan, steps = problem.plan, protocol.maximum_steps
+    stop = Stop(plan.stop_energy, protocol.stop_rule, steps, problem.crossing_time, quiet_energy=plan.quiet_energy)
     report = None
     if progress is not None:
         highest = [stop.kinetic_energy * 10.0, 0.0]

@@ -73,6 +73,8 @@ class Reached:
     sliding_contacts: int | None = None
     mean_acceleration: float | None = None  #: of disks with two contacts or more, in units of g
     loose_disks: int | None = None  #: disks with fewer than two contacts
+    #: of these, disks that still rolled when the others were at rest, and were stopped by hand; None for none
+    stopped_rattlers: int | None = None
     more_relaxations: int | None = None  #: stretches of dynamics between tries of the static finish
     newton_iterations: int | None = None
     finish_displacement: float | None = None  #: largest of a disk in the static finish (mean radii)

@@ -152,11 +152,14 @@ def _events(result: xr.Dataset) -> Iterator[RenderableType]:
 def _certificate(result: xr.Dataset) -> Iterator[tuple[str, list[str]]]:
     for name in map(str, result):
         if name.startswith("certificate_"):
-            title = name.removeprefix("certificate_").replace("_", " ")
+            title = name.removeprefix("certificate_").replace("_", " ").replace("loose disks", "rattlers")
             values = [f"{value:.3g}" for value in result[name].values]
             if title == "negative modes":
                 values = ["not determined" if value == str(NOT_DETERMINED) else value for value in values]
             yield title, values
+    if "reached_stopped_rattlers" in result:
+        stopped = result["reached_stopped_rattlers"].values
+        yield "rattlers stopped by hand", ["0" if number == NOT_DETERMINED else f"{number:g}" for number in stopped]
 
 
 def _from_given(result: xr.Dataset) -> Iterator[tuple[str, Iterable[str]]]:

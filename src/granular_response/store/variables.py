@@ -67,7 +67,7 @@ CERTIFICATE: dict[str, tuple[Any, ...]] = {
     "smallest_normal_force": (f"smallest normal force of a closed contact {WEIGHTS}", FORCE),
     "kinetic_energy": (f"kinetic energy per disk {_WORK}", WORK),
     "negative_modes": (f"unstable directions of the tangent stiffness ({NOT_DETERMINED}: not determined)",),
-    "loose_disks": ("disks with fewer than two contacts",),
+    "loose_disks": ("rattlers: disks with fewer than two contacts",),
     "unbalanced_part": ("largest unbalanced force on a disk, as a part of what it bears",),
     "rolling_excess": (f"largest excess of a rolling force over its limit {WEIGHTS}", FORCE),
 }
@@ -86,7 +86,8 @@ REACHED: dict[str, tuple[Any, ...]] = {
     "mean_acceleration": (
         "mean acceleration of disks with two contacts or more in g, at that moment", f"{FORCE} / {MASS}",
     ),
-    "loose_disks": ("disks with fewer than two contacts, at that moment",),
+    "loose_disks": ("rattlers: disks with fewer than two contacts, at that moment",),
+    "stopped_rattlers": ("rattlers that still rolled when the others were at rest, and were stopped by hand",),
     "more_relaxations": ("stretches of dynamics between tries of the static finish",),
     "newton_iterations": ("iterations of Newton's method",),
     "finish_displacement": (f"largest displacement of a disk in the static finish {RADII}", LENGTH),

@@ -64,6 +64,7 @@ def name(problem: Problem) -> str:
             protocol.integrator,
             _time_step(problem, must_be_stable=method == "dynamics"),
             problem.plan.stop_energy,
+            problem.plan.quiet_energy,
             protocol.stop_rule,
             protocol.maximum_steps,
             protocol.static_finish,

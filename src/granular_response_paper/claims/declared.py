@@ -3,8 +3,8 @@
 A test has one of
 
 ``event``
-    the name of an event in the group's dataset ``events`` (or in ``table``), ``friction`` tells which; with
-    ``prepared: true`` the same event in other preparations of the slab makes the second column;
+    the name of an event in the group's dataset ``events`` (or in ``table``, or of another ``group``); with
+    a ``friction``, and ``prepared: true`` if the same event in other preparations makes the second column;
 ``value``
     ``dataset.variable``, at the labels ``at`` or where coordinates lie in ``where``; ``over`` reduces what is left,
     dimension by dimension (``max``, ``min``, ``first``, ``last``, ``mean`` and ``median`` with the interval of the
@@ -41,7 +41,7 @@ from .words import Words
 TEXTS = "claims.yaml"
 
 _KEYS = {"event", "table", "friction", "prepared", "value", "at", "where", "over", "trend", "along", "falling", "per"}
-_KEYS |= {"scale", "unit", "case", "each", "bound", "what"}
+_KEYS |= {"scale", "unit", "case", "each", "bound", "what", "group"}
 _SIMPLE: dict[str, Callable[..., Any]] = {"max": np.max, "min": np.min}
 
 
@@ -127,7 +127,7 @@ def _number(group: str, spec: Mapping[str, Any], data: Data) -> Quantity:
     if "event" in spec:
         friction = spec.get("friction")
         friction = None if friction is None else float(friction)
-        found = data.event(group, spec["event"], friction, spec.get("table", "events"))
+        found = data.event(spec.get("group", group), spec["event"], friction, spec.get("table", "events"))
     elif "trend" in spec:
         values = _selected(group, spec, spec["trend"], data)
         along = [_reduced(values.isel({spec["along"]: k}), spec) for k in range(values.sizes[spec["along"]])]

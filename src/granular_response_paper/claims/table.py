@@ -58,14 +58,9 @@ def claims_in(collection: Collection) -> tuple[Claim, ...]:
     return tuple(sorted((claim for group in collection.groups for claim in claims_of(group)), key=_place))
 
 
-#: Figure groups whose datasets claims of the paper read beside that of their own.
-SHARED = ("phase_diagram", "polydisperse_averages", "sensitivity")
-
-
 def groups_read(collection: Collection) -> list[str]:
     """The figure groups whose datasets the claims of a collection read."""
-    own = {claim.group for claim in claims_in(collection)}
-    return sorted(own | set(SHARED) if collection == PAPER else own)
+    return sorted({claim.group for claim in claims_in(collection)})
 
 
 def collect(

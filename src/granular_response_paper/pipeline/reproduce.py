@@ -19,12 +19,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from granular_response.inputs import read_json
+from granular_response.inputs import read_json, read_text
+from granular_response.scene import text
 from granular_response.store import atomic
 from granular_response_paper.registry import Collection
 
 #: Seconds of every stage from nothing, by collection, with the machine that they were measured on.
 TIMES = Path("benchmarks") / "pipeline.json"
+
+#: The pipeline of a collection, in its folder.
+FILE = "dvc.yaml"
 
 #: What DVC prints where a stage begins, and where it need not run.
 _BEGINS = re.compile(r"^Running stage '(?:.*:)?([\w@]+)':")
@@ -34,9 +38,14 @@ _SKIPPED = re.compile(r"^Stage '(?:.*:)?([\w@]+)' (?:didn't change, skipping|is 
 _KEPT = 40
 
 
-def stage_names(collection: Collection) -> list[str]:
-    """Every stage of a collection."""
-    return [f"{kind}@{group}" for kind in ("simulate", "draw") for group in collection.groups] + ["claims", "report"]
+def stage_names(collection: Collection, root: Path) -> list[str]:
+    """Every stage of a collection, as its pipeline names them."""
+    stages = text.read(read_text(root / collection.folder / FILE))["stages"]
+    return [
+        name
+        for kind, one in stages.items()
+        for name in ([f"{kind}@{of}" for of in one["foreach"]] if "foreach" in one else [kind])
+    ]
 
 
 def stored_times(collection: Collection, root: Path) -> tuple[dict[str, float], str]:
@@ -115,7 +124,7 @@ def reproduce(
     every stage has run. ``root`` is the folder of the checkout.
     """
     expected, machine = stored_times(collection, root)
-    names = stage_names(collection)
+    names = stage_names(collection, root)
     if set(names) <= set(expected):
         total = clock_time(sum(expected[name] for name in names))
         say(f"{collection.title}: {len(names)} stages, {total} from nothing on {machine}; less if up to date")
@@ -145,7 +154,7 @@ def reproduce(
 
 def _store(collection: Collection, root: Path, taken: Mapping[str, float]) -> None:
     common = {"collection": collection.name, "measured_on": f"{_processor()}, {os.cpu_count()} cores"}
-    own = [common | {"stage": name, "seconds": round(taken[name], 1)} for name in stage_names(collection)]
+    own = [common | {"stage": name, "seconds": round(taken[name], 1)} for name in stage_names(collection, root)]
     rows = [row for row in _rows(root) if row["collection"] != collection.name] + own
     names = dict.fromkeys(row["collection"] for row in rows)
     totals = {name: sum(row["seconds"] for row in rows if row["collection"] == name) for name in names}

@@ -15,6 +15,8 @@ from typing import Any
 
 import yaml
 
+from granular_response_paper import report
+from granular_response_paper.claims import summary, table
 from granular_response_paper.pipeline.imports import closure, file_of
 from granular_response_paper.registry import PAPER, Collection
 
@@ -76,8 +78,12 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
     survey = (
         [] if not _surveyed(root, collection) else [Path(os.path.relpath(root / "survey" / "data", base)).as_posix()]
     )
-    judged = [group for group in groups if file_of(f"{collection.package}.{group}.claims")]
+    judged = [f"data/{group}.nc" for group in table.groups_read(collection)]
+    judged += [summary.OUTPUT.as_posix()] if collection == PAPER else []
     pictures = [f"figures/{group}" for group in groups]
+    documents = Path(os.path.relpath(root / "docs" / "_generated", base)).as_posix()
+    written = [f"{documents}/{name}" for name in report.fragments(root, collection)]
+    tables = [name for group in groups if file_of(name := f"{collection.package}.{group}.tables")]
     stages: dict[str, Any] = {
         "simulate": {
             "foreach": list(groups),
@@ -104,22 +110,29 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
         "claims": {
             "desc": "What is claimed against the datasets",
             "cmd": f"granular-response-paper claims{option}",
-            "deps": [*(f"data/{group}.nc" for group in judged), *code(judging(collection)), group_folder],
+            "deps": [*judged, *code(judging(collection)), group_folder],
             "metrics": [{"figures/claims.json": {"cache": False}}],
         },
         "report": {
             "desc": "The page with verdicts and figures",
-            "cmd": f"granular-response-paper report{option}",
-            "deps": [*shown(collection), "figures/claims.json", *pictures, *code([f"{_PAPER}.report"])],
-            "outs": [{"figures/report.html": {"cache": False}}],
+            "cmd": f"granular-response-paper report{option} --fragments {documents}",
+            "deps": [
+                *(f"data/{group}.nc" for group in report.datasets_read(collection)),
+                "figures/claims.json",
+                *pictures,
+                *code([f"{_PAPER}.report", *tables]),
+            ],
+            "outs": [{path: {"cache": False}} for path in ("figures/report.html", *written)],
         },
     }
+    if collection != PAPER and "preparation" in groups:
+        stages["summary"] = {
+            "desc": "What the claims of the paper read of other preparations",
+            "cmd": "granular-response-paper summary -o summary.nc",
+            "deps": ["data/preparation.nc", *code([f"{_PAPER}.claims.summary"])],
+            "outs": [{"summary.nc": {"cache": False}}],
+        }
     return {"stages": stages}
-
-
-def shown(collection: Collection) -> list[str]:
-    """The datasets that the page reads."""
-    return []
 
 
 def _surveyed(root: Path, collection: Collection) -> bool:

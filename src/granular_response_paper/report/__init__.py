@@ -40,6 +40,13 @@ SENSITIVITY = "sensitivity"
 FIRST = ("F4a", "R3a", "R5a", "A5")
 
 
+#: Of the page, by collection.
+TITLES = {
+    "paper": "Response of granular solids to a localized force: what was reproduced",
+    "extensions": "Response of granular solids to a localized force: beyond the paper",
+}
+
+
 class ReportError(GranularError):
     """Something the page is made from is missing or damaged. The message is one line."""
 
@@ -137,6 +144,7 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
     values = {
         "version": __version__,
         "size": _SIZE,
+        "title": TITLES.get(collection.name, f"Figures of {collection.title}"),
         "paper": own,
         "folder": collection.folder,
         "embedded": embedded,

@@ -35,20 +35,11 @@
   }
 
   function chosen(name) { return Number(document.querySelector("input[name=" + name + "]:checked").value); }
-  function find(packing, friction, ratio) {
-    return data.slabs.find(function (slab) {
-      return slab.polydispersity === packing && slab.friction === friction && (!friction || slab.ratio === ratio);
-    });
-  }
 
   let slab, wanted = 20;
   function select() {
-    const packing = chosen("packing"), friction = chosen("friction");
-    const ratios = Array.from(document.querySelectorAll("input[name=ratio]"));
-    ratios.forEach(function (input) { input.disabled = !friction || !find(packing, friction, Number(input.value)); });
-    const possible = ratios.filter(function (input) { return !input.disabled; });
-    if (possible.length && !possible.some(function (input) { return input.checked; })) { possible[0].checked = true; }
-    slab = find(packing, friction, chosen("ratio"));
+    const friction = chosen("friction");
+    slab = data.slabs.find(function (one) { return one.friction === friction; });
     slider.max = slab.forces.length - 1;
     slider.value = nearest(wanted);
     byId("about").innerHTML = "Shown: " + slab.about_set + ".";
@@ -206,7 +197,6 @@
     text(pen, words, 0, 0, "center");
     pen.restore();
   }
-  function quantity() { return slab.width ? "stress \u03c3 R\u0304 / F" : "force on a disk / F"; }
   function xTicks(pen, X, y, width) {
     [-20, -10, 0, 10, 20].forEach(function (x) { text(pen, typed(x), X(x), y, "center"); });
     text(pen, "x/R\u0304", width, y, "right");
@@ -221,19 +211,19 @@
       line(pen, [[LEFT, Y(tick * step)], [right, Y(tick * step)]], tick ? colour.grid : colour.soft, 1);
       text(pen, typed((tick * step).toFixed(2)), LEFT - 4, Y(tick * step), "right");
     }
-    upright(pen, quantity(), bottom / 2);
+    upright(pen, "force on a disk / F", bottom / 2);
     return Y;
   }
 
   function response(index) {
     const paper = sheet("floor", function (width) { return Math.max(150, 0.3 * width); }), pen = paper.pen;
     const X = across(paper.width).X, floor = slab.response[index];
-    const Y = linear(pen, slab.smoothed ? slab.smoothed.concat([floor]) : slab.response, paper.height - 28, paper.width);
-    const rows = slab.smoothed || slab.response, values = rows[index];
+    const Y = linear(pen, slab.response, paper.height - 28, paper.width);
+    const rows = slab.response, values = rows[index];
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(rows[0][k])]; }), colour.soft, 3);
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(values[k])]; }), colour.increased, 1.8);
     slab.x.forEach(function (x, k) {
-      dot(pen, X(x), Y(floor[k]), 2.1, colour.increased, Boolean(slab.smoothed));
+      dot(pen, X(x), Y(floor[k]), 2.1, colour.increased, false);
       spots.floor.push([X(x), Y(floor[k]), "x = " + typed(x) + " R\u0304: " + mean(floor[k])]);
     });
     xTicks(pen, X, paper.height - 10, paper.width);
@@ -247,10 +237,7 @@
 
   function range(index) {
     const paper = sheet("range", function (width) { return Math.max(170, 0.62 * width); }), pen = paper.pen;
-    const others = slab.polydispersity
-      ? data.slabs.filter(function (one) { return one.polydispersity === slab.polydispersity; })
-        .map(function (one) { return {friction: one.friction, force: one.forces, centre: one.centre}; })
-      : data.range;
+    const others = data.range;
     const motion = slab.motion ? slab.forces.indexOf(slab.motion) : slab.forces.length;
     const X = logarithm(0.1, 110, LEFT, paper.width - 40), rows = others.concat([slab]).map(function (one) { return one.centre; });
     const Y = linear(pen, rows, paper.height - 36, paper.width - 40);
@@ -308,9 +295,9 @@
       text(pen, String(one.polydispersity), x + 7, paper.height - 9, "left");
     });
     data.crossovers.map(function (one, k) { return [one, SHAPES[k % 4]]; }).sort(function (a, b) {
-      return (a[0].polydispersity === slab.polydispersity) - (b[0].polydispersity === slab.polydispersity);
+      return !a[0].polydispersity - !b[0].polydispersity;
     }).forEach(function (pair) {
-      const one = pair[0], mine = one.polydispersity === slab.polydispersity, ink = mine ? colour.increased : colour.soft;
+      const one = pair[0], mine = !one.polydispersity, ink = mine ? colour.increased : colour.soft;
       const points = one.friction.map(function (friction, k) { return [X(friction), Y(one.force[k])]; });
       line(pen, points.filter(function (_, k) { return !one.kind[k]; }), ink, mine ? 2 : 1, mine ? [] : [4, 3]);
       points.forEach(function (point, k) {
@@ -332,44 +319,40 @@
   }
   const mean = function (value) { return typed(value.toFixed(4)); };
   const counted = function (count) { return count + (count === 1 ? " peak" : " peaks"); };
-  function smoothing(width) { return width ? "smoothed with w = " + width + " R\u0304" : "not smoothed"; }
   function walls(friction) { return friction ? "rough walls" : "smooth walls"; }
   // where two peaks begin: in this slab by its own states, and in Fig. 22
   function own() {
-    if (!slab.peaks) { return ""; }
     const first = slab.peaks.findIndex(function (count) { return count > 1; }), f = slab.forces;
     return " This slab has one peak " + (first < 0 ? "up to " + f[f.length - 1] + " mg."
       : first ? "up to " + f[first - 1] + " mg and more from " + f[first] + " mg on." : "under no force.");
   }
   function figure22() {
-    const curve = data.crossovers.find(function (one) { return one.polydispersity === slab.polydispersity; });
-    const k = curve && slab.ratio === 0.8 ? curve.friction.indexOf(slab.friction) : -1;
+    const curve = data.crossovers.find(function (one) { return !one.polydispersity; });
+    const k = curve ? curve.friction.indexOf(slab.friction) : -1;
     if (k < 0) { return ""; }
-    return " Fig. 22 (" + (slab.polydispersity ? "mean of the ensemble, " : "") + walls(slab.friction) + ", " + smoothing(data.width) +
+    return " Fig. 22 (" + walls(slab.friction) + ", smoothed with w = " + data.width + " R\u0304" +
       "): two peaks " + begins(curve, k) + ".";
   }
   function begins(curve, k) {
     return ["from ", "already below ", "not up to "][curve.kind[k]] + short(curve.force[k]) + " mg" + (curve.kind[k] ? "" : " on");
   }
   function shape(index) {
-    const start = "The response (" + walls(slab.walls) + ", " + smoothing(slab.width) + ") ";
+    const start = "The response (" + walls(slab.walls) + ") ";
     const value = mean(slab.centre[index]) + " at x = 0; under " + slab.forces[0] + " mg it is " + mean(slab.centre[0]) + ".";
-    return start + (slab.peaks ? "has " + counted(slab.peaks[index]) + ", is " + (slab.symmetric[index] ? "" : "not ") +
-      "symmetric, and is " : "is ") + value;
+    return start + "has " + counted(slab.peaks[index]) + ", is " + (slab.symmetric[index] ? "" : "not ") +
+      "symmetric, and is " + value;
   }
 
   function show() {
     readColours();
     value.hidden = true;
-    byId("range-of").textContent = slab.polydispersity ? "as in Fig. 20" : "Fig. 6";
-    byId("floor-of").textContent = slab.width ? "Floor stress, " + smoothing(slab.width) + " (as in Fig. 20)" : "Normalized floor response";
     const index = Number(slider.value), force = slab.forces[index], counts = contacts(index);
     response(index);
     range(index);
     phase(index);
     label.textContent = "F = " + force + " mg";
     slider.setAttribute("aria-valuetext", force + " mg");
-    byId("link").href = "#delta=" + slab.polydispersity + "&mu=" + slab.friction + "&ratio=" + slab.ratio + "&F=" + force;
+    byId("link").href = "#mu=" + slab.friction + "&F=" + force;
     const reached = slab.motion && force >= slab.motion ? "dynamics from rest" : slab.motion ? "load path" : "";
     said.textContent = "F = " + force + " mg" + (reached ? " (" + reached + ")" : "") + ": " + counts.opened + (counts.opened === 1 ? " contact opened, " : " contacts opened, ") +
       counts.sliding + " at the Coulomb limit. Largest increase of a contact force: " + short(counts.most) +
@@ -414,14 +397,12 @@
     }, 300);
   });
 
-  // a link to a state: #delta=0&mu=0.2&ratio=0.8&F=20
+  // a link to a state: #mu=0.2&F=20
   function linked() {
     const asked = new URLSearchParams(window.location.hash.slice(1));
     if (!asked.has("F")) { return false; }
-    [["packing", "delta"], ["friction", "mu"], ["ratio", "ratio"]].forEach(function (pair) {
-      document.querySelectorAll("input[name=" + pair[0] + "]").forEach(function (input) {
-        if (asked.has(pair[1]) && Number(input.value) === Number(asked.get(pair[1]))) { input.checked = true; }
-      });
+    document.querySelectorAll("input[name=friction]").forEach(function (input) {
+      if (asked.has("mu") && Number(input.value) === Number(asked.get("mu"))) { input.checked = true; }
     });
     if (Number(asked.get("F")) > 0) { wanted = Number(asked.get("F")); }
     stop();

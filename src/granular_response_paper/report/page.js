@@ -29,6 +29,8 @@
 
   // a link into something folded unfolds it
   function unfold(hash) {
+    const filter = hash.startsWith("#only-") && document.getElementById(hash.slice(1));
+    if (filter) { filter.checked = true; document.getElementById("claims").scrollIntoView(); return; }
     const target = document.getElementById(decodeURIComponent(hash.slice(1)));
     const folded = target && target.closest("details:not([open])");
     if (folded) { folded.open = true; target.scrollIntoView(); }
@@ -39,12 +41,4 @@
   });
   window.addEventListener("hashchange", function () { unfold(window.location.hash); });
   unfold(window.location.hash);
-
-  // printed are all figures
-  let folded = [];
-  window.addEventListener("beforeprint", function () {
-    folded = Array.from(document.querySelectorAll("details.full:not([open])"));
-    folded.forEach(function (one) { one.open = true; });
-  });
-  window.addEventListener("afterprint", function () { folded.forEach(function (one) { one.open = false; }); });
 })();

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import ArrayLike
@@ -97,6 +98,11 @@ def said(power: float) -> str:
     return f"{round(power, 2) + 0.0:.2f}".replace("-", "\N{MINUS SIGN}")
 
 
+def _ticks(axes: Axes) -> dict[str, Any]:
+    """Where the ticks of a logarithmic axis stand; it is linear where nothing was found."""
+    return {"major_locator": LogLocator(subs=(1.0, 2.0, 5.0))} if axes.get_yscale() == "log" else {}
+
+
 def _brackets(one: xr.Dataset, event: str) -> tuple[np.ndarray, np.ndarray]:
     """Middles and half widths."""
     low, high = one[f"{event}_bracket"].values.T
@@ -127,7 +133,7 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
         axes.set_xticks(ticks, labels=[str(t) for t in ticks])
         axes.xaxis.set_minor_formatter("")
         axes.minorticks_off()
-        axes.yaxis.set(major_formatter="{x:g}", major_locator=LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set(major_formatter="{x:g}", **_ticks(axes))
         axes.set_xlim(right=1.5 * float(slabs["layers"].max()))
         label_ends(axes, [end for end in exponents if np.isfinite(end[2])], gap=8.0, bbox=WHITE)
     key = panels[1, 1]
@@ -207,7 +213,7 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
             axes.errorbar(varied(one, kind), middle, half, capsize=2, label=label, **look | {"markersize": 4.5})
         style.logarithmic(axes)
         axes.set(xlabel=APART[kind])
-        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set(**_ticks(axes))
         low, high = axes.get_ylim()
         if low > 0.0:
             axes.set_ylim(low / 1.3, high * max((high / low) ** 0.5, 2.0))

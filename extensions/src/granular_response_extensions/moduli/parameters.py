@@ -63,6 +63,12 @@ class Loaded(Description):
     horizontal_waves: Count = Field(description="Highest half waves of body forces along x.")
     vertical_waves: Count = Field(description="Highest half waves of body forces along z.")
 
+    @model_validator(mode="after")
+    def _check_rows(self) -> Loaded:
+        if self.scene.packing.model_dump()["layers"] < 2:
+            raise Problem("must be 2 or more: one row has no triangles", key=("scene", "packing", "layers"), value=1)
+        return self
+
 
 class Parameters(SurveyedGroup):
     """Section ``moduli``."""

@@ -9,6 +9,9 @@ from granular_response.scene.errors import Problem
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
 from granular_response_paper.parameters import Coefficients
 
+#: Contacts are those that lie at least this far from the floor and from the highest disk, in radii.
+VERTICAL_MARGIN = 4.0
+
 
 class Parameters(EnsembleGroup):
     """Section ``network``."""
@@ -35,4 +38,8 @@ class Parameters(EnsembleGroup):
         if min(self.polydispersities) <= 0.0:
             rule = "must be above 0: a lattice has one realization"
             raise Problem(rule, key=("polydispersities",), value=list(self.polydispersities))
+        heights = self.scene.packing.build().position[:, 1]
+        if heights.max() <= 2.0 * VERTICAL_MARGIN:
+            rule = f"must be more: contacts nearer than {VERTICAL_MARGIN:g} radii to floor or top are left out"
+            raise Problem(rule, key=("scene", "packing", "layers"), value=self.scene.packing.model_dump()["layers"])
         return self

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from granular_response.scene import PilePacking, Scene
 from granular_response.scene.base import Count, Description, NonNegative, Positive
 from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Counts, Growing, SceneGroup, over, some
+from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Growing, Rows, SceneGroup, over, some
 
 _ROLLING = ("contact.rolling_friction", "wall.rolling_friction")
 _PILE = Scene(packing=PilePacking(), loads=())
@@ -28,7 +28,7 @@ class Parameters(SceneGroup):
     pile: Annotated[Scene, over(_PILE, "packing", "loads", "preparation", *_ROLLING)] = Field(
         description="The pile with support."
     )
-    layers: Counts = Field(description="Of the piles.")
+    layers: Annotated[tuple[Rows, ...], AfterValidator(some)] = Field(description="Of the piles.")
     rolling_frictions: Coefficients = Field(description="Of piles; at the floor the same.")
     ramps: tuple[NonNegative, ...] = Field(
         min_length=1, description="Times over which gravity grows, in sqrt(R/g); 0: at once."

@@ -47,6 +47,19 @@ class Integrator:
     reference: str
     scheme: Scheme
 
+    @property
+    def lead(self) -> float:
+        """Time by which tangential springs are ahead of displacements, in time steps.
+
+        They follow the velocity that forces see, which most schemes predict for the end of a step, while a displacement
+        goes with the velocity in its middle: from rest under a constant acceleration the two differ by this.
+        """
+        history = np.array([[1.0], [0.0], [0.0]])
+        self.scheme.begin(history)
+        a, b, c = history[:, 0].tolist()
+        x, _, _, _, seen = self.scheme.predict(0.0, 0.0, a, b, c, 1.0)
+        return seen - x
+
 
 class Memory(NamedTuple):
     """Rows (dof,) that an integrator keeps from step to step, and scratch for forces and the velocity that they see."""

@@ -1,8 +1,9 @@
-"""Results as files for other programs: ``text``, ``gsd_file`` and ``vtk``, by the suffix.
+"""Results as files for other programs: ``text``, ``lammps``, ``gsd_file`` and ``vtk``, by the suffix.
 
 Files of frames (``.gsd``, ``.xyz``, ``.dump``) have all states or the one asked for, ``.pvd`` all, each in a ``.vtu``
 beside it, the others one. ``.events.csv`` has the events on the way to them, ``.vtu`` as field data; the other formats
-leave them out. Suffixes of ``scene.formats`` hold disks alone, which ``packing: {kind: file}`` reads again.
+leave them out. ``.lammps`` is an input script, with a ``.data`` beside it. Suffixes of ``scene.formats`` hold disks
+alone, which ``packing: {kind: file}`` reads again.
 
 Disks lie in the plane of the screen: file coordinates are (x, z, 0); YADE's are (x, 0, z), where gravity points to -z.
 Units are those of the result: mean disk radius, mean disk mass, g.
@@ -23,7 +24,7 @@ from ...scene import formats
 from .. import atomic
 from ..checked import read_result
 from ..result import chosen_states
-from . import gsd_file, text, vtk
+from . import gsd_file, lammps, text, vtk
 from .frames import PREFIXES, contact_force_sums
 
 #: Of one dataset, the files to write: content by path. Writers of frames take the index of the only state too.
@@ -34,6 +35,7 @@ _WRITERS: dict[str, tuple[Writer, str]] = {
     ".contacts.csv": (text.contacts, "one"),
     ".events.csv": (text.events, "frames"),
     ".gsd": (gsd_file.files, "frames"),
+    ".lammps": (lammps.script, "one"),
     ".pvd": (vtk.files, "every"),
     ".vtu": (vtk.files, "one"),
     ".xyz": (text.xyz, "frames"),
@@ -95,11 +97,15 @@ def export(
             atomic.check_writable(path, read)
         for path, content in made.items():
             atomic.write_bytes(path, content)
+    except lammps.NoCounterpart as error:
+        raise ExportError(f"{output}: {error}") from None
     except ModuleNotFoundError as error:
-        raise ExportError(f"{output}: needs the package {error.name}, install granular-response[export]") from error
+        raise ExportError(
+            f"{output}: needs the package {error.name}, pip install {(error.name or '').partition('.')[0]}"
+        ) from error
     except OSError as error:
         raise ExportError(f"{output}: cannot be written: {error.strerror or error}") from error
-    if ending in _READ:
+    if ending in _READ or ending == ".lammps":
         for remark in _lost(dataset.isel(state=-1 if state is None else state), writer):
             warnings.warn(f"{output}: {remark}", stacklevel=2)
     return output

@@ -167,9 +167,8 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     lost = dynamic["force"].values[dynamic["asymmetry"].values > ASYMMETRIC]
     kept = dynamic["force"].values[dynamic["force"].values < lost.min(initial=np.inf)]
     if lost.size and kept.size:
-        right.text(
-            0.03, 0.06, f"here symmetric at {kept.max():g},\nlost from {lost.min():g} on", transform=right.transAxes
-        )
+        text = f"here symmetric up to {kept.max():g},\nsymmetry lost at {lost.min():g}"
+        right.text(0.03, 0.06, text, transform=right.transAxes, fontsize=8)
     left.set_ylim(bottom=0.0)
     for panel in (left, right):
         panel.set_ylabel(style.RESPONSE)

@@ -286,7 +286,7 @@ def _starts(starts: xr.Dataset) -> Figure:
     """The dip under one force and the contacts at rest against the start; a column for each polydispersity."""
     deltas = different(starts["polydispersity"])
     frictions = [mu for mu in different(starts["friction"]) if mu <= 0.2 and mu != 0.05]
-    figure, panels = style.figure(2, len(deltas), width="double", height=4.0, sharex="col")
+    figure, panels = style.figure(2, len(deltas), width="double", height=4.0, sharex="col", sharey="row")
     names: list[str] = []
     for column, delta in enumerate(deltas):
         touching = touching_largest(delta)

@@ -261,10 +261,11 @@ def _typical(data: xr.Dataset, averages: xr.Dataset) -> str:
     count = int(one["count_at_rest"])
     spread = float(one["standard_error"]) * np.sqrt(count)
     mean, found = float(one["mean"]), float(data["response_at_centre"].values[path][0])
-    kind = "a typical one" if abs(found - mean) <= spread else "not a typical one"
+    off = (found - mean) / spread
+    side = "above" if off > 0.0 else "below"
     return (
-        f" Without friction this packing is {kind}: its response to the smallest force is {found:.3f}, and that of all"
-        f" {count} packings of Fig. 21 is {mean:.3f} on average, with a standard deviation of {spread:.3f}."
+        " Single packings scatter widely without friction: the response of this one to the smallest force is"
+        f" {found:.3f}, {abs(off):.1f} standard deviations {side} the mean of {count} packings (Fig. 21), {mean:.3f}."
     )
 
 

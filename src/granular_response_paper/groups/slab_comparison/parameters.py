@@ -7,12 +7,10 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, model_validator
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Description, Positive, Ratio, allowed
+from granular_response.scene.base import Description, Positive, Ratio
 from granular_response.scene.errors import Problem
 from granular_response.theory.slab import Floor
-from granular_response_paper.parameters import SIZE, UNIT_LOAD, SceneGroup, over, some
-
-Rows = Annotated[int, Field(strict=True, ge=2), allowed("must be a whole number from 2 on")]
+from granular_response_paper.parameters import SIZE, UNIT_LOAD, Rows, SceneGroup, over, some
 
 
 class Case(Description):

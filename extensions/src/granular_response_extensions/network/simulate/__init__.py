@@ -23,9 +23,9 @@ import xarray as xr
 
 from granular_response.errors import SolveError
 from granular_response.observe import network
-from granular_response.scene import Scene
+from granular_response.scene import Scene, SceneError
 from granular_response.state import FloatArray, State
-from granular_response_extensions.network.parameters import Parameters
+from granular_response_extensions.network.parameters import VERTICAL_MARGIN, Parameters
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles.realizations import ensemble_scene
 from granular_response_paper.records import axes, column, record, table
@@ -34,8 +34,6 @@ from granular_response_paper.tasks import computed
 
 #: Edges of the bins of forces over their mean, of mobilization, and number of bins of directions.
 FORCES, MOBILIZATION, ANGLES = np.linspace(0.0, 6.0, 25), np.linspace(0.0, 1.0, 21), 36
-#: Distance of what is counted from the floor and the highest disk (radii).
-VERTICAL_MARGIN = 4.0
 
 
 @record
@@ -136,6 +134,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     scenes = {(*at, r): ensemble_scene(parameters, case, r) for at, case in cases.items() for r in numbers}
     tasks = {at: partial(compute, scene, parameters) for at, scene in scenes.items()}
     found = {(*at, s): one for at, states in computed(tasks, "packings").items() for s, one in enumerate(states)}
+    if not any(state for *_, state in found):
+        raise SceneError(f"force = {parameters.force:g}: no packing bears it, must be smaller")
     force, mobilization = (0.5 * (edges[1:] + edges[:-1]) for edges in (FORCES, MOBILIZATION))
     data = table(found, "polydispersity", "friction", "realization", "state").assign_coords(
         axes(

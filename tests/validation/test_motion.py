@@ -1,0 +1,115 @@
+"""Motion from any start against closed forms: verification decks of other codes as scenes."""
+
+import math
+
+import numpy as np
+import pytest
+
+import granular_response as gr
+
+FAR = {"radius": 1.0, "width": 1000.0}
+
+
+def scene(x, z, *, weightless=True, contact=None, wall=None, **motion) -> gr.Scene:
+    """Disks far from the side walls, with a motion and without a load."""
+    rest = {"loads": [], "contact": contact or {}, "wall": wall or {}, "motion": {"weightless": weightless}}
+    return gr.Scene.from_arrays(x, z, **FAR, **motion, scene=rest)
+
+
+def test_a_fall_on_the_floor_and_its_rebound():
+    """Fall from 1.5 above contact, an undamped half-swing about the weight's overlap, and the way up (MFIX DEM01)."""
+    k, height = 2000.0, 1.5
+    smooth = {"normal_stiffness": k, "friction": 0.0, "damping_ratio": 0.0}
+    ball = scene([500.0], [1.0 + height], weightless=False, contact=smooth, wall=smooth)
+    w, speed = math.sqrt(k), math.sqrt(2.0 * height)
+    fallen = speed
+    contact = (math.pi + 2.0 * math.atan(1.0 / (w * speed))) / w
+    times = np.array([0.0, 0.7, fallen, fallen + 0.3 * contact, fallen + contact + 0.5])
+    inside = times[3] - fallen
+    z = [
+        height, height - 0.5 * 0.7**2, 0.0,
+        (math.cos(w * inside) - 1.0) / k - speed / w * math.sin(w * inside),
+        speed * 0.5 - 0.5 * 0.5**2,
+    ]  # fmt: skip
+    found = gr.motion(ball.updated({"protocol.time_step": 1e-4}), times, progress=False)
+    np.testing.assert_allclose(found["position"].sel(axis="z").isel(disk=0) - 1.0, z, atol=2e-5)
+    assert np.ptp(found["energy"].values) < 1e-4 * float(found["energy"][0])
+    assert found["contacts"].values.tolist() == [0, 0, 0, 1, 0]
+
+
+@pytest.mark.parametrize("friction", [0.2, 0.8])
+def test_a_disk_slips_until_it_rolls(friction):
+    """Slip ends at u0 / (3 mu g) with 2/3 of the speed (MFIX DEM04, for disks)."""
+    smooth = {"friction": friction, "damping_ratio": 0.0}
+    disk = scene([500.0], [1.0 - 1.0 / 6000.0], weightless=False, contact=smooth, wall=smooth, vx=1.0)
+    end = 1.0 / (3.0 * friction)
+    found = gr.motion(disk.updated({"protocol.time_step": 1e-4}), [0.5 * end, end], progress=False)
+    u, spin = found["velocity"].sel(axis="x").isel(disk=0).values, found["angular_velocity"].isel(disk=0).values
+    np.testing.assert_allclose(u, [5.0 / 6.0, 2.0 / 3.0], atol=2e-4)
+    np.testing.assert_allclose(-spin, [1.0 / 3.0, 2.0 / 3.0], atol=2e-4)
+
+
+@pytest.mark.parametrize("angle", [35.0, 50.0, 65.0])
+def test_the_rebound_of_an_oblique_impact(angle):
+    """Gross sliding takes 2 mu of the tangent of the angle, whatever the inertia (MFIX DEM05)."""
+    friction, a = 0.0935, math.radians(angle)
+    rough = {"friction": friction, "damping_ratio": 0.0}
+    disk = scene([500.0], [1.01], contact=rough, wall=rough, vx=math.sin(a), vz=-math.cos(a))
+    x, z = gr.motion(disk, [0.2], progress=False)["velocity"].values[0, 0]
+    assert math.atan2(x, z) == pytest.approx(math.atan(math.tan(a) - 2.0 * friction), rel=2e-4)
+
+
+def test_a_collision_keeps_momentum_and_its_restitution():
+    """Linear springs and dashpots: exp(-pi zeta / sqrt(1 - zeta^2)) (Spheral, TwoParticleCollision).
+
+    The damping ratio of a scene is that of a disk at a wall, with twice the reduced mass of two disks.
+    """
+    zeta = 0.15 * math.sqrt(2.0)
+    law = {"friction": 0.0, "damping_ratio": 0.15}
+    two = scene([500.0, 502.01], [50.0, 50.0], contact=law, vx=[0.5, -0.5])
+    found = gr.motion(two.updated({"protocol.time_step": 2e-5}), [0.0, 0.2], progress=False)
+    apart = float(np.diff(found["velocity"].sel(axis="x").isel(time=1))[0])
+    assert apart == pytest.approx(math.exp(-math.pi * zeta / math.sqrt(1.0 - zeta**2)), abs=5e-4)
+    np.testing.assert_allclose(found["momentum"], 0.0, atol=1e-15)
+    np.testing.assert_allclose(found["angular_momentum"], 0.0, atol=1e-12)
+    assert float(found["kinetic_energy"][1]) == pytest.approx(0.25 * apart**2, rel=1e-12)
+
+
+def test_the_largest_overlap_of_an_impact_by_the_law_of_hertz():
+    """m v^2 / 2 = 2/5 kappa xi^(5/2) (Chung and Ooi 1): all energy is in the contact where the disk turns round."""
+    kappa, speed = (2.0 * 6000.0 / 3.0) ** 1.5, 0.5
+    law = {"law": "hertz", "friction": 0.0, "damping_ratio": 0.0}
+    disk = scene([500.0], [1.0], contact=law, vz=-speed)
+    times = np.linspace(0.005, 0.025, 401)
+    found = gr.motion(disk.updated({"protocol.time_step": 2.5e-5}), times, progress=False)
+    overlap = 1.0 - float(found["position"].sel(axis="z").min())
+    assert overlap == pytest.approx((5.0 * speed**2 / (4.0 * kappa)) ** 0.4, rel=1e-4)
+    assert float(found["elastic_energy"].max()) == pytest.approx(0.5 * speed**2, rel=1e-3)
+
+
+def test_times_that_are_looked_at_change_nothing_of_what_follows():
+    slab = gr.Scene.from_dict({"packing": {"kind": "slab", "layers": 3, "disks_per_row": 7}, "loads": []})
+    moved = slab.updated({"motion.vx": 0.3, "motion.spin": 0.2, "wall.friction": 0.2})
+    end = gr.motion(moved, [2.0], progress=False)
+    often = gr.motion(moved, [0.1, 0.33333, 0.71828, 1.0, 2.0], progress=False)
+    for name in ("position", "velocity", "angle"):
+        np.testing.assert_allclose(often[name][-1], end[name][-1], rtol=0.0, atol=1e-12)
+    between = gr.motion(moved, [0.33320, 0.33330, 0.33340], progress=False)["position"].values
+    np.testing.assert_allclose(between[1], 0.5 * (between[0] + between[2]), atol=1e-6)
+
+
+def test_an_equilibrium_stays_and_a_load_moves_it():
+    packing = {"kind": "slab", "layers": 3, "disks_per_row": 7}
+    slab = gr.Scene.from_dict({"packing": packing, "contact": {"friction": 0.0}, "protocol": {"ramp_time": 0.0}})
+    result = gr.solve(slab, progress=False)
+    still = gr.motion(slab.updated({"loads": []}), [5.0], start=result.rest, progress=False)
+    np.testing.assert_allclose(still["position"][0], result.rest.position, atol=1e-12)
+    assert float(still["kinetic_energy"][0]) < 1e-20
+    pushed = gr.motion(slab, [0.0, 200.0], start=result.rest, progress=False)
+    np.testing.assert_allclose(pushed["position"][1], result.loaded[-1].position, atol=1e-6)
+    assert pushed["load_factor"].values.tolist() == [1.0, 1.0]
+    smooth = slab.updated({"protocol.ramp_time": 5.0})
+    under = gr.motion(smooth, [1.0], start=result.loaded[-1], progress=False)  # its load is there from the beginning
+    np.testing.assert_allclose(under["position"][0], result.loaded[-1].position, atol=1e-12)
+    with pytest.raises(gr.SceneError, match=r"^start: a state of 20 disks, must be one of this packing of 908$"):
+        gr.motion(gr.Scene(loads=[]), [1.0], start=result.rest)
