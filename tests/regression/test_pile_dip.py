@@ -25,6 +25,15 @@ def test_the_dip_goes_with_friction(datasets) -> None:
     assert np.all(piles["central_horizontal"] == piles["central_open_contacts"])
 
 
+def test_the_dip_goes_with_contacts_that_cannot_open(datasets) -> None:
+    """The glued pile is symmetric and bears its weight on the floor, since its side walls are smooth."""
+    glued, piles = datasets["glued"], datasets["piles"]
+    force = glued["floor_force"].values
+    np.testing.assert_allclose(force, force[::-1], atol=1e-9)
+    np.testing.assert_allclose(force.sum(), piles.sizes["disk"], rtol=1e-9)
+    assert float(piles["floor_dip"][0]) > 0.05 > 0.01 > float(glued["floor_dip"])
+
+
 def test_every_pile_bears_its_weight(datasets) -> None:
     """The floor alone where the side walls are smooth."""
     piles, stress = datasets["piles"], datasets["stress"]

@@ -233,6 +233,7 @@ def pile_study():
     cases = {"case": ["frictionless", "mirrored", "frictional"]}
     return {
         "stress": dataset(cases, dip=("case", [0.07, 0.07, 0.0])),
+        "glued": dataset(floor_dip=-0.02),
         "piles": dataset(
             cases,
             floor_dip=("case", [0.08, 0.08, -0.01]),

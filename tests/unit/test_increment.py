@@ -51,13 +51,16 @@ def test_fixed_limits_lead_to_the_same_equilibrium(start, monkeypatch):
     assert len(calls) == 2  # again after rounds of fixed limits
     assert around.configuration.q == pytest.approx(direct.configuration.q, abs=1e-11)
     assert np.array_equal(around.status, direct.status)
+    calls.clear()
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, tries=0))
+    assert solve_increment(system, known, external, known.q, Work()) is None
 
 
 def test_a_minimisation_ends_where_steps_no_longer_pay(start, monkeypatch):
     problem, system, known = start
     external = external_force(problem, 0.5)
     limits = np.full(len(known.spring), 0.2)
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, most=25, rough=0.0, still=0.0))
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, minimise=25, rough=0.0, still=0.0))
     long, short = Work(), Work()
     assert module.minimise_with_limits(system, known, external, known.q, limits, long) is None
     assert long.factorisations == 25  # rounding never lets the residual vanish
@@ -77,7 +80,7 @@ def test_hopeless_increment_returns_none():
 def test_an_increment_gives_up_after_its_work(start, monkeypatch):
     """That of one minimisation, which leaves no work for further rounds."""
     problem, system, known = start
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, direct=1, most=0))
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, direct=1, minimise=0))
     work = Work()
     assert solve_increment(system, known, external_force(problem, 0.5), known.q, work) is None
     assert work.factorisations == 1

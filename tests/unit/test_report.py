@@ -188,7 +188,16 @@ def test_a_row_has_its_quote_and_what_was_found(judged, page):
         assert ("not the paper; " in part) == (row["source"] != "paper")
         assert ("is halved or doubled" in part) == bool(row["star"])
         assert ('class="elsewhere"' in part) == (row["elsewhere"] != "not tried")
-        assert part.count("<li>") == len(row["tests"])
+        listed = report.telling(row["tests"])
+        assert part.count("<li>") == len(listed) == min(len(row["tests"]), report.LISTED)
+        assert ("more in <code>" in part) == (len(listed) < len(row["tests"]))
+
+
+def test_of_many_tests_the_page_lists_those_that_do_not_hold():
+    outcomes = ["yes"] * 5 + ["cannot tell"] * 4 + ["no"] * 3
+    tests = [{"outcome": outcome, "place": place} for place, outcome in enumerate(outcomes)]
+    assert [test["place"] for test in report.telling(tests)] == [0, 9, 10]
+    assert report.telling(tests[:3]) == tests[:3]
 
 
 def test_the_page_needs_no_network_and_no_other_file(page):

@@ -355,25 +355,27 @@ def contacts(
     like = spread(0.0)
     bends, wrongs = spread(0.0), spread(0.0)
     bend, worst = 0.0, 0.0
-    whole = m - m % WIDTH
-    for c in range(0, whole, WIDTH):
-        ux = gather(q, 0, table, c, 0) - gather(q, 0, table, c, 1)
-        uz = gather(q, n, table, c, 0) - gather(q, n, table, c, 1)
-        wx = ux - (gather(q0, 0, table, c, 0) - gather(q0, 0, table, c, 1))
-        wz = uz - (gather(q0, n, table, c, 0) - gather(q0, n, table, c, 1))
-        distance0 = take(pairs.distance, c, like)
-        dx, dz, distance, overlap, px, pz, before, sine, cosine = _pair(
-            ux, uz, wx, wz, take(pairs.dx, c, like), take(pairs.dz, c, like), distance0, take(pairs.gap, c, like)
-        )
+    for c in range(0, m, WIDTH):
+        alone = c + WIDTH > m
+        if not alone:
+            ux = gather(q, 0, table, c, 0) - gather(q, 0, table, c, 1)
+            uz = gather(q, n, table, c, 0) - gather(q, n, table, c, 1)
+            wx = ux - (gather(q0, 0, table, c, 0) - gather(q0, 0, table, c, 1))
+            wz = uz - (gather(q0, n, table, c, 0) - gather(q0, n, table, c, 1))
+            distance0 = take(pairs.distance, c, like)
+            dx, dz, distance, overlap, px, pz, before, sine, cosine = _pair(
+                ux, uz, wx, wz, take(pairs.dx, c, like), take(pairs.dz, c, like), distance0, take(pairs.gap, c, like)
+            )
+            alone = pair_spring is not None and anywhere(magnitude(sine) >= SMALL_TURN * cosine)
+        if alone:  # those of a far turn, and what is left of a vector
+            for k in range(c, min(c + WIDTH, m)):
+                bend, worst = _one_pair(
+                    k, q, q0, ahead, length, n, radius, pairs, pair_shape, overlap0, pair_spring, limits, fixed, out,
+                    bend, worst,
+                )  # fmt: skip
+            continue
         slip, curved = like, like
         if pair_spring is not None:
-            if anywhere(magnitude(sine) >= SMALL_TURN * cosine):  # far turns are for one pair at a time
-                for k in range(c, c + WIDTH):
-                    bend, worst = _one_pair(
-                        k, q, q0, ahead, length, n, radius, pairs, pair_shape, overlap0, pair_spring, limits, fixed,
-                        out, bend, worst,
-                    )  # fmt: skip
-                continue
             ai, aj = gather(q, 2 * n, table, c, 0), gather(q, 2 * n, table, c, 1)
             ai, aj = ai - gather(q0, 2 * n, table, c, 0), aj - gather(q0, 2 * n, table, c, 1)
             roll = gather(radius, 0, table, c, 0) * ai + gather(radius, 0, table, c, 1) * aj
@@ -387,11 +389,6 @@ def contacts(
         _, _, bends, wrongs = _fill(
             c, like, take(fixed, c, like), overlap, take(overlap0, c, like), slip, curved, take(limits, c, like),
             take(pair_shape, c, like), pairs.law, pair_spring, out, bends, wrongs,
-        )  # fmt: skip
-    for c in range(whole, m):
-        bend, worst = _one_pair(
-            c, q, q0, ahead, length, n, radius, pairs, pair_shape, overlap0, pair_spring, limits, fixed, out, bend,
-            worst,
         )  # fmt: skip
     put(room, 0, bends)
     put(room, WIDTH, wrongs)

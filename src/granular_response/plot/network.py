@@ -237,11 +237,12 @@ def draw_signed_forces(
     A force along its normal presses together. Kinds without a line are left out of the returned collections.
     """
     pushes = np.sum(np.asarray(force) * np.asarray(normal), axis=1) >= 0.0
-    drawn = {}
+    drawn: dict[str, LineCollection] = {}
     for (name, look), mask in zip(FORCE_LINES.items(), (pushes, ~pushes), strict=True):
-        lines = draw_force_chains(axes, np.asarray(point)[mask], np.asarray(force)[mask], **{**look, **chains})
-        if lines.get_segments():
-            drawn[name] = lines
+        if mask.any():
+            keywords = {**look, **chains}
+            lines = draw_force_chains(axes, np.asarray(point)[mask], np.asarray(force)[mask], **keywords)
+            drawn |= {name: lines} if lines.get_segments() else {}
     return drawn
 
 

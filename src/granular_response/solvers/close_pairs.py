@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from ..state import FloatArray
 
@@ -28,6 +27,8 @@ def close_pairs(
     if period is not None:
         x = position[:, 0] % period
         position = np.stack([np.where(x < period, x, 0.0), position[:, 1]], axis=1)
+    from scipy.spatial import KDTree  # large packings alone need it; importing takes a twentieth of a second
+
     tree = KDTree(position, boxsize=None if period is None else [period, 0.0])
     farthest = (2.0 * float(radius.max()) + skin) * (1.0 + 1e-12)
     pairs = tree.query_pairs(farthest, p=np.inf, output_type="ndarray")  # squares of far places overflow

@@ -304,13 +304,11 @@ class Dynamics:
 
     def slides(self) -> bool:
         """Whether a contact was at Coulomb's limit in the last step: the limit a little lower, it is cut again."""
-        springs = [spring for spring in (self.spring, self.wall_spring) if spring is not None]
-        before = [spring.copy() for spring in springs]
-        gravity, load = self._now(self.gravity), self._now(self.load)
-        accelerations(self.q, self.rows.seen, self.rows.force[: self.q.size], gravity, load, 0.0, self.slippery)
-        slid = any((spring != old).any() for spring, old in zip(springs, before, strict=True))
-        for spring, old in zip(springs, before, strict=True):
-            spring[:] = old
+        kept = [(spring, spring.copy()) for spring in (self.spring, self.wall_spring) if spring is not None]
+        accelerations(self.q, self.rows.seen, self.rows.force[: self.q.size], 1.0, 0.0, 0.0, self.slippery)
+        slid = any((spring != before).any() for spring, before in kept)
+        for spring, before in kept:
+            spring[:] = before
         return slid
 
     def contact_count(self, touching: NDArray[np.bool_] | None = None) -> NDArray[np.int64]:
@@ -465,8 +463,8 @@ class Relaxation:
         ends = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
         if energy < stop.quiet_energy:
             ends = ends or self.quiet * dynamics.time_step >= dynamics.problem.swing_time
-        late = dynamics.time >= stop.least_time
-        self.settled = ends and energy <= fallen and late and not dynamics.in_flight(touching)
+        ends = ends and energy <= fallen and dynamics.time >= stop.least_time
+        self.settled = ends and not dynamics.in_flight(touching)
 
     def state(self) -> State:
         """The state reached, with all that :class:`Reached` says of dynamics."""

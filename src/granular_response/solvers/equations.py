@@ -238,7 +238,9 @@ class Equations:
         load factor; the slip along the way that curves from there is counted. Walls do not turn.
         """
         problem, count = self.problem, len(self.first) + len(self.wall_disk)
-        force, out, roll, rolled = np.zeros(self.dof), statics.Response.empty(count), None, None
+        force, out, roll, rolled = np.zeros(self.dof), statics.Response(*np.empty((7, count))), None, None
+        if not (problem.pair_friction and problem.wall_friction):
+            out.tangential[:], out.spring[:] = 0.0, 0.0
         bend, contradiction = statics.contacts(
             q, known.q, self._no_rates if velocity is None else velocity, length, problem.n, problem.packing.radius,
             self.pairs, self.pairs.shape, self.walls, self.walls.shape, known.overlap,

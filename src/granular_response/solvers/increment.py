@@ -43,8 +43,12 @@ class IncrementOptions:
     #: That below which it ends too when so many steps in turn have not halved it: contacts go to and fro at no force.
     still: float = 1e-5
     stalled: int = 3
-    #: Factorisations after which an increment, or one minimisation, is given up.
+    #: Tries of the true law after which an increment is given up: all that succeeded did so at the first.
+    tries: int = 3
+    #: Factorisations after which an increment, or one minimisation, is given up. Minimisations of increments that
+    #: succeeded took 7 at most, in lattices and disordered packings.
     most: int = 40
+    minimise: int = 15
 
 
 OPTIONS = IncrementOptions()
@@ -96,6 +100,8 @@ def solve_increment(
             return None
         if done > OPTIONS.first_try and (found := on_true_law(q, OPTIONS.finish)) is not None:
             return found
+        if done >= OPTIONS.first_try + OPTIONS.tries:
+            return None
     return None
 
 
@@ -112,7 +118,7 @@ def minimise_with_limits(
     trial = system.trial(known, q, limits=limits)
     shift = OPTIONS.shift * system.problem.stiffness
     best, stalled = np.inf, 0
-    for left in range(OPTIONS.most, -1, -1):
+    for left in range(OPTIONS.minimise, -1, -1):
         r = trial.contact_force + external
         size = float(np.abs(r).max())
         stalled = stalled + 1 if size > 0.5 * best else 0

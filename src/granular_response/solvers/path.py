@@ -31,7 +31,6 @@ from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from ..errors import SolveError
 from ..kernels import events
@@ -379,7 +378,7 @@ class _Path:
 
     def _landed(self, point: Point, rates: Rates) -> Point | None:
         """Where the next contact changes, or the target or the end of the longest increment if that comes first."""
-        changes, fastest = rates.changes, float(np.abs(rates.velocity[: 2 * self.problem.n]).max(initial=0.0))
+        changes, fastest = rates.changes, largest(rates.velocity[: 2 * self.problem.n])
         left = abs(self.target - point.factor)
         if fastest * left > OPTIONS.listed_again:
             left = OPTIONS.listed_again / fastest
@@ -475,6 +474,8 @@ class _Path:
             beyond = float(np.sqrt(self.rates.force * length / (ahead[k] + then.rate[c])))
             if slip(0.0) > 0.0 and slip(length) >= 0.0:
                 return 0.5 * length  # the event that was found lies on another branch, beyond a limit point
+            from scipy.optimize import brentq  # a tenth of a second at the start of every process, and rare
+
             turn = float(brentq(slip, 0.0, length, xtol=0.25 * beyond)) if slip(0.0) > 0.0 else 0.0
             if length > turn + 1.5 * beyond:
                 return turn + beyond
@@ -499,7 +500,7 @@ class _Path:
             along = abs(factor - point.factor)
             trial = system.trial(known, q, fixed=rates.sense, velocity=rates.velocity, length=along)
             force = trial.contact_force + external_force(self.problem, factor)
-            size = float(np.abs(force).max(initial=0.0))
+            size = largest(force)
             left, rate = (0.0, 0.0) if event is None else self.rates.until(trial, *event, velocity)
             if not np.isfinite(size):
                 return None
@@ -522,7 +523,7 @@ class _Path:
             self.steps += 1
             step = system.deinterleave(by.solve(system.interleave(force)))
             step[rates.idle] = 0.0  # it would be the rounding of a torque over next to no stiffness
-            longest = float(np.abs(step[: 2 * self.problem.n]).max(initial=0.0))
+            longest = largest(step[: 2 * self.problem.n])
             if longest > NEWTON.longest_step:  # a contact of the 3/2 law that has just closed has no stiffness yet
                 step *= NEWTON.longest_step / longest
             if event is not None and rate <= 0.0:  # it does not come nearer: on with new rates from here
@@ -536,7 +537,7 @@ class _Path:
 
     def _relisted(self, point: Point) -> Point:
         """Where disks have moved so far that others may be near: candidates listed anew."""
-        moved = np.abs(point.known.q[: 2 * self.problem.n]).max(initial=0.0)
+        moved = largest(point.known.q[: 2 * self.problem.n])
         if moved <= OPTIONS.listed_again and point.factor != self.target:
             return point
         if self.system.meets_unlisted(point.known.q):
@@ -654,6 +655,11 @@ class _Path:
             self.record.events += [
                 Event(point.factor, kind, first, second, at_wall, float(x), float(z), until_then) for kind in kinds
             ]
+
+
+def largest(values: FloatArray) -> float:
+    """The largest size among numbers (k,); not a number where one of them is none."""
+    return max(float(values.max()), -float(values.min()))
 
 
 def lost(kind: str, factor: float, until: float, position: FloatArray, moved: FloatArray, reason: str) -> Event:

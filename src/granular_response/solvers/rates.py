@@ -84,11 +84,14 @@ def _contacts(system: StaticSystem, trial: Trial) -> tuple:
     )  # fmt: skip
 
 
+#: Status after what a contact does next, by that and ``SLIDES``: one that slides under a negative force comes first.
+AFTER = np.array([-SLIDING, OPEN, OPEN, OPEN, OPEN, STICKING, SLIDING, STICKING], np.int8)
+
+
 def changed(sense: np.ndarray, contacts: np.ndarray, what: np.ndarray) -> np.ndarray:
     """Signed statuses (m + w,) after ``contacts`` have done what they do next."""
-    new, does = sense.copy(), what[contacts]
-    slides = np.abs(does) == events.SLIDES
-    new[contacts] = np.where(slides, SLIDING * np.sign(does), np.where(does == events.OPENS, OPEN, STICKING))
+    new = sense.copy()
+    new[contacts] = AFTER[what[contacts].astype(int) + events.SLIDES]
     return new
 
 
@@ -145,7 +148,7 @@ class RateProblem:
         known = trial.configuration
         # one that bears nothing has no slip to go on with
         idle = (np.abs(sense) == SLIDING) & (trial.borne <= self.force)
-        sense = np.where(idle, STICKING, sense).astype(sense.dtype)
+        sense = np.where(idle, np.int8(STICKING), sense)
         ways = (OPTIONS.all, False, False), (OPTIONS.worst, True, False), (OPTIONS.worst, True, True)
         for rounds, worst, anew in ways:  # whether the worst alone change, and whether each tangent is factorised anew
             now, tried = sense, {sense.tobytes()}
@@ -157,7 +160,7 @@ class RateProblem:
                     velocity = self.velocity(known, now, factor)
                 except RuntimeError:  # exactly singular
                     break
-                if not np.isfinite(velocity).all():
+                if not np.isfinite(velocity.sum()):
                     break
                 found = self.changes(trial, velocity, now)
                 if not found.now:

@@ -158,6 +158,7 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
         "figures": shown.figures,
         "questions": shown.questions,
         "claims_of": lambda picture: _claims_of(picture, shown.first, claims["table"]),
+        "telling_of": telling,
         "linked": lambda picture: _linked(picture, root, start, collection),
         "states": _json_in_html(states) if states else None,
         "explored": states and sorted(slab["friction"] for slab in states["slabs"]),
@@ -190,6 +191,19 @@ def _claims_of(
     if picture.number is None:
         return [row for row in table if row["group"] == picture.group and not row["figures"]]
     return [row for row in table if picture.number in row["figures"]] if first[picture.number] == picture.stem else []
+
+
+#: Tests of a claim that the page lists.
+LISTED = 3
+
+
+def telling(tests: Sequence[Mapping[str, Any]]) -> Sequence[Mapping[str, Any]]:
+    """The tests of a claim that the page lists: all of a few, else the first and those that do not hold."""
+    if len(tests) <= LISTED:
+        return tests
+    first, *rest = tests
+    failing = sorted(rest, key=lambda test: ("no", "cannot tell", "yes").index(test["outcome"]))
+    return [first, *failing[: LISTED - 1]]
 
 
 def _linked(picture: pictures.Picture, root: Path, start: Path, collection: Collection) -> list[tuple[str, str]]:

@@ -68,6 +68,19 @@ def _frictions(study: xr.Dataset, polydispersity: float, start: str) -> list[flo
     return sorted(set(study["friction"].values[here].tolist()))
 
 
+def _every(study: xr.Dataset, friction: float | None = None) -> Iterator[tuple[float, str, float]]:
+    """Polydispersity, start and friction of every case of disorder, or of those with one friction."""
+    for delta in _disorders(study):
+        for start in _starts(study, delta):
+            for mu in _frictions(study, delta, start):
+                if friction in (None, mu):
+                    yield delta, start, mu
+
+
+def _disorder(polydispersity: float) -> str:
+    return f"polydispersity {polydispersity:g}"
+
+
 def _title(start: str) -> str:
     return "largest disks touch at first" if start == USUAL else f"lattice constant {start}"
 
@@ -200,12 +213,11 @@ def _order(name: str, line: Sequence[Crossover]) -> list[Test]:
 @CLAIMS.measures("D3a")
 def rises_with_friction(data: Data, words: Words) -> list[Test]:
     study, tests = data.get(GROUP, "crossovers"), []
-    for delta in _disorders(study):
-        for start in _starts(study, delta):
-            frictions = _frictions(study, delta, start)
-            if len(frictions) > 1:
-                line = [_crossover(data, words, delta, mu, start) for mu in frictions]
-                tests += [_prepared(test, start, delta) for test in _order(f"polydispersity {delta:g}", line)]
+    for delta, start in dict.fromkeys((delta, start) for delta, start, _ in _every(study)):
+        frictions = _frictions(study, delta, start)
+        if len(frictions) > 1:
+            line = [_crossover(data, words, delta, mu, start) for mu in frictions]
+            tests += [_prepared(test, start, delta) for test in _order(_disorder(delta), line)]
     return tests
 
 
@@ -224,21 +236,16 @@ def falls_with_disorder(data: Data, words: Words) -> list[Test]:
 @CLAIMS.measures("D4")
 def gradual(data: Data, words: Words) -> list[Test]:
     studies = [at(data.get(GROUP, name), width=WIDE) for name in ("shapes", "realizations", "crossovers")]
-    tests = []
-    for delta in _disorders(studies[0]):
-        for start in _starts(studies[0], delta):
-            if 1.0 not in _frictions(studies[0], delta, start):
-                continue
-            case, single, crossover = (_case(study, delta, 1.0, start) for study in studies)
-            if int(crossover["kind"]) != FOUND:
-                continue
+    tests, most = [], bounds.at_most(words, "gradual")
+    for delta, start, mu in _every(studies[0], 1.0):
+        case, single, crossover = (_case(study, delta, mu, start) for study in studies)
+        if int(crossover["kind"]) == FOUND:
             dips, leans = (single[name].transpose("realization", "step").values for name in ("shape", "asymmetry"))
             steps = np.fmax.reduce(np.fmax(np.abs(np.diff(dips)), np.abs(np.diff(leans))), axis=1)
             found = {"mean": _with_interval(case, "largest_step"), "median realization": over_realizations(steps)}
             for name, step in found.items():
                 what = f"largest change between neighbouring forces, {name}"
-                test = Test(what, step, bounds.at_most(words, "gradual"), f"polydispersity {delta:g}")
-                tests.append(_prepared(test, start, delta))
+                tests.append(_prepared(Test(what, step, most, _disorder(delta)), start, delta))
     return tests
 
 
@@ -249,48 +256,34 @@ def five_enough(data: Data, words: Words) -> list[Test]:
     Where it has none up to the largest force, samples may have one beyond it.
     """
     study, tests = at(data.get(GROUP, "crossovers"), width=WIDE), []
-    for delta in _disorders(study):
-        for start in _starts(study, delta):
-            for mu in _frictions(study, delta, start):
-                case = _case(study, delta, mu, start)
-                seen = replace(_with_interval(case, "seen"), method="samples of five, bootstrap")
-                seen = replace(seen, high=1.0) if int(case["kind"]) == ABOVE else seen
-                if int(case["kind"]) != BELOW:
-                    what = f"samples of five with a crossover, friction {mu:g}"
-                    test = Test(what, seen, Bound(0.5), f"polydispersity {delta:g}", "%")
-                    tests.append(_prepared(test, start, delta))
+    for delta, start, mu in _every(study):
+        case = _case(study, delta, mu, start)
+        seen = replace(_with_interval(case, "seen"), method="samples of five, bootstrap")
+        seen = replace(seen, high=1.0) if int(case["kind"]) == ABOVE else seen
+        if int(case["kind"]) != BELOW:
+            what = f"samples of five with a crossover, friction {mu:g}"
+            tests.append(_prepared(Test(what, seen, Bound(0.5), _disorder(delta), "%"), start, delta))
     return tests
 
 
 @CLAIMS.measures("D6")
 def below_lattice(data: Data, words: Words) -> list[Test]:
-    study, tests = data.get(GROUP, "crossovers"), []
-    for delta in _disorders(study):
-        for start in _starts(study, delta):
-            for mu in _frictions(study, delta, start):
-                found, lattice = (_crossover(data, words, d, mu, s) for d, s in ((delta, start), (0.0, USUAL)))
-                if found.comparable(lattice):
-                    bound = Bound(most=1.0, word="visible", strict=True)
-                    what = f"crossover per lattice's, friction {mu:g}"
-                    test = Test(what, found.per(lattice), bound, f"polydispersity {delta:g}")
-                    tests.append(_prepared(test, start, delta))
+    tests, below = [], Bound(most=1.0, word="visible", strict=True)
+    for delta, start, mu in _every(data.get(GROUP, "crossovers")):
+        found, lattice = (_crossover(data, words, d, mu, s) for d, s in ((delta, start), (0.0, USUAL)))
+        if found.comparable(lattice):
+            what = f"crossover per lattice's, friction {mu:g}"
+            tests.append(_prepared(Test(what, found.per(lattice), below, _disorder(delta)), start, delta))
     return tests
 
 
 @CLAIMS.measures("D8")
 def preparation(data: Data, words: Words) -> list[Test]:
-    tests = []
+    tests, what = [], "crossover from lattice constant 2 per that from touching disks"
     for mu in (0.0, 0.2):
         usual, literal = (_crossover(data, words, 0.01, mu, start) for start in (USUAL, LITERAL))
-        bound = Bound(1.0, word="visible", strict=True)
-        tests.append(
-            Test(
-                "crossover from lattice constant 2 per that from touching disks",
-                literal.per(usual),
-                bound,
-                f"friction {mu:g}",
-            )
-        )
+        larger = Bound(1.0, word="visible", strict=True)
+        tests.append(Test(what, literal.per(usual), larger, f"friction {mu:g}"))
     return tests
 
 
@@ -299,32 +292,27 @@ def like_the_lattice(data: Data, words: Words) -> list[Test]:
     """One peak under the smallest force, two under larger ones, at the frictions at which the lattice has both."""
     study, tests = data.get(GROUP, "crossovers"), []
     ordered = [mu for mu in _frictions(study, 0.0, USUAL) if _crossover(data, words, 0.0, mu, USUAL).kind == FOUND]
-    for delta in _disorders(study):
-        for start in (USUAL, LITERAL):
-            for mu in sorted(set(ordered) & set(_frictions(study, delta, start))):
-                found = _crossover(data, words, delta, mu, start).found
-                smallest, largest = _case(study, delta, mu, start)["limits"].values[-1].tolist()
-                case = f"polydispersity {delta:g}, friction {mu:g}, {_title(start)}"
-                tests.append(Test("crossover force", found, Bound(smallest, strict=True), case, "mg"))
-                tests.append(Test("crossover force", found, Bound(most=largest), case, "mg"))
+    for delta, start, mu in _every(study):
+        if mu in ordered:
+            found = _crossover(data, words, delta, mu, start).found
+            smallest, largest = _case(study, delta, mu, start)["limits"].values[-1].tolist()
+            for bound in (Bound(smallest, strict=True), Bound(most=largest)):
+                test = Test(
+                    f"crossover force, friction {mu:g}", found, bound, f"{_disorder(delta)}, friction {mu:g}", "mg"
+                )
+                tests.append(_prepared(test, start, delta))
     return tests
 
 
 @CLAIMS.measures("D18")
 def without_contacts(data: Data, words: Words) -> list[Test]:
     study, tests = at(data.get(GROUP, "shapes"), width=NARROW), []
-    for delta in _disorders(study):
-        for start in _starts(study, delta):
-            if 0.0 in _frictions(study, delta, start):
-                dip = _with_interval(_case(study, delta, 0.0, start).isel(step=0), "shape")
-                test = Test(
-                    "dip under the smallest force",
-                    dip,
-                    bounds.at_least(words, "visible"),
-                    f"polydispersity {delta:g}",
-                    "%",
-                )
-                tests.append(_prepared(test, start, delta))
+    for delta, start, mu in _every(study, 0.0):
+        dip, least = (
+            _with_interval(_case(study, delta, mu, start).isel(step=0), "shape"),
+            bounds.at_least(words, "visible"),
+        )
+        tests.append(_prepared(Test("dip under the smallest force", dip, least, _disorder(delta), "%"), start, delta))
     return tests
 
 
@@ -449,38 +437,29 @@ def evident(data: Data, words: Words) -> list[Test]:
     return tests
 
 
-def _collapsed(data: Data, polydispersity: float, friction: float, start: str) -> Quantity:
-    """The part of the packings that collapse along their load paths."""
-    one = _case(data.get(GROUP, "realizations"), polydispersity, friction, start)
-    return part_of(np.isfinite(one["collapse_force"].values[: int(one["realizations"])]))
+def _collapses(
+    data: Data, wanted: Bound, polydispersity: float | None = None, friction: float | None = None
+) -> list[Test]:
+    """The part of the packings that collapse along their load paths, of all cases or of one disorder and friction."""
+    study, tests = data.get(GROUP, "realizations"), []
+    for delta, start, mu in _every(study, friction):
+        if polydispersity in (None, delta):
+            one = _case(study, delta, mu, start)
+            part = part_of(np.isfinite(one["collapse_force"].values[: int(one["realizations"])]))
+            case = f"{_disorder(delta)}, friction {mu:g}"
+            tests.append(_prepared(Test("packings that collapse", part, wanted, case, "%"), start, delta))
+    return tests
 
 
 @CLAIMS.measures("D12")
 def unstable(data: Data, words: Words) -> list[Test]:
     """Two of five packings were unstable: not rare if so many or more are in one of forty samples of five."""
-    study = data.get(GROUP, "realizations")
-    starts = [start for start in _starts(study, 0.1) if 0.2 in _frictions(study, 0.1, start)]
-    least = Bound(float(betaincinv(2, 4, RARE)))
-    return [
-        _prepared(Test("packings that collapse", _collapsed(data, 0.1, 0.2, start), least, unit="%"), start, 0.1)
-        for start in starts
-    ]
+    return _collapses(data, Bound(float(betaincinv(2, 4, RARE))), 0.1, 0.2)
 
 
 @CLAIMS.measures("D16")
 def rearrangements(data: Data, words: Words) -> list[Test]:
-    study = data.get(GROUP, "realizations")
-    return [
-        Test(
-            "packings that collapse",
-            _collapsed(data, delta, mu, USUAL),
-            Bound(RARE),
-            f"polydispersity {delta:g}, friction {mu:g}",
-            "%",
-        )
-        for delta in _disorders(study)
-        for mu in _frictions(study, delta, USUAL)
-    ]
+    return _collapses(data, Bound(RARE))
 
 
 #: Names of what is off in the linear range.

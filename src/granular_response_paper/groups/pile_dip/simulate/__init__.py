@@ -28,6 +28,7 @@ from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled, stress_components
 from granular_response_paper.groups.pile_dip.parameters import Parameters
+from granular_response_paper.groups.pile_dip.simulate import glued
 from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.tasks import computed
 
@@ -60,13 +61,15 @@ def mirrored(state: State, packing: Packing) -> State:
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``piles`` (states and numbers of the three cases) and ``stress``."""
+    """Datasets ``piles`` (states and numbers of three cases), ``glued`` (contacts that cannot open) and ``stress``."""
     frictional = parameters.base
     without = frictional.updated({"contact.friction": 0.0, "wall.friction": 0.0})
-    found = computed({"without": partial(settle, without), "with": partial(settle, frictional)}, "piles")
+    settled = computed({"without": partial(settle, without), "with": partial(settle, frictional)}, "piles")
     packing = frictional.packing.build()
-    states = common_candidates([*found["without"], *found["with"]], packing.radius)
-    return labelled({"piles": _piles(packing, states), "stress": _stress(packing, states, parameters)}, frictional)
+    states = common_candidates([*settled["without"], *settled["with"]], packing.radius)
+    piles = _piles(packing, states)
+    found = {"piles": piles, "glued": _glued(piles, glued.floor_forces(packing, without))}
+    return labelled(found | {"stress": _stress(packing, states, parameters)}, frictional)
 
 
 @record
@@ -125,6 +128,17 @@ def _piles(packing: Packing, states: list[State]) -> xr.Dataset:
     coordinates |= variables(x_floor=("floor_disk", x, f"position from the axis of the pile {RADII}"))
     of_piles = table(found, "case").assign(of_packing).assign_coords(coordinates)
     return of_piles.merge(certificates_dataset(states, "case"))
+
+
+def _glued(piles: xr.Dataset, force: FloatArray) -> xr.Dataset:
+    dip = peaks.central_dip(piles["x_floor"].values, force)
+    return xr.Dataset(
+        variables(
+            floor_force=("floor_disk", force, f"vertical floor force of contacts that cannot open {WEIGHTS}"),
+            floor_dip=("", dip, f"how far that under the apex {DIP}"),
+        ),
+        {name: piles[name].variable for name in ("floor_disk", "x_floor")},
+    )
 
 
 def _stress(packing: Packing, states: list[State], asked: Parameters) -> xr.Dataset:
