@@ -1,30 +1,23 @@
-"""Moduli of small packings and the slabs that they predict, from parameters through a file."""
+"""Moduli of small packings and of small slabs under load, and the elastic slabs with them beside theory."""
 
 import numpy as np
 import pytest
+import reduced
 
+from granular_response.scene import Scene
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import response_of_layers
 from granular_response_extensions.moduli.claims import CLAIMS
-from granular_response_extensions.moduli.simulate import lattices, response, sizes
+from granular_response_extensions.moduli.parameters import Parameters
+from granular_response_extensions.moduli.simulate import response
+from granular_response_extensions.moduli.simulate.loaded import loads, respond
+from granular_response_extensions.moduli.simulate.solid import Solid, fitted, triangles
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
-
-
-def test_lattices_have_the_moduli_of_the_closed_form(datasets):
-    ideal = datasets["lattice"]
-    for rotations in ideal["rotations"].values:
-        measured = ideal["moduli"].sel(following=rotations)
-        # gravity presses the lattice together by some 1e-3 of a radius, and the rows of closed contacts as much
-        assert measured.values == pytest.approx(ideal["closed_form"].sel(rotations=rotations).values, abs=3e-3)
-    assert ideal["turn"].values == pytest.approx(ideal["turn_closed_form"].values, abs=1e-3)
-
-
-def test_lattices_turn_later_the_larger_and_before_the_slab_of_their_moduli(datasets):
-    small, large = datasets["lattice"]["turn_response"].values
-    assert small < large < float(datasets["lattice"]["turn_closed_form"].sel(body="smooth floor", rotations="free"))
+from granular_response_paper.parameters import UNIT_LOAD
+from granular_response_paper.slab_response import LoadPath, Measures
 
 
 def test_packings_that_relax_are_softer(datasets):
@@ -56,33 +49,75 @@ def test_the_nearest_isotropic_solid_is_isotropic_and_leaves_one_that_is():
     assert a == b and d == pytest.approx(a - c)
 
 
-def test_the_layers_of_a_power_law_are_found():
-    layers = np.array([8.0, 16.0, 32.0])
-    values = 2.0 / layers[:, None] * np.array([0.9, 1.0, 1.1, 1.0])
-    found = sizes.needed(layers, values, np.array([0.1, 0.01]), 400, 0)
-    assert found[:, 0] == pytest.approx([20.0, 200.0])
-    assert (found[:, 1] < found[:, 0]).all() and (found[:, 0] < found[:, 2]).all()
-    assert np.isinf(sizes.needed(layers, 0.1 * layers[:, None] * np.ones(3), np.array([0.1]), 10, 0)).all()
-    assert np.isnan(sizes.needed(layers, values[:, :2], np.array([0.1]), 10, 0)).all()
-
-
-def test_a_limit_in_the_number_of_layers_is_found():
-    layers = np.array([11.0, 21.0, 15.0])
-    assert lattices.at_infinity(layers, 0.3 - 0.2 / layers) == pytest.approx([0.3, 0.3])
-    curved = lattices.at_infinity(layers, 0.3 - 0.2 / layers + 0.5 / layers**2)
-    assert curved[1] == pytest.approx(0.3) and abs(curved[0] - 0.3) < 2e-3
-    assert np.isnan(lattices.at_infinity(layers[:2], layers[:2])[1])
-
-
-def test_a_root_is_found_between_points():
-    y = np.array([-3.0, -2.0, -1.0, 0.5, 2.0])
-    x = 0.25 + 0.01 * y + 1e-3 * y**2
-    assert lattices.root(x, y) == pytest.approx(0.25)
-    assert np.isnan(lattices.root(x, x))
-
-
-def test_claims_are_judged(datasets):
-    for claim in CLAIMS:
+def test_claims_of_packings_are_judged(datasets):
+    for claim in (one for one in CLAIMS if one.id in ("B4", "B5")):
         entry = judge(claim, Data({"moduli": datasets}))
         assert len(entry.tests) == 2  # of the case with friction and the one without
         assert ["friction 0," in test.case for test in entry.tests].count(True) == 1
+
+
+def loaded(friction: float, force: float) -> tuple[LoadPath, Solid, np.ndarray]:
+    """A slab of 11 layers, its solid, and what a further force adds to the floor forces."""
+    scene: Scene = UNIT_LOAD.updated({"packing.layers": 11, "packing.disks_per_row": 41, "contact.friction": friction})
+    path = LoadPath.of(scene)
+    state = path.at(force)
+    solid = Solid(path.problem, state, triangles(path.problem.packing.position))
+    load = path.problem.load_vector
+    return path, solid, solid.floor_forces(solid.system.answers(solid.trial)(load))
+
+
+def measured(path: LoadPath, solid: Solid, width: float) -> np.ndarray:
+    family = loads(path.problem, path.known[max(path.known)], 8, 4)["body"]
+    return fitted(*solid.averaged(solid.fields(map(solid.system.answers(solid.trial), family)), width))
+
+
+@pytest.mark.parametrize(("friction", "within"), [(0.0, 0.02), (1.0, 0.05)])
+def test_a_lattice_has_its_moduli(friction, within):
+    path, solid, _ = loaded(friction, 1e-3)
+    contact = path.scene.contact
+    ratio = contact.stiffness_ratio if friction else 0.0
+    springs = Springs.uniform(contact.normal_stiffness, ratio * contact.normal_stiffness)
+    expected = lattice.moduli(springs, "free").matrix()
+    middle = np.abs(solid.centre - [path.problem.packing.width / 2, 9.0]).max(axis=1) < 5.0
+    found = measured(path, solid, 2.0)[middle]
+    np.testing.assert_allclose(found, np.broadcast_to(expected, found.shape), atol=within * expected.max())
+
+
+def test_a_uniform_solid_responds_as_the_elastic_slab():
+    path, solid, _ = loaded(0.0, 1e-3)
+    contact = path.scene.contact
+    uniform = lattice.moduli(Springs.uniform(contact.normal_stiffness, 0.0))
+    disk = int(path.problem.load_disk[0])
+    moved = solid.answer(np.broadcast_to(uniform.matrix(), (len(solid.area), 3, 3)), disk)
+    measures = Measures(path)
+    found = solid.floor_forces(moved)[measures.disks]
+    height = path.rest.position[disk, 1]  # triangles end at the centres of the top row
+    expected = response_of_layers(
+        measures.x, layers=11, moduli=uniform, width=path.problem.packing.width, height=height
+    )
+    assert found.sum() == pytest.approx(1.0, abs=1e-9)
+    assert np.abs(found - expected)[measures.interior].max() < 0.02 * expected.max()
+
+
+def test_triangles_that_are_not_averaged_are_the_network_without_friction():
+    """Each contact is as long as its triangles say: only the turn of the contacts under their forces is left out."""
+    path, solid, expected = loaded(0.0, 4.0)
+    assert Measures(path).opened(path.at(4.0)) > 50
+    disk = int(path.problem.load_disk[0])
+    found = solid.floor_forces(solid.answer(measured(path, solid, 0.01), disk))
+    assert np.abs(found - expected).max() < 0.03 * expected.max()
+
+
+def test_the_tangent_is_that_of_the_path_and_floors_bear_all(datasets):
+    slabs = datasets["slabs"]
+    assert float(slabs["tangent_error"].max()) < 1e-4
+    known = np.isfinite(slabs["force"])
+    np.testing.assert_allclose(slabs["measured"].sum("floor_disk").values[known], 1.0, atol=1e-9)
+    np.testing.assert_allclose(slabs["predicted"].sum("floor_disk").values[known], 1.0, atol=1e-9)
+
+
+def test_the_smallest_slab_has_moduli_too():
+    loaded = Parameters(**reduced.parameters("moduli")).loaded
+    small = UNIT_LOAD.updated({"packing.layers": 2, "packing.disks_per_row": 5})
+    (step,) = respond(small, loaded, (0.1,)).steps
+    assert np.isfinite(step.criterion).all() and step.tangent_error < 1e-4

@@ -53,7 +53,6 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"most_friction": 0.05}, r"most_friction = 0.05: must be above least_friction = 0.05"),
         ({"layers": [1]}, r"layers\[0\] = 1: must be a whole number from 2 on"),
     ],
-    "tangent_moduli": [({"scene": {"packing.layers": 1}}, r"scene\.packing\.layers = 1: must be 2 or more")],
     "experiments": [
         ({"packings": {}}, r"cases = 'nearly equal': must have packings among"),
         ({"pictures": [9]}, r"pictures = \[9\]: must be below 3"),
@@ -65,8 +64,8 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
             r"realizations = \[4\]: must have a number for each of the layers",
         ),
         (
-            {"lattice": reduced.parameters("moduli")["lattice"] | {"responding": [7, 8]}},
-            r"responding = \[7, 8\]: must be odd",
+            {"loaded": reduced.parameters("moduli")["loaded"] | {"scene": {"packing.layers": 1}}},
+            r"loaded\.scene\.packing\.layers = 1: must be 2 or more",
         ),
     ],
     "pile_dip": [({"dip_height": -1.0}, r"dip_height = -1\.0: must be a number greater than 0")],

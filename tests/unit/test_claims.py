@@ -160,7 +160,6 @@ FIRST_CASE = np.array([1.2, 1.0])[:, None, None, None]
 
 ENDS = ("low", "high")
 ROLLING = "rolling_resistance"
-TANGENT = "tangent_moduli"
 EXPERIMENTS = "experiments"
 #: The reversible range of the second case alone ends early.
 IRREVERSIBLE = [[[1.0, 1.0]], [[1.0, 0.2]]]
@@ -438,12 +437,12 @@ PLANTED = [
     ("B24", put(EXPERIMENTS, "means", "power", 1.0), NOT_SEEN),
     ("B25", scaled(EXPERIMENTS, "means", "stress", np.r_[np.ones(9), 2.0][:, None, None, None]), "not supported"),
     ("B26", put(EXPERIMENTS, "means", "strongest", 60.0), "not supported"),
-    ("B27", put(TANGENT, "slabs", "crossover", [10.0, 10.0]), "not supported"),
-    ("B27", put(TANGENT, "slabs", "reach", [[[0.5]], [[1.0]], [[1.0]]]), "cannot tell"),
-    ("B28", put(TANGENT, "slabs", "difference", 0.2), NOT_SEEN),
-    ("B28", scaled(TANGENT, "slabs", "difference", [[1.0], [4.0]]), "in part"),
-    ("B29", put(TANGENT, "slabs", "predicted_two_peaks", 1.0), NOT_SEEN),
-    ("B29", put(TANGENT, "slabs", "predicted_two_peaks", 0.0), "in part"),
+    ("B27", put("moduli", "slabs", "crossover", [10.0, 10.0]), "not supported"),
+    ("B27", put("moduli", "slabs", "reach", [[[0.5]], [[1.0]], [[1.0]]]), "cannot tell"),
+    ("B28", put("moduli", "slabs", "difference", 0.2), NOT_SEEN),
+    ("B28", scaled("moduli", "slabs", "difference", [[1.0], [4.0]]), "in part"),
+    ("B29", put("moduli", "slabs", "predicted_two_peaks", 1.0), NOT_SEEN),
+    ("B29", put("moduli", "slabs", "predicted_two_peaks", 0.0), "in part"),
     ("U1", scaled("superposition", "errors", "floor_error_largest", 10.0), "in part"),
     ("U1", two_hundred_errors(9.0), "not supported"),
     ("U2", put("superposition", "linear_range", "nonlinear_from", 3.0), "cannot tell"),

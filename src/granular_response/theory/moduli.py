@@ -12,17 +12,31 @@ the last term; the values of eqs. (7)-(10) and the isotropic limit ``d = a - c``
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-T = TypeVar("T", float, NDArray[np.float64])
+if TYPE_CHECKING:
+    import xarray as xr
+
+T = TypeVar("T", float, NDArray[np.float64], "xr.DataArray")
 
 
 def peak_criterion(a: T, b: T, c: T, d: T) -> T:
     """``r = [a b - c (c + d)] / (b d)`` of numbers or arrays; see :attr:`Moduli.peak_criterion`."""
     return (a * b - c * (c + d)) / (b * d)
+
+
+def bulk_and_shear(a: T, b: T, c: T, d: T) -> tuple[T, T]:
+    """Bulk and shear modulus, numbers or arrays, of the isotropic solid with the same energy averaged over directions.
+
+    >>> solid = Moduli.isotropic(0.25)
+    >>> bulk, shear = bulk_and_shear(solid.a, solid.b, solid.c, solid.d)
+    >>> round(bulk / shear, 12), round(solid.d / shear, 12)
+    (1.666666666667, 2.0)
+    """
+    return 0.25 * (a + b + 2.0 * c), 0.125 * (a + b - 2.0 * c) + 0.25 * d
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Parameters of the elastic moduli of packings, and of the slab that they predict."""
+"""Parameters of the elastic moduli of packings and of loaded slabs, and of the elastic slabs with them."""
 
 from __future__ import annotations
 
@@ -9,10 +9,15 @@ from pydantic import AfterValidator, Field, model_validator
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio, allowed
 from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Growing, Positives, SurveyedGroup, over, some
+from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Growing, SurveyedGroup, over, some
 
 Rows = Annotated[int, Field(strict=True, ge=5), allowed("must be a whole number from 5 on")]
 Margin = Annotated[float, Field(strict=True, ge=0, lt=0.4), allowed("must be from 0 to below 0.4")]
+
+#: The elastic solid of a loaded slab has the triangles of a lattice, smooth walls and no rotations.
+_OF_A_LATTICE = (
+    "packing.polydispersity", "packing.sides", "contact.friction", "contact.rolling_friction", "wall", "loads",
+)  # fmt: skip
 
 
 class Case(Description):
@@ -40,23 +45,28 @@ class Case(Description):
         return self
 
 
-class Lattice(Description):
-    """Slabs of equal disks, horizontal contacts closed or open."""
+class Slab(Description):
+    """A slab under a growing force."""
 
-    friction: Positive = Field(description="Between disks, so that none slides.")
-    layers: Rows = Field(description="Rows of the lattices that are strained; their answer depends on no width.")
-    closed: Positive = Field(description="Lattice constant at which neighbours in a row touch.")
-    open: Positive = Field(description="Lattice constant at which they do not.")
-    stiffness_ratios: Growing = Field(description="k_T / k_N.")
-    responding: Annotated[tuple[Rows, ...], AfterValidator(some)] = Field(
-        description="Odd numbers of rows of the lattices whose response is looked at."
-    )
-    responding_ratios: Growing = Field(description="k_T / k_N of these.")
+    friction: Ratio = Field(description="Between disks.")
+    forces: Growing = Field(description="In mean disk weights.")
+    shown: Positive = Field(description="The force whose map is drawn, or the next one above it.")
+
+
+class Loaded(Description):
+    """Incremental moduli of lattices under load."""
+
+    scene: Annotated[Scene, over(UNIT_LOAD, *_OF_A_LATTICE)] = Field(default=UNIT_LOAD, description="A lattice.")
+    slabs: Annotated[tuple[Slab, ...], AfterValidator(some)] = Field(description="One for each friction.")
+    widths: Growing = Field(description="w of the Gaussian over which fields are averaged, in radii.")
+    smoothing: Positive = Field(description="w of the Gaussian under which floor responses are compared, in radii.")
+    horizontal_waves: Count = Field(description="Highest half waves of body forces along x.")
+    vertical_waves: Count = Field(description="Highest half waves of body forces along z.")
 
     @model_validator(mode="after")
-    def _check_odd(self) -> Lattice:
-        if any(layers % 2 == 0 for layers in self.responding):
-            raise Problem("must be odd, a floor disk below the load", key=("responding",), value=list(self.responding))
+    def _check_rows(self) -> Loaded:
+        if self.scene.packing.model_dump()["layers"] < 2:
+            raise Problem("must be 2 or more: one row has no triangles", key=("scene", "packing", "layers"), value=1)
         return self
 
 
@@ -64,18 +74,20 @@ class Parameters(SurveyedGroup):
     """Section ``moduli``."""
 
     scene: Annotated[Scene, over(UNIT_LOAD, *SIZE, *MATERIAL, "packing.sides", "packing.lattice_constant", "loads")] = (
-        Field(description="Base scene.")
+        Field(description="Base scene of the packings.")
     )
     disks_per_layer: Count = Field(description="Disks of a row over number of rows.")
     margin: Margin = Field(description="Part of the rows at either end over which no modulus is averaged.")
     width: Positive = Field(description="w of the Gaussian over the response, in radii.")
     wide: Part = Field(description="w of a second one, as a part of the height.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Disordered packings.")
-    tolerances: Positives = Field(description="Differences to the elastic slab for which a size is looked for.")
-    draws: Count = Field(description="Of the bootstrap over realizations that gives these sizes an interval.")
-    seed: Index = Field(description="Of these draws.")
-    lattice: Lattice = Field(description="Packings with moduli in closed form.")
+    loaded: Loaded = Field(description="Lattices under load.")
 
     @property
     def surveyed(self) -> bool:
         return any(any(case.surveyed) for case in self.cases)
+
+    @property
+    def lattice(self) -> Scene:
+        """The base scene of the slabs under load, solved by ``method``."""
+        return self.loaded.scene.updated({"protocol.method": self.method})

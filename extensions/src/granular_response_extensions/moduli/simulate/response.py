@@ -13,7 +13,7 @@ from granular_response.solvers.strain import FOLLOWING, strained
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII
 from granular_response.sweeps.rest import rest_state
-from granular_response.theory.moduli import Moduli
+from granular_response.theory.moduli import Moduli, bulk_and_shear
 from granular_response.theory.slab import Floor, Slab
 from granular_response_paper.records import column, record
 
@@ -54,8 +54,7 @@ def symmetric(matrix: FloatArray) -> FloatArray:
 
 def nearest_isotropic(moduli: FloatArray) -> FloatArray:
     """(4,) moduli of the isotropic solid with the mean energy that ``moduli`` (4,) have over all directions."""
-    a, b, c, d = moduli
-    bulk, shear = 0.25 * (a + b + 2.0 * c), 0.125 * (a + b - 2.0 * c) + 0.25 * d
+    bulk, shear = bulk_and_shear(*moduli)
     return np.array([bulk + shear, bulk + shear, bulk - shear, 2.0 * shear])
 
 
@@ -97,9 +96,9 @@ def prediction(moduli: FloatArray, height: float, period: float, floor: Floor, w
     return np.stack([-height * slab.stress(x, 0.0, 1.0, width / np.sqrt(2.0))[1] for width in widths])
 
 
-def apart(found: FloatArray, predicted: FloatArray) -> FloatArray:
-    """(...) largest difference over the places of two (..., place) per largest prediction."""
-    return np.abs(found - predicted).max(axis=-1) / predicted.max(axis=-1)
+def apart(one: FloatArray, other: FloatArray) -> FloatArray:
+    """(...) largest difference over the places of two responses (..., place) per largest value of the ``other``."""
+    return np.asarray(np.abs(one - other).max(axis=-1) / other.max(axis=-1))
 
 
 def compute(scene: Scene, margin: float, width: float, wide: float) -> Outcome:

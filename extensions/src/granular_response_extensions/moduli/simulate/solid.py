@@ -79,14 +79,14 @@ class Solid:
         self.stress_of = sp.csr_array((share, (owner, contact)), (len(corners), len(pair)))  #: per force of a contact
 
     def fields(self, moved: Iterable[FloatArray]) -> list[FloatArray]:
-        """Strain (t, 3, k), stress (t, 3, k) and (sigma_xz - sigma_zx) / sqrt(2) (t, k) of k displacements (dof,)."""
+        """Strain (t, 3, k) and stress (t, 3, k) of k displacements (dof,)."""
         each = []
         for one in moved:
             u = one.reshape(-1, self.system.problem.n)[:2].T
             strain = np.einsum("tai,ti->ta", self.strain_of, u[self.corners].reshape(-1, 6))
             force = added_forces(self.system, self.trial, one)[0]
             xx, xz, zx, zz = (self.stress_of @ (force[:, :, None] * self.branch[:, None]).reshape(-1, 4)).T
-            each.append((strain, np.stack([xx, zz, (xz + zx) / SHEAR], axis=-1), (xz - zx) / SHEAR))
+            each.append((strain, np.stack([xx, zz, (xz + zx) / SHEAR], axis=-1)))
         return [np.stack(field, axis=-1) for field in zip(*each, strict=True)]
 
     def averaged(self, fields: Iterable[FloatArray], width: float) -> list[FloatArray]:
@@ -125,8 +125,8 @@ class Solid:
         return 1.0 - min(low) / float(row.max()) if low else 0.0
 
 
-def fitted(strain: FloatArray, stress: FloatArray) -> tuple[FloatArray, float]:
-    """Moduli (t, 3, 3) of fields (t, 3, k) under k loads by least squares; part of the stress they leave, the median.
+def fitted(strain: FloatArray, stress: FloatArray) -> FloatArray:
+    """Moduli (t, 3, 3) of fields (t, 3, k) under k loads by least squares.
 
     Symmetric, each load with the weight of its strain; with M the moduli, e the strains and s the stresses so weighted,
     ``M e e' + e e' M = s e' + e s'``. Eigenvalues below ``LEAST`` of the largest are raised to it.
@@ -138,6 +138,4 @@ def fitted(strain: FloatArray, stress: FloatArray) -> tuple[FloatArray, float]:
     moduli = (product + np.swapaxes(product, 1, 2)) / (square[:, :, None] + square[:, None, :])
     value, vector = np.linalg.eigh(turn @ moduli @ np.swapaxes(turn, 1, 2))
     value = np.maximum(value, LEAST * value[:, -1:])
-    definite = (vector * value[:, None, :]) @ np.swapaxes(vector, 1, 2)
-    left = np.linalg.norm(s - definite @ e, axis=(1, 2)) / np.linalg.norm(s, axis=(1, 2))
-    return definite, float(np.median(left))
+    return np.asarray((vector * value[:, None, :]) @ np.swapaxes(vector, 1, 2))

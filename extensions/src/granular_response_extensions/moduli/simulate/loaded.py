@@ -17,14 +17,15 @@ import xarray as xr
 
 from granular_response.observe.floor import floor_force, smoothed_response
 from granular_response.observe.peaks import is_double_peaked
+from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.small_loads import force_on
 from granular_response.state import SLIDING, FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.theory.moduli import peak_criterion
-from granular_response_extensions.tangent_moduli.parameters import Parameters
-from granular_response_extensions.tangent_moduli.simulate.solid import Solid, fitted, triangles
-from granular_response_paper.datasets import labelled
+from granular_response_extensions.moduli.parameters import Loaded, Parameters
+from granular_response_extensions.moduli.simulate.response import apart
+from granular_response_extensions.moduli.simulate.solid import Solid, fitted, triangles
 from granular_response_paper.records import axes, column, labels, parts, places, record, table
 from granular_response_paper.slab_response import LoadPath, Measures, two_peaks
 from granular_response_paper.tasks import computed
@@ -41,8 +42,6 @@ class Fit:
     predicted: FloatArray = column("the same of the elastic slab with the moduli", "floor_disk")
     difference: float = column("largest difference of both, smoothed, per largest one measured")
     predicted_two_peaks: float = column("1 where that of the elastic slab has two peaks")
-    unexplained: float = column("part of the stress of the loads that the moduli leave, median over places")
-    antisymmetric: float = column("antisymmetric part of the stress of the loads")
     reach: float = column("depth down to which r < 0 below the load, per height of the top row above the lowest")
 
 
@@ -51,7 +50,7 @@ class Step:
     """A loaded state, with its fits by width and loads."""
 
     force: float = column(f"force {WEIGHTS}")
-    measured: FloatArray = column("floor force that a small further force adds, per force", "floor_disk")
+    measured: FloatArray = column("incremental floor force per small further force", "floor_disk")
     two_peaks: float = column("1 where that has two peaks")
     criterion: FloatArray = column("r by body forces, least width", "triangle")
     sliding: FloatArray = column(f"centres of sliding contacts of disks {RADII}", "contact", "axis")
@@ -60,7 +59,7 @@ class Step:
 
 
 @record
-class Outcome:
+class Loading:
     """A slab along its forces."""
 
     x: FloatArray = column(f"position from the loaded disk {RADII}", "floor_disk")
@@ -69,12 +68,12 @@ class Outcome:
     steps: tuple[Step, ...]
 
 
-def loads(problem: Problem, state: State, waves: tuple[int, int]) -> dict[str, list[FloatArray]]:
-    """Small loads (dof,) of each family: body forces in half waves, unit forces on the top row."""
+def loads(problem: Problem, state: State, along_x: int, along_z: int) -> dict[str, list[FloatArray]]:
+    """Small loads (dof,) of each family: body forces in up to so many half waves, unit forces on the top row."""
     row = problem.packing.row
     x, z = (np.pi * state.position / [problem.packing.width, state.position[:, 1].max()]).T
     body = []
-    for k, m, axis in product(range(waves[0] + 1), range(waves[1] + 1), (0, 1)):
+    for k, m, axis in product(range(along_x + 1), range(along_z + 1), (0, 1)):
         force = np.zeros((problem.freedoms, problem.n))
         force[axis] = np.cos(k * x) * np.cos(m * z)
         body.append(force.ravel())
@@ -82,38 +81,35 @@ def loads(problem: Problem, state: State, waves: tuple[int, int]) -> dict[str, l
     return {"body": body, "surface": [force_on(problem, disk, axis) for disk, axis in product(top, (0, 1))]}
 
 
-def respond(asked: Parameters, friction: float, forces: tuple[float, ...]) -> Outcome:
+def respond(scene: Scene, loaded: Loaded, forces: tuple[float, ...]) -> Loading:
     """One slab. Raises what the solvers raise."""
-    path = LoadPath.of(asked.base.updated({"contact.friction": friction}))
+    path = LoadPath.of(scene)
     measures, problem = Measures(path), path.problem
     path.through(forces)
     crossover = np.array(path.first(forces, two_peaks(measures)))
-    lattice, loaded, inside, disks = problem.packing.position, measures.loaded_disk, measures.interior, measures.disks
-    corners, middle = triangles(lattice), np.array([path.rest.position[loaded, 0], 0.0])
+    lattice, disk, inside, disks = problem.packing.position, measures.loaded_disk, measures.interior, measures.disks
+    corners, middle = triangles(lattice), np.array([path.rest.position[disk, 0], 0.0])
 
     def double(response: FloatArray) -> bool:
         return is_double_peaked(measures.x, response, interior=inside)
 
     def smooth(response: FloatArray) -> FloatArray:
-        return smoothed_response(measures.x[inside], measures.x, response, asked.smoothing)
+        return smoothed_response(measures.x[inside], measures.x, response, loaded.smoothing)
 
     def step(state: State, after: State) -> Step:
         solid = Solid(problem, state, corners)
         answer = solid.system.answers(solid.trial)
         measured = solid.floor_forces(answer(problem.load_vector))[disks]
-        largest = smooth(measured).max()
-        families = loads(problem, state, asked.waves)
+        families = loads(problem, state, loaded.horizontal_waves, loaded.vertical_waves)
         fields = {name: solid.fields(map(answer, family)) for name, family in families.items()}
         fits, criteria = {}, []
-        for place, (width, name) in places(asked.widths, LOADS):
-            strain, stress, turning = solid.averaged(fields[name], width)
-            moduli, left = fitted(strain, stress)
-            criteria.append(peak_criterion(moduli[:, 0, 0], moduli[:, 1, 1], moduli[:, 0, 1], moduli[:, 2, 2]))
-            predicted = solid.floor_forces(solid.answer(moduli, loaded))[disks]
-            part = np.linalg.norm(turning) / np.hypot(np.linalg.norm(turning), np.linalg.norm(stress))
+        for place, (width, name) in places(loaded.widths, LOADS):
+            moduli = fitted(*solid.averaged(fields[name], width))
+            criteria.append(peak_criterion(*moduli[:, [0, 1, 0, 2], [0, 1, 1, 2]].T))
+            predicted = solid.floor_forces(solid.answer(moduli, disk))[disks]
             depth = solid.reached(criteria[-1], middle[0], measures.lattice_constant)
-            difference = np.abs(smooth(predicted) - smooth(measured)).max() / largest
-            fits[place] = Fit(predicted, difference, double(predicted), left, part, depth)
+            difference = float(apart(smooth(predicted), smooth(measured)))
+            fits[place] = Fit(predicted, difference, double(predicted), depth)
         pairs, slides = state.pairs, np.abs(state.pairs.status) == SLIDING
         centre = state.position[pairs.first] - 0.5 * state.pair_separation() - middle
         grown = (floor_force(after, disks) - floor_force(state, disks)) / (after.load_factor - state.load_factor)
@@ -121,24 +117,26 @@ def respond(asked: Parameters, friction: float, forces: tuple[float, ...]) -> Ou
         return Step(state.load_factor, measured, double(measured), criteria[0], centre[slides], error, fits)
 
     steps = tuple(step(*path.through([force, force * (1.0 + STEP)])) for force in forces)
-    return Outcome(measures.x, crossover, lattice[corners] - middle, steps)
+    return Loading(measures.x, crossover, lattice[corners] - middle, steps)
 
 
-def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+def loaded_slabs(parameters: Parameters) -> xr.Dataset:
     """Dataset ``slabs``."""
-    p, slabs = parameters, parameters.slabs
-    found = computed({(k,): partial(respond, p, s.friction, s.forces) for k, s in enumerate(slabs)}, "slabs")
+    loaded = parameters.loaded
+    scenes = [parameters.lattice.updated({"contact.friction": slab.friction}) for slab in loaded.slabs]
+    tasks = {(k,): partial(respond, scenes[k], loaded, slab.forces) for k, slab in enumerate(loaded.slabs)}
+    found = computed(tasks, "slabs")
     steps = parts(found, "steps")
     fits = {(*at, *place): fit for at, step in steps.items() for place, fit in step.fits.items()}
     slab = table(found, "slab")
     slab["corners"] = slab["corners"].isel(slab=0)
     tables = (slab, table(steps, "slab", "step"), table(fits, "slab", "step", "width", "loads"))
     coordinates = axes(
-        width=(p.widths, f"w of the Gaussian over which fields are averaged {RADII}"),
+        width=(loaded.widths, f"w of the Gaussian over which fields are averaged {RADII}"),
         loads=(LOADS, "small loads to which moduli are fitted"),
         axis=("xz", "component"),
     )
     friction = labels(
-        "slab", slabs, friction="coefficient of friction between disks", shown=f"force of the map {WEIGHTS}"
+        "slab", loaded.slabs, friction="coefficient of friction between disks", shown=f"force of the map {WEIGHTS}"
     )
-    return labelled({"slabs": xr.merge(tables).assign_coords(coordinates | friction)}, p.base)
+    return xr.merge(tables).assign_coords(coordinates | friction)
