@@ -28,7 +28,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce extensions figure survey test fuzz broken scenes coverage lint docs archive restore package matrix
+.PHONY: help setup reproduce extensions figure survey test fuzz broken scenes coverage lint notebooks docs archive restore package matrix
 .PHONY: benchmark arena lock clean
 
 help: ## Show this list
@@ -89,6 +89,9 @@ lint: setup ## Run the linters and the type checker alone
 	"$(BIN)/ruff" check
 	"$(BIN)/mypy"
 	"$(BIN)/lint-imports"
+
+notebooks: setup ## Execute the notebooks of examples/notebooks anew, and store them with their outputs
+	"$(BIN)/python" tests/notebooks.py
 
 docs: setup ## Build the documentation site into docs/_build/html, running every example of the gallery
 	"$(BIN)/python" -m sphinx -W --keep-going -q -b html docs docs/_build/html

@@ -10,6 +10,7 @@ from functools import cache
 
 import pytest
 from places import ROOT
+from printed import rounded
 
 from granular_response.cli import scene_reference
 from granular_response.scene import FilePacking, LaboratoryUnits, Scene, SceneError
@@ -58,11 +59,6 @@ def test_the_readme_prints_what_it_says(tmp_path, monkeypatch, capsys):
     exec(compile(code, "README.md", "exec"), {})
     assert rounded(capsys.readouterr().out) == rounded(printed)
     assert (tmp_path / "response.png").stat().st_size > 1000
-
-
-def rounded(text: str) -> str:
-    """Without the digits of rounding errors."""
-    return re.sub(r"\d\.\de-\d\d", "#", text)
 
 
 def test_every_page_is_on_the_site():

@@ -34,6 +34,18 @@ def test_bytes_do_not_depend_on_the_users_settings(file_format: str) -> None:
     assert style.render(other, file_format) != plain
 
 
+def test_the_users_settings_come_back_and_those_of_a_backend_stay() -> None:
+    """A backend of notebooks is loaded with the first figure, and switches to interactive: it shows no other."""
+    before = mpl.rcParams.copy()
+    with mpl.rc_context({"font.size": 20}):
+        with pytest.raises(KeyError), style.context():
+            mpl.interactive(True)
+            assert mpl.rcParams["font.size"] == style.RC["font.size"]
+            raise KeyError
+        assert mpl.rcParams["font.size"] == 20 and mpl.is_interactive()
+    assert mpl.rcParams == before
+
+
 def test_saved_files_carry_no_date_and_no_program(tmp_path) -> None:
     drawn = _drawn()
     png, pdf = style.save(drawn, "fig00_test", tmp_path / "new", ("png", "pdf"))

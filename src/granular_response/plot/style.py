@@ -172,8 +172,14 @@ def context() -> Iterator[None]:
     """
     defaults = {key: one for key, one in mpl.rcParamsDefault.items() if key.partition(".")[0] not in _NOT_STYLE}
     settings: dict[Any, Any] = {**defaults, **RC}
-    with mpl.rc_context(settings):
+    # Not by rc_context, which restores all settings. The first figure of a program may load the backend in here, and
+    # that of notebooks switches matplotlib to interactive: were this undone, notebooks would show no further figure.
+    before: dict[Any, Any] = {key: mpl.rcParams[key] for key in settings}
+    mpl.rcParams.update(settings)
+    try:
         yield
+    finally:
+        mpl.rcParams.update(before)
 
 
 def figure(
