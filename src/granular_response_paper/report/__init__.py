@@ -18,6 +18,7 @@ import jinja2
 from granular_response import __version__
 from granular_response.errors import GranularError
 from granular_response.plot import style
+from granular_response.scene import text as yaml
 from granular_response.store import atomic
 from granular_response.store import files as store
 
@@ -25,7 +26,7 @@ from .. import captions
 from ..claims import stored
 from ..claims.verdict import key
 from ..registry import PAPER, Collection, group_member
-from . import against, benchmarks, explorer, pictures, readings
+from . import against, benchmarks, explorer, markdown, pictures, readings
 from .typeset import typeset
 
 #: Where the page is kept.
@@ -89,6 +90,7 @@ def fragments(root: Path, collection: Collection = PAPER) -> dict[str, Callable[
         return {
             "readings.md": lambda: readings.markdown(store.read(data / f"{SENSITIVITY}.nc")),
             "figures.md": lambda: against.markdown(data),
+            "results.md": lambda: results(stored.read(root / stored.OUTPUT)),
         }
     tables = {group: group_member(group, "tables", "markdown", optional=True) for group in collection.groups}
     return {
@@ -96,6 +98,16 @@ def fragments(root: Path, collection: Collection = PAPER) -> dict[str, Callable[
         for group, made in tables.items()
         if made
     }
+
+
+def results(claims: Mapping[str, Any]) -> str:
+    """The table of the notes: statements of the paper in short, what is found, the verdict, another preparation."""
+    rows, by_id = [], {row["id"]: row for row in claims["table"]}
+    for name, statement in yaml.read(_resource("results.yaml")).items():
+        row = by_id[name]
+        star = "*" if row["star"] else ""
+        rows.append((f"{statement} ({name})", row["here"], f"{row['verdict']}{star}", row["elsewhere"]))
+    return markdown.table(("the paper", "here", "verdict", "in another preparation"), rows)
 
 
 def write_fragments(
