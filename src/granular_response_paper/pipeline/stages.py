@@ -126,11 +126,11 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
         },
     }
     if collection != PAPER and "preparation" in groups:
+        # Its file is no output: the paper's claims read it, and would else run this collection to bring it up to date.
         stages["summary"] = {
             "desc": "What the claims of the paper read of other preparations",
             "cmd": "granular-response-paper summary -o summary.nc",
             "deps": ["data/preparation.nc", *code([f"{_PAPER}.claims.summary"])],
-            "outs": [{"summary.nc": {"cache": False}}],
         }
     return {"stages": stages}
 

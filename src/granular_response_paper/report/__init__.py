@@ -103,11 +103,16 @@ def fragments(root: Path, collection: Collection = PAPER) -> dict[str, Callable[
 def results(claims: Mapping[str, Any]) -> str:
     """The table of the notes: statements of the paper in short, what is found, the verdict, another preparation."""
     rows, by_id = [], {row["id"]: row for row in claims["table"]}
-    for name, statement in yaml.read(_resource("results.yaml")).items():
+    for name, statement in _in_short().items():
         row = by_id[name]
         star = "*" if row["star"] else ""
         rows.append((f"{statement} ({name})", row["here"], f"{row['verdict']}{star}", row["elsewhere"]))
     return markdown.table(("the paper", "here", "verdict", "in another preparation"), rows)
+
+
+def _in_short() -> dict[str, str]:
+    """What the paper says in short, by claim."""
+    return {str(name): str(statement) for name, statement in yaml.read(_resource("results.yaml")).items()}
 
 
 def write_fragments(
@@ -152,7 +157,7 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
     )
     environment.filters["typeset"] = typeset
     template = environment.from_string(_resource("page.html.j2"))
-    by_id = {row["id"]: row for row in claims["table"]}
+    by_id, in_short = {row["id"]: row for row in claims["table"]}, _in_short()
     values = {
         "version": __version__,
         "size": _SIZE,
@@ -163,7 +168,7 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
         "claims": claims,
         "verdicts": [(k["verdict"], key(k["verdict"])) for k in claims["verdicts"]],
         "parts": {part: text for part, text in stored.PARTS.items() if any(r["part"] == part for r in claims["table"])},
-        "results": [by_id[name] for name in FIRST if name in by_id],
+        "results": [(in_short[name], by_id[name]) for name in FIRST if name in by_id],
         "numbers": range(1, captions.NUMBER_OF_FIGURES + 1),
         "first": shown.first,
         "overview": shown.overview,

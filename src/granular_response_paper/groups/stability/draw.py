@@ -87,15 +87,9 @@ def _limits(
     here = np.flatnonzero((settled > 0) & (settled < len(ratio)))
     low, high = ratio[settled[here] - 1], ratio[settled[here]]
     middle = np.sqrt(low * high)
+    around = [middle - low, high - middle]
     axes.errorbar(
-        here + shift,
-        middle,
-        [middle - low, high - middle],
-        **look,
-        linestyle="none",
-        markersize=4.5,
-        elinewidth=1.2,
-        label=name,
+        here + shift, middle, around, elinewidth=1.2, label=name, **look | {"linestyle": "none", "markersize": 4.5}
     )
     for index, row in enumerate(outcome):
         exploding = np.flatnonzero(row == BLOWS_UP)
