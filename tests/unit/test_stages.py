@@ -18,8 +18,8 @@ from granular_response.scene.base import Description
 from granular_response.store import files as store
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.resources import Resources, current
-from granular_response_paper import cli as paper
 from granular_response_paper import captions
+from granular_response_paper import cli as paper
 from granular_response_paper.captions import Caption
 from granular_response_paper.pipeline import drawing, simulation
 from granular_response_paper.registry import Collection, GroupError
