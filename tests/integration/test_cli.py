@@ -29,6 +29,7 @@ from granular_response.cli import main as cli
 from granular_response.machine import floating_point
 from granular_response.store import files as store
 from granular_response_paper import cli as paper
+from granular_response_paper.registry import collections
 
 COMMANDS = ["example", "run", "continue", "show", "plot", "keys", "export", "cite", "version"]
 PROGRAMS = {LIBRARY: "granular-response", PAPER: "granular-response-paper"}
@@ -178,6 +179,13 @@ def test_stored_claims_are_listed_and_not_judged_anew(tmp_path):
     assert [line.split()[0] for line in drawn[:-3] if line[0] != " "] == listed != []
 
 
+@pytest.mark.parametrize("collection", collections(), ids=lambda one: one.name)
+def test_groups_are_listed_with_their_questions(collection):
+    lines = succeeded("groups", "--collection", collection.name, "--root", ROOT).splitlines()
+    assert [line.split()[0] for line in lines] == list(collection.groups)
+    assert all(line.endswith("?") for line in lines)
+
+
 def test_claims_without_datasets_leave_the_table_alone(tmp_path):
     (tmp_path / "figures").mkdir()
     (tmp_path / "figures" / "claims.json").write_text("as it was")
@@ -247,6 +255,7 @@ def test_run_by_another_method(folder):
         (["simulate", "theory"], ["params.yaml: cannot be read"]),
         (["draw", "nonsense"], ["nonsense: no such figure group, groups of the paper: ", "the extensions: "]),
         (["draw", "theory"], ["data/theory.nc: no such file"]),
+        (["groups", "--collection", "extras"], ["extras: no such collection, must be one of paper, extensions"]),
         (["keys", "magic"], ["no key of a scene begins with magic", "protocol"]),
         (["keys", "--page", "scene.yaml/keys.md"], ["scene.yaml/keys.md", "Not a directory"]),
     ],
