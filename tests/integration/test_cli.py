@@ -186,6 +186,23 @@ def test_groups_are_listed_with_their_questions(collection):
     assert all(line.endswith("?") for line in lines)
 
 
+@pytest.mark.parametrize(
+    ("group", "figure", "said"),
+    [
+        ("pile_dip", "", "pile_dip\n"),
+        ("", "7", "friction_linear_range\n"),
+        ("hysteresis", "", "hysteresis is a group of the extensions: "),
+        ("pile", "", "GROUP=pile: no such figure group, must be one of:\n  friction_fields\n"),
+        ("", "25", "FIGURE=25: must be a figure of the paper, 1 to 24\n"),
+        ("", "", "make figure FIGURE=number or GROUP=name, one of:\n"),
+    ],
+)
+def test_a_figure_is_asked_for_by_group_or_number(group, figure, said):
+    """`make figure`, before anything is installed."""
+    done = subprocess.run([ROOT / ".ci" / "figure", group, figure], capture_output=True, text=True)
+    assert (done.stdout + done.stderr).startswith(said) and done.returncode == (not done.stdout)
+
+
 def test_claims_without_datasets_leave_the_table_alone(tmp_path):
     (tmp_path / "figures").mkdir()
     (tmp_path / "figures" / "claims.json").write_text("as it was")
