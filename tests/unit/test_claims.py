@@ -44,7 +44,6 @@ ELSE = {"D14": "not supported", "S4a": "not measured"}
 FRICTION, SLAB, PHASES = "friction_linear_range", "frictionless_crossover", "phase_diagram"
 MEANS = "polydisperse_averages"
 NAN = float("nan")
-DEPENDS = "in part"
 
 
 @pytest.fixture(scope="module")
