@@ -945,6 +945,7 @@ def test_the_counts_in_words(good):
     )
     beyond = sum(claim.extension for claim in EVERY)
     assert disorder.endswith("1 not supported.") and extension.endswith(f": {beyond} supported.")
+    assert stored_table.quoted(table.document(table.evaluate(data, [c for c in EVERY if c.extension]))) == extension
     tried = sum(row["elsewhere"] == "yes" and row["part"] != "extension" for row in found["table"])
     assert f"Under another preparation {tried} were tried: {tried} hold, 0 fail, 0 cannot be told." in firm
 
