@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
+from claims_data import pile_study
 from commands import LIBRARY, OF_THE_PAPER, PAPER, SCENE, call, process, refused, succeeded
 from places import DATA, ROOT
 
@@ -28,6 +29,7 @@ from granular_response.cli import main as cli
 from granular_response.machine import floating_point
 from granular_response.store import files as store
 from granular_response_paper import cli as paper
+from granular_response_paper.registry import collections
 
 COMMANDS = ["example", "run", "continue", "show", "plot", "keys", "export", "cite", "version"]
 PROGRAMS = {LIBRARY: "granular-response", PAPER: "granular-response-paper"}
@@ -160,16 +162,45 @@ def test_show_as_json(solved):
     assert study["datasets"] and "states" not in study
 
 
-def test_stored_claims_are_listed_and_not_judged_anew():
-    table = ROOT / "figures" / "claims.json"
+def test_stored_claims_are_listed_and_not_judged_anew(tmp_path):
+    store.write(tmp_path / "data" / "pile_dip.nc", pile_study())
+    table = tmp_path / "figures" / "claims.json"
+    assert succeeded("claims", folder=tmp_path).startswith("figures/claims.json: Of ")
     before = table.read_bytes()
-    lines = succeeded("claims", "--list", folder=ROOT).splitlines()
+    lines = succeeded("claims", "--list", folder=tmp_path).splitlines()
     assert table.read_bytes() == before
-    rows = json.loads(table.read_text())["table"]
+    rows = json.loads(before)["table"]
     assert re.match(r"A1   [a-z ]+ +\S", lines[0])
     said = [text for row in rows for text in (row["here"], row["paper"], row["cases"], row["preparations"]) if text]
-    assert len(lines) == len(said) + 4 and all(text in line for text, line in zip(said, lines, strict=False))
-    assert re.search(r"Of \d+ statements on ordered slabs", lines[-4]) and "halved or doubled" in lines[-1]
+    assert len(lines) == len(said) + 3 and all(text in line for text, line in zip(said, lines, strict=False))
+    assert re.search(r"Of \d+ statements on ordered slabs", lines[-3]) and "halved or doubled" in lines[-1]
+    drawn = succeeded("claims", "--list", "--figure", 7, folder=tmp_path).splitlines()
+    listed = [row["id"] for row in rows if 7 in row["figures"]]
+    assert [line.split()[0] for line in drawn[:-3] if line[0] != " "] == listed != []
+
+
+@pytest.mark.parametrize("collection", collections(), ids=lambda one: one.name)
+def test_groups_are_listed_with_their_questions(collection):
+    lines = succeeded("groups", "--collection", collection.name, "--root", ROOT).splitlines()
+    assert [line.split()[0] for line in lines] == list(collection.groups)
+    assert all(line.endswith("?") for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("group", "figure", "said"),
+    [
+        ("pile_dip", "", "pile_dip\n"),
+        ("", "7", "friction_linear_range\n"),
+        ("hysteresis", "", "hysteresis is a group of the extensions: "),
+        ("pile", "", "GROUP=pile: no such figure group, must be one of:\n  friction_fields\n"),
+        ("", "25", "FIGURE=25: must be a figure of the paper, 1 to 24\n"),
+        ("", "", "make figure FIGURE=number or GROUP=name, one of:\n"),
+    ],
+)
+def test_a_figure_is_asked_for_by_group_or_number(group, figure, said):
+    """`make figure`, before anything is installed."""
+    done = subprocess.run([ROOT / ".ci" / "figure", group, figure], capture_output=True, text=True)
+    assert (done.stdout + done.stderr).startswith(said) and done.returncode == (not done.stdout)
 
 
 def test_claims_without_datasets_leave_the_table_alone(tmp_path):
@@ -237,12 +268,14 @@ def test_run_by_another_method(folder):
         (["run", "scene.yaml", "-o", "scene.yaml/result.nc"], ["cannot be written"]),
         (["show", "absent.nc"], ["absent.nc: no such file"]),
         (["show", "scene.yaml"], ["scene.yaml: is not a netCDF-4 file"]),
-        (["simulate", "nonsense"], ["nonsense: no such figure group, must be one of"]),
+        (["simulate", "nonsense"], ["nonsense: no such figure group, groups of the paper: ", "the extensions: "]),
         (["simulate", "theory"], ["params.yaml: cannot be read"]),
-        (["draw", "nonsense"], ["nonsense: no such figure group, must be one of"]),
+        (["draw", "nonsense"], ["nonsense: no such figure group, groups of the paper: ", "the extensions: "]),
         (["draw", "theory"], ["data/theory.nc: no such file"]),
+        (["groups", "--collection", "extras"], ["extras: no such collection, must be one of paper, extensions"]),
         (["keys", "magic"], ["no key of a scene begins with magic", "protocol"]),
-        (["keys", "--page", "scene.yaml"], ["scene.yaml", "keys: begin"]),
+        (["keys", "--page", "scene.yaml"], ["scene.yaml: the tables are Markdown, the name must end in .md"]),
+        (["keys", "--page", "scene.yaml/keys.md"], ["scene.yaml/keys.md", "Not a directory"]),
     ],
 )
 def test_expected_errors_are_one_line_and_code_2(folder, arguments, parts):

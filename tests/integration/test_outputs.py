@@ -34,8 +34,8 @@ COMMANDS = {
     "export": (["export", "result.nc"], ["result.nc"]),
     "plot": (["plot", "result.pdf"], ["result.pdf"]),
     "archive": (["archive"], ["params.yaml", "LICENSE"]),
-    "claims": (["claims", "--data", "data", "--readme", "README.md"], ["data/torque.nc", "README.md"]),
-    "report": (["report", "--root", ".", "--notes", "notes.md"], ["notes.md", "data/torque.nc", "figures/claims.json"]),
+    "claims": (["claims", "--data", "data", "--others", "others.nc"], ["data/torque.nc", "others.nc"]),
+    "report": (["report", "--root", "."], ["data/torque.nc", "figures/claims.json", "figures/a.png"]),
 }
 
 
@@ -56,9 +56,10 @@ def inputs(tmp_path_factory) -> Path:
     for name, one in events.variables.items():
         one.attrs = {"long_name": name, "units": "1"}
     store.write(folder / "preparation.nc", {"events": events}, {"group": "preparation"})
-    for path in ("figures/claims.json", "README.md", "notes.md"):
+    shutil.copy(folder / "preparation.nc", folder / "others.nc")
+    for path in ("figures/claims.json", "figures/a.png"):
         (folder / path).write_text("{}")
-    for name in set(crate.ALSO) - {"README.md"}:
+    for name in crate.ALSO:
         shutil.copy(ROOT / name, folder)
     for name in ("dvc.yaml", "dvc.lock"):
         (folder / name).write_text("stages: {}\n")

@@ -176,8 +176,12 @@ def test_any_tree_as_parameters(tmp_path, content):
 
 @pytest.mark.parametrize(
     ("project", "package"),
-    [(ROOT, "granular_response"), (ROOT / "src" / "granular_response_paper", "granular_response_paper")],
-    ids=["library", "reproduction"],
+    [
+        (ROOT, "src/granular_response"),
+        (ROOT / "src" / "granular_response_paper", "src/granular_response_paper"),
+        (ROOT / "extensions", "extensions/src/granular_response_extensions"),
+    ],
+    ids=["library", "reproduction", "extensions"],
 )
 def test_the_wheel_holds_every_module_of_its_package(tmp_path, project, package):
     pytest.importorskip("hatchling")
@@ -187,9 +191,9 @@ def test_the_wheel_holds_every_module_of_its_package(tmp_path, project, package)
     )  # fmt: skip
     (wheel,) = tmp_path.glob("*.whl")
     names = set(zipfile.ZipFile(wheel).namelist())
-    source = ROOT / "src"
-    files = [path for path in (source / package).rglob("*") if path.is_file() and path.suffix not in (".pyc", ".toml")]
+    source = (ROOT / package).parent
+    files = [path for path in (ROOT / package).rglob("*") if path.is_file() and path.suffix not in (".pyc", ".toml")]
     files = [path for path in files if "__pycache__" not in path.parts]
     assert {str(path.relative_to(source)) for path in files} <= names
-    assert {name.partition("/")[0].partition("-")[0] for name in names} == {package}
+    assert {name.partition("/")[0].partition("-")[0] for name in names} == {Path(package).name}
     assert not [name for name in names if "test" in name.lower() or name.endswith((".nc", ".pyc"))]

@@ -12,7 +12,12 @@ from granular_response.store import files as store
 from granular_response.store.variables import variable
 from granular_response_paper.archive import ArchiveError, lock, opened
 
-PIPELINE = "stages: {simulate: {cmd: simulate, deps: [survey/data], outs: [data/influence.nc]}}\n"
+PIPELINE = """\
+stages:
+  simulate:
+    foreach: [influence]
+    do: {cmd: "simulate ${item}", deps: [survey/data], outs: ["data/${item}.nc"]}
+"""
 FIGURES, SURVEYED = "data/influence.nc", "survey/data/delta_10.nc"
 
 
@@ -26,7 +31,7 @@ def checkout(tmp_path):
     store.write(root / SURVEYED, {"ensembles": xr.Dataset(case), "packings": xr.Dataset(case)})
     entries = {path: {"path": path, "md5": lock.md5(root, path), "size": 1} for path in ("survey/data", FIGURES)}
     stage = {"cmd": "simulate", "deps": [entries["survey/data"]], "outs": [entries[FIGURES]]}
-    (root / lock.LOCK).write_text(json.dumps({"schema": "2.0", "stages": {"simulate": stage}}))
+    (root / lock.LOCK).write_text(json.dumps({"schema": "2.0", "stages": {"simulate@influence": stage}}))
     (root / lock.PIPELINE).write_text(PIPELINE)
     return root
 

@@ -18,10 +18,11 @@ from granular_response.scene.base import Description
 from granular_response.store import files as store
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.resources import Resources, current
+from granular_response_paper import captions
 from granular_response_paper import cli as paper
-from granular_response_paper import pipeline
 from granular_response_paper.captions import Caption
 from granular_response_paper.pipeline import drawing, simulation
+from granular_response_paper.registry import Collection, GroupError
 
 LABEL = {"long_name": "square", "units": "1"}
 
@@ -66,13 +67,16 @@ def group(tmp_path, monkeypatch):
 
     for module in (simulation, drawing):
         monkeypatch.setattr(module, "group_member", member)
+    small = Collection("small", "granular_response_paper", ".", "a small collection")
+    monkeypatch.setattr(simulation, "collection_of", lambda group: small)
+    monkeypatch.setattr(captions, "question", lambda group: "How do squares grow?")
     return "squares"
 
 
 def test_a_group_has_the_common_parameters_and_its_own(group):
     given, described = simulation.parameters(group)
     assert given == {"count": 4, "method": "auto"} and described == Study.Parameters(count=4, method="auto")
-    with pytest.raises(pipeline.GroupError, match=r"params.yaml: section cubes is missing"):
+    with pytest.raises(GroupError, match=r"params.yaml: section cubes is missing"):
         simulation.parameters("cubes")
 
 
@@ -81,7 +85,7 @@ def test_further_formats_are_written_on_request(group, tmp_path):
     (svg,) = [path for path in drawing.draw(group, None, tmp_path / "all", ["svg", "pdf"]) if path.suffix == ".svg"]
     assert svg.read_text().startswith("<?xml")
     assert svg.with_suffix(".pdf").read_bytes().startswith(b"%PDF") and svg.with_suffix(".png").exists()
-    with pytest.raises(pipeline.GroupError, match="formats: bmp is unknown, must be among png, pdf, svg"):
+    with pytest.raises(GroupError, match="formats: bmp is unknown, must be among png, pdf, svg"):
         drawing.draw(group, None, tmp_path / "other", ["bmp"])
     assert not (tmp_path / "other").exists()
 
@@ -96,6 +100,7 @@ def test_simulate_and_draw(group, tmp_path):
     assert json.loads(Path("figures/squares/captions.json").read_text()) == {
         "fig99_squares": {
             "figure": None,
+            "question": "How do squares grow?",
             "panels": [],
             "caption": "4 squares. F_ext = 1 and 2 m\u0304g.",
             "alternative": "A parabola.",
@@ -117,7 +122,7 @@ def test_a_second_run_of_a_group_is_refused_while_the_first_one_lasts(group, mon
     def second(done, total, what=""):
         if done == 2 and not said:
             kept = sorted(Path("data/.squares.checkpoint").rglob("*.kept"))
-            with pytest.raises(pipeline.GroupError) as caught:
+            with pytest.raises(GroupError) as caught:
                 simulation.simulate(group, workers=1)
             said.append(str(caught.value))
             assert simulation.simulate(group, Path("data/other.nc"), workers=1) == Path("data/other.nc")
@@ -134,7 +139,7 @@ def test_a_run_that_has_ended_leaves_no_lock(group):
     Path("data/.squares.checkpoint").mkdir(parents=True)
     other = os.open("data/.squares.checkpoint", os.O_RDONLY)
     fcntl.flock(other, fcntl.LOCK_EX)
-    with pytest.raises(pipeline.GroupError, match="another run is making it"):
+    with pytest.raises(GroupError, match="another run is making it"):
         simulation.simulate(group, workers=1)
     os.close(other)
     assert simulation.simulate(group, workers=1) == Path("data/squares.nc")

@@ -306,6 +306,8 @@ def keys(
     else:
         from ..store import atomic
 
+        if page.suffix != ".md":  # a scene is easily named here, and would be gone
+            raise GranularError(f"{page}: the tables are Markdown, the name must end in .md")
         atomic.write_bytes(page, f"{scene_reference.lines()}\n".encode())
 
 

@@ -14,7 +14,7 @@ from typing import Any
 from granular_response.inputs import read_text
 from granular_response.scene import SceneError, text
 from granular_response_paper.archive import ArchiveError
-from granular_response_paper.registry import PAPER
+from granular_response_paper.pipeline.reproduce import expanded
 
 LOCK, PIPELINE, IGNORED = "dvc.lock", "dvc.yaml", ".dvcignore"
 
@@ -49,11 +49,7 @@ def stages(root: Path) -> list[Stage]:
     Raises ArchiveError if a file of the pipeline cannot be read, or a stage has not been run.
     """
     locked = _section(root / LOCK)
-    names = sorted(
-        name
-        for kind, definition in _section(root / PIPELINE).items()
-        for name in ([f"{kind}@{group}" for group in PAPER.groups] if "foreach" in definition else [kind])
-    )
+    names = sorted(expanded(_section(root / PIPELINE)))
     missing = [name for name in names if name not in locked]
     if missing:
         raise ArchiveError(f"{root / LOCK}: stage {missing[0]} has not been run; make it with make reproduce")

@@ -21,7 +21,8 @@ import xarray as xr
 from granular_response.store import files as store
 from granular_response_paper.archive import ArchiveError, lock, restore
 from granular_response_paper.archive.lock import Item
-from granular_response_paper.registry import PAPER
+from granular_response_paper.pipeline.imports import file_of
+from granular_response_paper.registry import collections
 
 #: Datasets of the survey are in git; the lock has the hash of their folder.
 SURVEY = "survey/data"
@@ -91,10 +92,9 @@ def _entry(root: Path, path: str) -> Entry:
     datasets, stem = store.read(root / path), Path(path).stem
     dimensions = {name: {str(d): size for d, size in one.sizes.items()} for name, one in datasets.items()}
     about = "Ensembles of slabs"
-    if stem in PAPER.groups:
-        study = PAPER.path / stem / "simulate" / "__init__.py"
-        source = study.read_text("utf-8")
-        about = (ast.get_docstring(ast.parse(source)) or stem).split("\n\n")[0].replace("\n", " ")
+    package = next((one.package for one in collections() if stem in one.groups), "")
+    if study := file_of(f"{package}.{stem}.simulate"):
+        about = (ast.get_docstring(ast.parse(study.read_text("utf-8"))) or stem).split("\n\n")[0].replace("\n", " ")
     elif "ensembles" in datasets:
         cases = datasets["ensembles"]
         for name in [name for name in ("polydispersity", "friction") if name in cases.variables]:

@@ -49,7 +49,7 @@ def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
 
 
 def quoted(found: dict[str, Any]) -> str:
-    """The counts in words, a line for each part of the table."""
+    """The counts in words: a line for each part of the table, and one on thresholds and preparations of the paper's."""
     lines = []
     for part, text in PARTS.items():
         number = found["counts"][part]
@@ -57,6 +57,8 @@ def quoted(found: dict[str, Any]) -> str:
         if parts:
             lines.append(f"Of {sum(number.values())} statements on {text}: {', '.join(parts)}.")
     own = [row for row in found["table"] if row["part"] != "extension"]
+    if not own:  # of a collection that goes beyond the paper
+        return "\n".join(lines)
     starred = sum(bool(row["star"]) for row in own)
     tried = [row["elsewhere"] for row in own if row["elsewhere"] != "not tried"]
     lines.append(

@@ -40,11 +40,15 @@ _KEPT = 40
 
 def stage_names(collection: Collection, root: Path) -> list[str]:
     """Every stage of a collection, as its pipeline names them."""
-    stages = text.read(read_text(root / collection.folder / FILE))["stages"]
+    return expanded(text.read(read_text(root / collection.folder / FILE))["stages"])
+
+
+def expanded(stages: Mapping[str, Any]) -> list[str]:
+    """The names of the stages of a pipeline, each of those that it has for every group by itself."""
     return [
         name
         for kind, one in stages.items()
-        for name in ([f"{kind}@{of}" for of in one["foreach"]] if "foreach" in one else [kind])
+        for name in ([f"{kind}@{group}" for group in one["foreach"]] if "foreach" in one else [kind])
     ]
 
 

@@ -525,6 +525,16 @@ def superposition_study():
     }
 
 
+def sensitivity_study():
+    """Responses by the linear law and by the power 3/2, a tenth of the largest apart."""
+    one = dataset(
+        {"variant": ["reference", "hertz"]},
+        floor_response=(("variant", "floor_disk"), np.stack([ELASTIC, 1.1 * ELASTIC])),
+        largest_difference=("variant", np.array([0.0, 0.1 * ELASTIC.max()])),
+    )
+    return {"mu_0.2": one, "mu_1": one}
+
+
 def hysteresis_study():
     """Loops that are reversible as far as the response is linear, and lose nothing a second time."""
     low = np.full((2, 3, 2), np.nan)
@@ -582,26 +592,6 @@ def scaling_study():
     }
 
 
-def width_study():
-    power = np.array([[[0.98], [0.93]], [[0.97], [0.9]]])  # (case, definition, fit)
-    return {
-        name: dataset(
-            {
-                "polydispersity": ("case", [0.0, 0.1]),
-                "friction": ("case", [0.0, 0.2]),
-                "gravity": ("case", ["at-once", "frictionless"]),
-                "force": ("case", [0.0, 15.0]),
-                "realizations": ("case", [1, 6]),
-                "definition": ["half_maximum", "half_force"],
-            },
-            power=(("case", "definition", "fit"), power),
-            elastic_power=(("case", "definition", "fit"), power),
-            interval=(("case", "definition", "level"), power + np.array([-0.03, 0.02])),
-        )
-        for name in ("inside", "floors")
-    }
-
-
 def moduli_study():
     """Two cases with friction and one without."""
     difference = np.full((3, 2, 4, 4, 2), np.nan)
@@ -619,11 +609,6 @@ def moduli_study():
             difference=(("case", "size", "realization", "solid", "smoothing"), difference),
         )
     }
-
-
-def law_study():
-    forces = {"friction": [0.0, 0.2], "force": [1.0, 15.0]}
-    return {"responses": dataset(forces, difference=(("friction", "force"), np.full((2, 2), 0.1)))}
 
 
 def network_study():
@@ -744,12 +729,11 @@ def everything():
         "polydisperse_averages": means_study(),
         "superposition": superposition_study(),
         "numerics": numerics_study(),
+        "sensitivity": sensitivity_study(),
         "hysteresis": hysteresis_study(),
         "influence": influence_study(),
         "crossover_scaling": scaling_study(),
-        "peak_width": width_study(),
         "moduli": moduli_study() | loaded_study(),
-        "contact_law": law_study(),
         "network": network_study(),
         "rolling_resistance": rolling_study(),
         "experiments": experiments_study(),
