@@ -113,6 +113,11 @@ def question(group: str) -> str:
     return str(yaml.read((group_path(group) / TEMPLATES).read_text("utf-8"))["question"])
 
 
+def stems(group: str) -> list[str]:
+    """The pictures that a group has templates for, by file stem."""
+    return [name for name in yaml.read((group_path(group) / TEMPLATES).read_text("utf-8")) if name != "question"]
+
+
 def of_scene(scene: Scene, *, frictions: Value | None = None, **others: Value | None) -> dict[str, Value]:
     """The parameters that every caption has, of a group's base scene; ``others`` replace or add, None leaves out.
 

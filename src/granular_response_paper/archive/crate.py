@@ -37,6 +37,7 @@ CONTEXT = "https://w3id.org/ro/terms/workflow-run/context"
 #: Media types by the ending of a name; a system's own table would differ from the next one's.
 FORMATS = {
     ".cff": "application/yaml",
+    ".csv": "text/csv",
     ".gif": "image/gif",
     ".html": "text/html",
     ".json": "application/json",

@@ -15,7 +15,7 @@ from typing import Any
 
 import yaml
 
-from granular_response_paper import report
+from granular_response_paper import digitised, report
 from granular_response_paper.claims import summary, table
 from granular_response_paper.pipeline.imports import closure, file_of
 from granular_response_paper.registry import PAPER, Collection
@@ -103,7 +103,7 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
             "do": {
                 "desc": "Figures of the group",
                 "cmd": "granular-response-paper draw ${item}",
-                "deps": ["data/${item}.nc", *code(drawn, [item])],
+                "deps": ["data/${item}.nc", digitised.FOLDER.as_posix(), *code(drawn, [item])],
                 "outs": [{"figures/${item}": {"cache": False}}],
             },
         },
