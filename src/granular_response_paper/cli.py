@@ -102,8 +102,12 @@ def draw(
 
 @commands.command("claims", "claims --list", "claims --list --figure 17")
 def claims(
-    data: Annotated[Path, typer.Option(help="Folder of the datasets.")] = Path("data"),
-    output: Annotated[Path, output_option(help="Table of claims (JSON).")] = Path("figures/claims.json"),
+    data: Annotated[
+        Path | None, typer.Option(help="Folder of the datasets; that of the collection if not given.")
+    ] = None,
+    output: Annotated[
+        Path | None, output_option(help="Table of claims (JSON); figures/claims.json if not given.")
+    ] = None,
     others: Annotated[Path, typer.Option(help="Summary of other preparations; left out if it is not there.")] = SUMMARY,
     name: CollectionName = PAPER.name,
     every: Annotated[bool, typer.Option("--list", help="Print the stored table; judge nothing anew.")] = False,
@@ -115,7 +119,9 @@ def claims(
     from .claims import stored, table
 
     loaded()
-    found = stored.read(output) if every else table.write(output, data, others, collection=collection(name))
+    one = collection(name)
+    output, data = output or one.here / stored.OUTPUT, data or one.here / "data"
+    found = stored.read(output) if every else table.write(output, data, others, collection=one)
     for row in found["table"] if every else ():
         if figure is not None and figure not in row["figures"]:
             continue
@@ -130,7 +136,9 @@ def claims(
 
 @commands.command("summary", "summary --data elsewhere/preparation.nc")
 def summary(
-    data: Annotated[Path, typer.Option(help="Datasets of the group preparation.")] = Path("data/preparation.nc"),
+    data: Annotated[Path, typer.Option(help="Datasets of the group preparation.")] = Path(
+        "extensions/data/preparation.nc"
+    ),
     output: Annotated[Path, output_option(help="Summary (netCDF).")] = SUMMARY,
 ) -> None:
     """Write what the claims read of other preparations of the slab: the forces of its events."""
@@ -194,8 +202,10 @@ def reproduce(
 
 @commands.command("report", "report --self-contained -o page.html", "report --fragments docs/_generated")
 def report(
-    output: Annotated[Path, output_option(help="Page to make (HTML).")] = Path("figures/report.html"),
-    root: Annotated[Path, typer.Option(help="Folder with figures/ and data/.")] = Path("."),
+    output: Annotated[Path | None, output_option(help="Page to make (HTML); figures/report.html if not given.")] = None,
+    root: Annotated[
+        Path | None, typer.Option(help="Folder with figures/ and data/; that of the collection if not given.")
+    ] = None,
     name: CollectionName = PAPER.name,
     embedded: Annotated[
         bool, typer.Option("--self-contained", help="Put the pictures into the page, which otherwise shows the files.")
@@ -209,6 +219,7 @@ def report(
 
     loaded()
     one = collection(name)
+    output, root = output or one.here / reporting.OUTPUT, root or one.here
     typer.echo(str(reporting.write(output, root, collection=one, embedded=embedded)))
     for path in reporting.write_fragments(fragments, root, collection=one) if fragments else ():
         typer.echo(str(path))

@@ -49,6 +49,12 @@ class Collection:
         assert spec is not None and spec.submodule_search_locations
         return Path(next(iter(spec.submodule_search_locations)))
 
+    @property
+    def here(self) -> Path:
+        """Its folder seen from the current one, which is the root of the checkout, or that folder itself."""
+        inside = Path(self.folder)
+        return inside if (inside / "params.yaml").is_file() else Path()
+
     @cached_property
     def groups(self) -> tuple[str, ...]:
         """Names of its figure groups, in alphabetical order."""

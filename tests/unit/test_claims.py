@@ -965,30 +965,16 @@ def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path
         summary.write(tmp_path / "other.nc", tmp_path / "summary.nc")
 
 
-def test_documents_quote_the_stored_table():
-    """The counts in words; and verdicts in tables, by the claims that a row or what stands before the table names."""
+def test_the_readme_quotes_the_stored_table():
+    """The counts in words; and verdicts in its table, by the claims that the comment before the table names."""
     found = stored_table.read(ROOT / "figures" / "claims.json")
-    readme, notes = ((ROOT / page).read_text(encoding="utf-8") for page in ("README.md", "docs/reproduction-notes.md"))
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert [line for line in stored_table.quoted(found).splitlines() if line not in readme] == []
-    counts = [(part["supported"], sum(part.values())) for part in map(found["counts"].get, ("disorder", "ordered"))]
-    (disorder, disordered), (order, ordered) = counts
-    assert f"Disorder: {disorder} of {disordered} claims are supported. All others: {order} of {ordered}." in readme
-    quoted = [(identifiers(row[0]), row[2]) for row in rows_after(notes, "verdicts of figures/claims.json")]
-    start = "numbers of figures/claims.json"
-    named = identifiers(readme.partition(start)[2].partition(")")[0])
-    quoted += [([one], row[2]) for one, row in zip(named, rows_after(readme, start), strict=True)]
+    named, table = re.search(r"<!-- verdicts of figures/claims.json: (.*?) -->\n(.*?)\n\n", readme, re.DOTALL).groups()
+    quoted = [line.strip("| ").split(" | ")[-1] for line in table.splitlines()[2:]]
     verdicts = {row["id"]: row["verdict"] for row in found["table"]}
-    assert [(one, said) for ids, said in quoted for one in ids if said.partition(",")[0] != verdicts[one]] == []
-
-
-def identifiers(text):
-    return re.findall(r"\b[A-Z]\d+[a-z]?\b", text.rpartition("(")[2])
-
-
-def rows_after(text, start):
-    """The rows of the table that begins at a comment."""
-    lines = text.partition(start)[2].partition("<!--")[0].splitlines()
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")][2:]
+    said = {one: verdict.partition(",")[0] for one, verdict in zip(named.split(", "), quoted, strict=True)}
+    assert said == {one: verdicts[one] for one in said}
 
 
 def test_datasets_without_a_group_are_named():

@@ -20,7 +20,7 @@ COLUMNS = ("name", "friction", "wall_friction", "gravity", "ramp_time", "damping
 OUTPUT = Path("extensions") / "summary.nc"
 
 
-def write(source: Path = Path("data") / f"{GROUP}.nc", output: Path = OUTPUT) -> Path:
+def write(source: Path = Path("extensions") / "data" / f"{GROUP}.nc", output: Path = OUTPUT) -> Path:
     """Write the summary of the datasets in ``source``; returns its path.
 
     Raises StoreError if they cannot be read, NotMeasured if they are not those of preparations, OSError if the output

@@ -149,7 +149,7 @@ def write(
     target = Path(output)
     atomic.check_output(target, [*_paths(folder, collection), Path(others), *keep])
     data = collect(folder, others, collection)
-    if not data.groups:
+    if not any(path.exists() for path in _paths(folder, collection)):
         raise ClaimsError(f"{folder}: holds none of the datasets that claims read; make them with dvc repro")
     found = document(evaluate(data, claims_in(collection)))
     target.parent.mkdir(parents=True, exist_ok=True)

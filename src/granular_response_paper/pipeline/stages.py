@@ -119,6 +119,7 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
             "deps": [
                 *(f"data/{group}.nc" for group in report.datasets_read(collection)),
                 "figures/claims.json",
+                Path(os.path.relpath(root / "requirements.lock", base)).as_posix(),
                 *pictures,
                 *code([f"{_PAPER}.report", *tables]),
             ],
@@ -129,7 +130,7 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
         # Its file is no output: the paper's claims read it, and would else run this collection to bring it up to date.
         stages["summary"] = {
             "desc": "What the claims of the paper read of other preparations",
-            "cmd": "granular-response-paper summary -o summary.nc",
+            "cmd": "granular-response-paper summary --data data/preparation.nc -o summary.nc",
             "deps": ["data/preparation.nc", *code([f"{_PAPER}.claims.summary"])],
         }
     return {"stages": stages}

@@ -183,7 +183,7 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
         "benchmarks": benchmarks.collect(root / "benchmarks", start, embedded=embedded) if own else [],
         "goals": benchmarks.goals(root / "benchmarks") if own else [],
         "groups": groups,
-        "versions": _versions(root / "requirements.lock"),
+        "versions": _versions(root / os.path.relpath(".", collection.folder) / "requirements.lock"),
         "style": _colours() + _resource("style.css"),
         "script": _resource("explorer.js"),
         "behaviour": _resource("page.js"),
