@@ -38,7 +38,7 @@ SECTIONS = {
         "realizations": 4,
         "pair_realizations": 3,
         "offsets": [1, 3],
-        "forces": [0.5, 1.0],
+        "forces": [0.2, 1.0],
         "single_forces": [0.5, 1.0],
         "width": 3.0,
         "tolerance": 0.05,
