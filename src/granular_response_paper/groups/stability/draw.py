@@ -87,16 +87,8 @@ def _limits(
     here = np.flatnonzero((settled > 0) & (settled < len(ratio)))
     low, high = ratio[settled[here] - 1], ratio[settled[here]]
     middle = np.sqrt(low * high)
-    axes.errorbar(
-        here + shift,
-        middle,
-        [middle - low, high - middle],
-        **look,
-        linestyle="none",
-        markersize=4.5,
-        elinewidth=1.2,
-        label=name,
-    )
+    marks = look | {"linestyle": "none", "markersize": 4.5}
+    axes.errorbar(here + shift, middle, [middle - low, high - middle], elinewidth=1.2, label=name, **marks)
     for index, row in enumerate(outcome):
         exploding = np.flatnonzero(row == BLOWS_UP)
         if exploding.size:
