@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import reduced
 
+from granular_response_extensions.crossover_scaling import tables
 from granular_response_extensions.crossover_scaling.claims import CLAIMS
 from granular_response_extensions.crossover_scaling.parameters import Parameters
 from granular_response_extensions.crossover_scaling.simulate import series as study
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.frictionless_crossover import simulate as frictionless
-from granular_response_paper.report import beyond
 
 
 @pytest.fixture(scope="module")
@@ -126,12 +126,12 @@ def test_powers_of_the_continuum_are_known_where_there_is_one_scale(parameters):
 
 
 def test_the_document_gets_a_line_for_each_series_of_layers(datasets):
-    head, _, first, *others = beyond.crossovers(datasets).splitlines()
+    head, _, first, *others = tables.markdown(datasets).splitlines()
     assert head.endswith("| two peaks at 100 layers, extrapolated |") and len(others) == 2
     exponent = datasets["powers"]["exponent"].sel(series="constant confinement", event="crossover").values
     assert first.startswith("| 0, constant | 5 to 9 | {:.2f} ({:.2f} to {:.2f}) |".format(*exponent))
     surveyed = datasets["slabs"].assign_coords(surveyed=("slab", (datasets["slabs"]["layers"].values == 9).astype(int)))
-    assert "| 5 to 9, from 9 on survey data |" in beyond.crossovers({**datasets, "slabs": surveyed}).splitlines()[2]
+    assert "| 5 to 9, from 9 on survey data |" in tables.markdown({**datasets, "slabs": surveyed}).splitlines()[2]
 
 
 def test_claims_are_judged(datasets):

@@ -6,13 +6,12 @@ import reduced
 from small_scenes import at_rest
 
 from granular_response.solvers.solution import loaded_states
-from granular_response_extensions.hysteresis import simulate
+from granular_response_extensions.hysteresis import simulate, tables
 from granular_response_extensions.hysteresis.claims import CLAIMS
 from granular_response_extensions.hysteresis.parameters import Parameters
 from granular_response_extensions.hysteresis.simulate.loops import keep_books
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
-from granular_response_paper.report import beyond
 
 PARAMETERS = reduced.parameters("hysteresis")
 #: Cases of the reduced parameters.
@@ -81,7 +80,7 @@ def test_the_reversible_range_is_where_a_loop_begins_to_leave_something(datasets
 
 
 def test_the_document_gets_a_line_for_each_packing_and_how_the_books_close(datasets):
-    _, _, smooth, rough, disordered, _, count, lattices, disorder = beyond.loops(datasets).splitlines()
+    _, _, smooth, rough, disordered, _, count, lattices, disorder = tables.markdown(datasets).splitlines()
     opening = datasets["events"].isel(case=ROUGH, realization=0).sel(event="first_opening")
     assert float(opening["high"]) == pytest.approx(float(opening["low"]), rel=1e-6)
     assert smooth.startswith("| lattice, µ = 0 |") and smooth.endswith("| above 2 | 2 | nothing | nothing | nothing |")

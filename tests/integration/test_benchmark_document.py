@@ -281,13 +281,15 @@ def test_a_swing_has_the_stored_error(script, document, integrator):
 
 @pytest.mark.parametrize(("kind", "scene"), [("nine points", 0), ("small", 3), ("small", 2), ("slabs", 0)])
 def test_a_path_is_as_accurate_as_stored(script, document, monkeypatch, kind, scene):
-    """In few increments, since those end at events anyway; one path loses an equilibrium."""
+    """In few increments, since those end at events anyway. One path loses an equilibrium: which one follows is decided
+    by the motion, so later events are not compared."""
     exactness = script("exactness")
     monkeypatch.setattr(exactness, "MOST", 20)
     monkeypatch.setattr(exactness, "MOST_OF_SLAB", 20)
     (stored,) = document.pick(document.read()["exactness"]["runs"], kind=kind, scene=scene)
     found = exactness.measure(kind, scene, list(exactness.SCENES[kind]())[scene])
-    assert (found["events"], found["lost"]) == (stored["events"], stored["lost"])
+    assert found["lost"] == stored["lost"]
     assert exactness.outcome(found) == exactness.outcome(stored)
     if exactness.outcome(found) == "none lost":
+        assert found["events"] == stored["events"]
         assert max(found["error"], stored["error"]) <= exactness.EXACT

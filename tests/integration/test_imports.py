@@ -4,6 +4,7 @@ import inspect
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -77,7 +78,7 @@ SIGNATURES = {
     "LaboratoryUnits.to_laboratory": "(self, quantity, value)",
     "LaboratoryUnits.to_reduced": "(self, quantity, value)",
     "LaboratoryUnits.unit": "(self, quantity)",
-    "Result.contacts_table": "(self, *, state=-1)",
+    "Result.contacts_table": "(self, state=-1)",
     "Result.continued": "(self, load_factors, *, progress=True)",
     "Result.export": "(self, path, *, state=None)",
     "Result.influence": "(self, *, state=-1, sliding='refuse')",
@@ -85,7 +86,10 @@ SIGNATURES = {
     "Result.save": "(self, path)",
     "Result.stress": "(self, x=None, z=None, *, state=-1, added=None, width=2.0)",
     "Result.to_dataset": "(self)",
-    "Scene.from_arrays": "(x, z, radius, *, mass=None, width=None, origin=(0.0, 0.0), sides='walls', scene=None)",
+    "Scene.from_arrays": (
+        "(x, z, radius, *, mass=None, width=None, origin=(0.0, 0.0), sides='walls', overlaps='kept', vx=None,"
+        " vz=None, spin=None, scene=None)"
+    ),
     "Scene.from_dict": "(data, *, folder=None)",
     "Scene.from_text": "(text, *, folder=None)",
     "Scene.from_yaml": "(path)",
@@ -93,15 +97,23 @@ SIGNATURES = {
     "Scene.to_dict": "(self)",
     "Scene.to_yaml": "(self)",
     "Scene.updated": "(self, changes)",
+    "coordination_number": "(result)",
+    "elastic_moduli": "(result, *, state=0, following='free', margin=0.25, prestress=True)",
+    "fabric_tensor": "(result)",
     "find_event": "(scene, happened, low, high, *, where=None, key='load', tolerance=None, progress=True)",
+    "force_distribution": "(result, *, state=-1, bins=24, to=6.0)",
     "map_tasks": (
         "(function, items, *, workers=None, scheduler=None, progress=None, checkpoint=None, parts=(), what='tasks')"
     ),
+    "mobilization": "(result)",
+    "modes": "(result, count=6, *, state=-1, sliding='refuse')",
+    "motion": "(scene, times, *, start=None, progress=True)",
     "open_result": "(path, *, folder=None)",
-    "plot.animate": ("(results, *, output=None, half_width=None, fps=6.0, dpi=120.0, width=7.0, figure=None)"),
-    "plot.contacts": "(result, *, ax=None, state=-1, **lines)",
+    "plot.animate": "(results, *, output=None, half_width=None, fps=6.0, dpi=120.0, width=7.0, figure=None)",
+    "plot.contacts": "(result, *, ax=None, state=-1, half_width=None, **lines)",
     "plot.floor": "(result, *, ax=None, state=-1, added=None, **line)",
-    "plot.forces": "(result, *, ax=None, state=-1, added=None, scale='sqrt', vmax=None, **lines)",
+    "plot.forces": "(result, *, ax=None, state=-1, added=None, scale='sqrt', vmax=None, half_width=None, **lines)",
+    "plot.motion": "(moved, *, output=None, fps=12.0, dpi=120.0, width=7.0, figure=None)",
     "plot.packing": "(result, *, ax=None, state=-1, values=None, label='', cmap='viridis', **patches)",
     "plot.page": "(result, what=None, *, state=-1, scale='sqrt', figure=None)",
     "plot.photoelastic": (
@@ -109,20 +121,27 @@ SIGNATURES = {
     ),
     "plot.response": "(result, *, ax=None, **line)",
     "plot.stress": (
-        "(result, *, ax=None, state=-1, added=None, component='zz', width=2.0, vmax=None, cmap='RdBu', **mesh)"
+        "(result, *, ax=None, state=-1, added=None, component='zz', width=2.0, vmax=None, half_width=None,"
+        " cmap='RdBu', **mesh)"
+    ),
+    "preparations": (
+        "(scene, ways={...}, measure=floor_response, *, load_factors=None, workers=None, scheduler=None,"
+        " checkpoint=None, progress=True)"
     ),
     "register_law": "(name, law, parameters=NoParameters)",
     "solve": "(scene, *, load_factors=None, method=None, progress=True)",
+    "stiffness_matrix": "(result, *, state=-1, sliding='refuse')",
     "sweep": (
         "(scene, axes, measure=floor_response, *, load_factors=None, workers=None, scheduler=None,"
         " checkpoint=None, progress=True)"
     ),
     "threads": "(count)",
+    "work": "(result)",
 }
 #: What a result has without being called.
 PROPERTIES = """
-certificate certificates contacts events floor_force_change floor_response load_factors loaded origin
-reaction rest scene
+certificate certificates contacts displacement events floor_force_change floor_response load_factors loaded
+loaded_disks origin reaction rest scene
 """
 
 
@@ -130,8 +149,11 @@ def parameters(function) -> str:
     signature = inspect.signature(function)
     plain = [one.replace(annotation=inspect.Parameter.empty) for one in signature.parameters.values()]
     text = str(signature.replace(parameters=plain, return_annotation=inspect.Signature.empty))
-    for default in (one.default for one in plain if inspect.isroutine(one.default) or inspect.isclass(one.default)):
-        text = text.replace(repr(default), default.__name__)
+    for default in (one.default for one in plain):
+        if inspect.isroutine(default) or inspect.isclass(default):
+            text = text.replace(repr(default), default.__name__)
+        elif isinstance(default, Mapping):
+            text = text.replace(repr(default), "{...}")
     return text
 
 

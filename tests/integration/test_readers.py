@@ -101,8 +101,9 @@ def read(reader, files):
 
 
 def installed(reader):
-    if reader == "h5netcdf" and importlib.util.find_spec(reader) is None:
-        pytest.skip("h5netcdf is not installed")
+    for package in ("h5netcdf", "h5py") if reader == "h5netcdf" else ():
+        if importlib.util.find_spec(package) is None:
+            pytest.skip(f"{package} is not installed")
 
 
 @pytest.mark.parametrize("reader", READERS)

@@ -120,7 +120,7 @@ def coarse_pictures(monkeypatch):
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.usefixtures("coarse_pictures")
-@pytest.mark.parametrize(("odd", "kind"), odd_cases())
+@pytest.mark.parametrize(("odd", "kind"), list(odd_cases()))
 def test_an_experiment_never_ends_in_a_traceback(odd, kind, tmp_path):
     section = ODD[kind](reduced.parameters(odd))
     section.pop("method", None)

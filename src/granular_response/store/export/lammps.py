@@ -14,6 +14,7 @@ import xarray as xr
 
 from ...contact import Hertz, Law, Linear
 from ...contact.rolling import Rolling
+from ...errors import GranularError
 from ...scene import Packing
 from ...solvers.problem import Problem
 from ...solvers.timestep import resolve_time_step
@@ -25,7 +26,7 @@ from .text import lammps_data
 SETTLING = 100.0
 
 
-class NoCounterpart(ValueError):
+class NoCounterpart(GranularError, ValueError):
     """A scene with something that LAMMPS has not. The message is one line."""
 
 

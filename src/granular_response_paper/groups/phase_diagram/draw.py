@@ -90,7 +90,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         p=parameters,
         last=last,
         few=few,
-        tolerances=[100.0 * t for t in sorted(datasets["definitions"]["tolerance"].values.tolist())],
+        tolerances=[100.0 * datasets["definitions"]["tolerance"].values[k] for k in (0, -1)],  # those that are drawn
         dip=100 * parameters.tolerance,
     )
 

@@ -30,7 +30,7 @@ class Parameters(Description):
     reach: Positive = Field(description="Largest distance at which a peak is looked for, in radii.")
     spacing: Positive = Field(description="Of the x axis, in radii.")
     tolerance: Ratio = Field(description="Shape from which on a response has two peaks.")
-    other_tolerances: tuple[Ratio, ...] = Field(description="Tried beside it.")
+    other_tolerances: Annotated[tuple[Ratio, ...], AfterValidator(some)] = Field(description="Tried beside it.")
     compared: Annotated[tuple[Compared, ...], AfterValidator(some)]
     draws: Count = Field(description="Of the bootstrap over realizations.")
     seed: Index = Field(description="Of the bootstrap.")

@@ -87,10 +87,8 @@ def _limits(
     here = np.flatnonzero((settled > 0) & (settled < len(ratio)))
     low, high = ratio[settled[here] - 1], ratio[settled[here]]
     middle = np.sqrt(low * high)
-    around = [middle - low, high - middle]
-    axes.errorbar(
-        here + shift, middle, around, elinewidth=1.2, label=name, **look | {"linestyle": "none", "markersize": 4.5}
-    )
+    marks = look | {"linestyle": "none", "markersize": 4.5}
+    axes.errorbar(here + shift, middle, [middle - low, high - middle], elinewidth=1.2, label=name, **marks)
     for index, row in enumerate(outcome):
         exploding = np.flatnonzero(row == BLOWS_UP)
         if exploding.size:

@@ -36,12 +36,21 @@ class Start:
 
 
 def starts_of(source: xr.Dataset, packings: xr.Dataset, asked: Parameters) -> list[Start]:
-    """Every start of a polydispersity under the force at which they are compared."""
-    found = []
+    """Every start of a polydispersity under the force at which they are compared.
+
+    Raises ValueError if the first case is not the lattice, or no case has one of the polydispersities and its force.
+    """
+    if source["polydispersity"].values[0] > 0.0:
+        raise ValueError(f"blocks = {list(asked.blocks)}: must begin with one of the lattice")
+    found: list[Start] = []
     lattice, constant = packings.isel(case=0, realization=0), packings["lattice_constant"].values
     for one in asked.compared:
         alike = np.isclose(source["polydispersity"].values, one.polydispersity)[:, None]
-        for case, step in np.argwhere(alike & np.isclose(source["force"].values, one.force)).tolist():
+        places = np.argwhere(alike & np.isclose(source["force"].values, one.force)).tolist()
+        if not places:
+            had = f"polydispersity {one.polydispersity:g} and a force of {one.force:g}"
+            raise ValueError(f"compared: no case of blocks = {list(asked.blocks)} has {had}")
+        for case, step in places:
             usual = constant[case] == constant[0]
             distance = touching_largest(one.polydispersity) if usual else float(constant[case])
             packing = packings.isel(case=case, realization=slice(0, int(packings["realizations"].values[case])))
