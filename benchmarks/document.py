@@ -194,10 +194,8 @@ def shares(metrics: Metrics) -> str:
 
 
 def groups(metrics: Metrics) -> str:
-    """Seconds of the paper's figure groups together."""
-    return "".join(
-        f" The paper's groups: {row['simulate_seconds'] + row['draw_seconds']:.0f} s." for row in metrics["totals"]
-    )
+    """Seconds of each collection of figure groups."""
+    return "".join(f" {row['collection'].capitalize()}: {row['seconds']:.0f} s." for row in metrics["totals"])
 
 
 #: What a section says after its text.

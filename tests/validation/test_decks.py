@@ -1,7 +1,7 @@
 """Verification decks of other codes, on disks: each against its published number or closed form.
 
 Spheres became disks (moment of inertia m R^2 / 2, so that 2/7 and 5/7 of a sphere that begins to roll become 1/3 and
-2/3). A deck is a scene where keys allow it; what begins with a velocity is :class:`Dynamics`, since a scene has none.
+2/3). A deck is a scene where keys allow it; what begins with a velocity runs in :class:`Dynamics`.
 Numbers are in units of radius, mean mass and g unless said. Sources, by repository and path:
 
 * MFIX DEM01 to DEM05: truongd8593/mfix, tests/dem

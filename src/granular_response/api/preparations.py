@@ -62,8 +62,8 @@ def preparations(
     >>> small = gr.Scene(packing=gr.Slab(layers=3, disks_per_row=7), loads=[gr.Load(disk="top-centre", force=(0, -1))])
     >>> ways = {"at once": {}, "tapped": gr.Preparation(taps=gr.Taps(number=1))}
     >>> found = gr.preparations(small, ways, workers=1)
-    >>> bool((found["floor_response_low"] <= found["floor_response_high"]).all())
-    True
+    >>> float((found["floor_response_high"] - found["floor_response_low"]).max().round(3))
+    0.006
     """
     if not isinstance(ways, Mapping) or not ways or not all(isinstance(name, str) for name in ways):
         raise SceneError(f"ways = {show(ways)}: must be a mapping of names to preparations")

@@ -163,7 +163,7 @@ class Result:
         (Frozen({'load': 1}), Frozen({'load': 1, 'x': 3}))
         """
         many, data, box = np.ndim(x) > 0, self._data, self.rest.box
-        places = _places("x", x if isinstance(x, (Sequence, np.ndarray)) and many else [x])
+        places = _places("x", x if many else [x])
         at = data["x"].values
         if smooth is None:
             away = box.separation(np.c_[at, 0.0 * at][:, None], np.c_[places, 0.0 * places])[..., 0]
@@ -557,7 +557,7 @@ def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scen
     return scene if isinstance(scene, Scene) else Scene.from_dict(scene)
 
 
-def _places(name: str, given: Sequence[Any] | np.ndarray) -> np.ndarray:
+def _places(name: str, given: Any) -> np.ndarray:
     """Coordinates of a grid along one axis."""
     try:
         places = np.array(np.nan if unordered(given) else plain(given), float)

@@ -129,7 +129,7 @@ class Scene(Sparse):
     @model_validator(mode="after")
     def _check_motion(self) -> Scene:
         motion, total = self.motion, self.packing.disk_count
-        if motion.spin != 0.0 and not self.contact.rubs and not self.resolved_wall.rubs:
+        if np.any(np.asarray(motion.spin) != 0.0) and not self.contact.rubs and not self.resolved_wall.rubs:
             rule = "must be 0 without friction and tangential springs (contact and wall: friction, stiffness_ratio)"
             raise Problem(f"{rule}, which alone turn disks", key=("motion", "spin"), value=motion.spin)
         for name in COMPONENTS:

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..scene import Scene, SceneError
 from ..scene.errors import show
+from ..scene.given import plain
 from ..state import FloatArray, State
 from .dynamics import Dynamics, DynamicsError, Ramp
 from .problem import Problem
@@ -136,8 +137,9 @@ def _reached(dynamics: Dynamics, rest: float) -> State:
 
 def checked_times(times: Any) -> FloatArray:
     """(t,) times; SceneError unless they are finite numbers that grow, from 0 on."""
-    given: list[Any] = list(times) if np.iterable(times) and not isinstance(times, (str, bytes)) else [None]
-    numbers = all(isinstance(one, Real) and not isinstance(one, (bool, np.bool_)) for one in given)
+    listed = plain(times)
+    given: list[Any] = listed if isinstance(listed, list) else [None]
+    numbers = all(isinstance(one, Real) and not isinstance(one, bool) for one in given)
     found = np.array([float(one) for one in given]) if numbers and given else np.array([np.nan])
     if not np.isfinite(found).all():
         raise SceneError(f"times = {' '.join(show(times).split())}: must be a list of one or more finite numbers")

@@ -33,8 +33,8 @@ _OF_PARTICLES = {
     "position": 3, "orientation": 4, "velocity": 3, "angmom": 4, "moment_inertia": 3, "image": 3, "diameter": 1,
     "mass": 1, "charge": 1, "body": 1, "typeid": 1,
 }  # fmt: skip
-#: Kinds of numbers by their code, from 1 on.
-_KINDS = ("u1", "<u2", "<u4", "<u8", "i1", "<i2", "<i4", "<i8", "<f4", "<f8")
+#: Kinds of values by their code, from 1 on. The last one is text, which logs have.
+_KINDS = ("u1", "<u2", "<u4", "<u8", "i1", "<i2", "<i4", "<i8", "<f4", "<f8", "S1")
 
 
 class _Frames:

@@ -73,7 +73,10 @@ def _frames(lines: list[str]) -> list[dict[str, _Item]]:
 
 
 def _checked(frame: dict[str, _Item], which: str) -> int:
-    """The number of atoms of a frame, once it is whole: every item is there with its lines and no other."""
+    """The number of atoms of a frame, once it is whole: every item is there with its lines and no other.
+
+    A frame may have none, as the first ones of a packing that is poured.
+    """
     if missing := [name for name in _NEEDED if name not in frame]:
         if missing == ["TIMESTEP", "NUMBER OF ATOMS", "BOX BOUNDS", "ATOMS"]:
             raise FormatError("is not a LAMMPS dump file of text, must have ITEM: TIMESTEP")
@@ -92,7 +95,7 @@ def _checked(frame: dict[str, _Item], which: str) -> int:
     if count is None:
         raise FormatError(f"{shown(text)}: must be the number of atoms", f"line {k}")
     found = len(frame["ATOMS"].lines)
-    if found != count or not count:
+    if found != count:
         raise FormatError(f"holds {found} of {count} atoms in its {which}", frame["ATOMS"].place)
     return count
 
@@ -101,11 +104,15 @@ def read(path: Path) -> Table:
     """The disks of the last frame."""
     lines, whole = lines_of(path)
     frames = _frames(lines)
-    for k, one in enumerate(frames, start=1):
+    counts = [
         _checked(one, "last frame" if k == len(frames) else f"frame {k} of {len(frames)}")
+        for k, one in enumerate(frames, start=1)
+    ]
     if not whole:
         raise FormatError("is cut: its last line has no end")
     frame = frames[-1]
+    if not counts[-1]:
+        raise FormatError("holds 0 of 0 atoms in its last frame", frame["ATOMS"].place)
     flags, sides = _box(frame["BOX BOUNDS"])
     atoms = frame["ATOMS"]
     names, heading = atoms.words, atoms.place
