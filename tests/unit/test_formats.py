@@ -217,6 +217,13 @@ def test_lammps_dump_has_the_last_frame(tmp_path):
     assert packing.width * 1.25 == pytest.approx(10)
 
 
+def test_lammps_dump_begins_without_atoms_where_disks_are_poured(tmp_path):
+    empty = DUMP.replace("ATOMS\n1", "ATOMS\n0").replace("1 1 0.5 0.5 0 0.5\n", "")
+    np.testing.assert_array_equal(build(tmp_path / "a.dump", empty).position, build(tmp_path / "b.dump", DUMP).position)
+    with pytest.raises(SceneError, match="holds 0 of 0 atoms in its last frame"):
+        build(tmp_path / "a.dump", empty[: empty.index("ITEM: TIMESTEP\n7")])
+
+
 def test_lammps_dump_says_what_the_sides_are(tmp_path):
     text = DUMP.replace("ff pp ff", "pp pp ff").replace("1 0.1 0", "1 1.1 0").replace("2 0.4 0", "2 -0.6 0")
     packing = build(tmp_path / "a.dump", text, sides="periodic")
@@ -686,6 +693,7 @@ def test_gsd_takes_from_the_first_frame_what_the_last_one_leaves_out(tmp_path):
             frame.particles.position = [[-4, -3 + lift, 0], [-1, -2.5 + lift, 0]]
             frame.particles.diameter = [2, 3]
             frame.particles.mass = [4, 1]
+            frame.log["note"] = "a text"  # values of a kind that no disk has
             file.append(frame)
     with hoomd.open(str(tmp_path / "a.gsd"), "r") as file:
         expected = file[1].particles

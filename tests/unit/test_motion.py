@@ -19,6 +19,7 @@ TABLE = "x,z,radius,vx,spin\n2,1,1,0.5,1\n5,1,1,,2\n"
         ([np.nan], r"times = \[nan\]: must be a list"),
         ([], r"times = \[\]: must be a list"),
         (2.0, r"times = 2.0: must be a list"),
+        ({0.0, 1.0}, r"times = \{0.0, 1.0\}: must be a list"),
         ([1e9], r"times: 1e\+09 is 2e\+12 steps of 0.0005, must be at most protocol.maximum_steps = 5000000"),
     ],
 )
@@ -36,6 +37,7 @@ def test_times_are_numbers_in_order(times, said):
         ({"motion.vz": [0.0, 1.0]}, r"motion.vz = \[0.0, 1.0\]: must have one number for each of the 1 disks, has 2"),
         ({"motion.vz": "column"}, r"motion.vz = 'column': must be numbers, the packing is not from a file"),
         ({"motion.spin": 1.0, "contact.friction": 0.0}, r"motion.spin = 1.0: must be 0 without friction"),
+        ({"motion.spin": [1.0], "contact.friction": 0.0}, r"motion.spin = \(1.0,\): must be 0 without friction"),
         ({"motion.omega": 1.0}, r"motion.omega = 1.0: unknown key"),
     ],
 )
@@ -54,6 +56,8 @@ def test_statics_refuses_a_motion(method):
 
 
 def test_a_scene_without_a_motion_is_written_as_ever():
+    still = {"motion.spin": [0.0], "contact.friction": 0.0}  # where no contact turns a disk, it may stand still
+    assert BALL.updated(still).motion.spin == (0.0,)
     assert "motion" not in gr.Scene().to_dict()
     assert gr.Scene.from_text(BALL.to_yaml()) == BALL and BALL.to_dict()["motion"] == {"vx": 0.5}
 
