@@ -42,6 +42,7 @@ SCENE = {
 def command(folder: str, arguments: list[str]) -> None:
     os.chdir(folder)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in what a script runs in the background
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # and under nohup
     sys.argv = ["granular-response", *arguments]
     with contextlib.redirect_stdout(io.StringIO()):
         (paper if package_of(*arguments) == PAPER else cli).main()
