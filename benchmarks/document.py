@@ -1,7 +1,6 @@
-"""`docs/benchmarks.md`, its pictures, `summary.json` with its goals, the table of costs of the user guide, and the
-lines of the README that quote them.
+"""`docs/benchmarks.md`, its pictures, `summary.json` with its goals, and the table of costs of the user guide.
 
-Tables and pictures come from the other JSON files alone.
+The README quotes them by hand (:func:`quoted`); a test compares. Tables and pictures come from the other JSON files alone.
 
 `python benchmarks/document.py` from anywhere in the repository. A benchmark whose file is missing is named as not
 measured.
@@ -417,7 +416,6 @@ def main() -> None:
     write(str(HERE / "summary.json"), {"goals": goals(found)}, measured=False)
     atomic.write_bytes(HERE.parent / "docs" / "benchmarks.md", text(found).encode())
     atomic.write_bytes(HERE.parent / "docs" / "_generated" / "costs.md", f"{costs(found)}\n".encode())
-    atomic.write_bytes(HERE.parent / "docs" / "_generated" / "speed.md", f"{quoted(found)}\n".encode())
 
 
 if __name__ == "__main__":
