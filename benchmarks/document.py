@@ -1,6 +1,7 @@
 """`docs/benchmarks.md`, its pictures, `summary.json` with its goals, and the table of costs of the user guide.
 
-The README quotes them by hand (:func:`quoted`); a test compares. Tables and pictures come from the other JSON files alone.
+The README quotes them by hand (:func:`quoted`); a test compares. Tables and pictures come from the other JSON files
+alone.
 
 `python benchmarks/document.py` from anywhere in the repository. A benchmark whose file is missing is named as not
 measured.
