@@ -2,6 +2,7 @@
 
 import re
 from collections import Counter
+from dataclasses import replace
 
 import broken_files
 import counts
@@ -39,6 +40,28 @@ def test_a_command_that_ends_its_process_is_counted_and_the_others_go_on(tmp_pat
     assert [t.what for t, k in zip(trials, killed, strict=True) if not k] == [
         t.what for t, k in zip(alone, killed, strict=True) if not k
     ]
+
+
+def test_what_a_reader_would_lose_is_a_quiet_change(tmp_path, monkeypatch):
+    """Readers that lose a row, take another value for all disks, or another box, after any change of the file."""
+    file = broken_files.File("a.csv", b"x,z,radius\n1,1,1\n3,1,1\n5,1,1\n", {}, False)
+    noted = file.content + b"# a remark\n"
+    assert broken_files.quiet_change(file, noted, tmp_path) == ""
+    assert broken_files.quiet_change(file, file.content.replace(b"3,1,1\n", b""), tmp_path) == ""
+    assert broken_files.quiet_change(file, file.content.replace(b"3,1,1", b"3,2,1"), tmp_path) == ""
+    whole = broken_files.formats.read
+
+    def reader(spoil):
+        def read(path, kind):
+            table = whole(path, kind)
+            return spoil(table) if path.name.startswith("changed") else table
+
+        monkeypatch.setattr(broken_files.formats, "read", read)
+        return broken_files.quiet_change(file, noted, tmp_path)
+
+    assert reader(lambda t: replace(t, x=t.x[1:], z=t.z[1:], radius=t.radius[1:])) == "2 of 3 disks"
+    assert reader(lambda t: replace(t, radius=2 * t.radius)) == "3 other disks after a change of 1"
+    assert reader(lambda t: replace(t, mass=t.radius)) == "masses"
 
 
 def quoted(name: str) -> list[int]:

@@ -318,6 +318,8 @@ CONTRADICTIONS = [
      "column mass is missing, which tables of granular-response have"),
     ("a.csv", 2 * "# granular-response: 1 disks, width 9.0, sides walls\n" + "x,z,radius\n1,1,1\n",
      "line 2: mark of granular-response: is given twice, in line 1 and here"),
+    ("a.txt", "# granular-response: 2 disks, width 9.0, si1 0 1 1\n3 0 1 1\n",
+     "line 1: is a damaged first line of a table of granular-response"),
     ("a.txt", "#format x_y_z_r_r\n1 0 1 1 0.5\n", "line 1: format names 'r' 2 times, must name it once"),
     ("a.txt", "#format x_y_z_r\n#format r_x_y_z\n1 0 1 1\n", "line 2: #format: is given twice, in line 1 and here"),
     ("a.txt", "1 0 1 1\n#format x_y_z_r\n", "line 2: format must be one word such as x_y_z_r, above the spheres"),
@@ -720,3 +722,22 @@ def test_every_damaged_byte_of_a_gsd_file_is_met(periodic, tmp_path):
                 assert "\n" not in str(error)
                 refused += 1
     assert refused > 60
+
+
+@pytest.mark.filterwarnings("ignore:.*read again")
+@pytest.mark.parametrize(
+    ("whole", "damaged", "said"),
+    [
+        (b"particles/mass", b"particles/masr", "its list of names has one that the format does not have"),
+        (b"particles/mass", b"qarticles/mass", "its list of names has one that the format does not have"),
+    ],
+)
+def test_a_damaged_name_of_a_gsd_file_is_no_missing_chunk(result, tmp_path, whole, damaged, said):
+    """Masses that stood under it were taken as 1, and the last positions as the first."""
+    content = export(result, tmp_path / "a.gsd").read_bytes()
+    (tmp_path / "a.gsd").write_bytes(content.replace(whole, damaged))
+    with pytest.raises(SceneError, match=said):
+        build(tmp_path / "a.gsd")
+    (tmp_path / "a.gsd").write_bytes(content + b"\0")
+    with pytest.raises(SceneError, match=r"its parts end at byte \d+, it has \d+$"):
+        build(tmp_path / "a.gsd")

@@ -35,6 +35,10 @@ _OF_PARTICLES = {
 }  # fmt: skip
 #: Kinds of values by their code, from 1 on. The last one is text, which logs have.
 _KINDS = ("u1", "<u2", "<u4", "<u8", "i1", "<i2", "<i4", "<i8", "<f4", "<f8", "S1")
+#: Other names that the format has, and beginnings of those that its users make.
+_NAMES = {f"particles/{name}" for name in (*_OF_PARTICLES, "N", "types", "type_shapes")}
+_NAMES |= {f"configuration/{name}" for name in ("step", "dimensions", "box")}
+_GROUPS = ("bonds", "angles", "dihedrals", "impropers", "constraints", "pairs", "state", "log")
 
 
 class _Frames:
@@ -68,6 +72,9 @@ class _Frames:
             raise FormatError(f"{_DAMAGED}: its list of names")
         if len(np.unique(np.stack([frame, name.astype(np.uint64)]), axis=1).T) < len(frame):
             raise FormatError(f"{_DAMAGED}: a chunk is given twice in a frame")
+        for one in self._names:
+            if one not in _NAMES and one.partition("/")[0] not in _GROUPS:
+                raise FormatError(f"{_DAMAGED}: its list of names has one that the format does not have")
         kind = self._index["kind"]
         if not ((kind >= 1) & (kind <= len(_KINDS))).all():
             raise FormatError(f"{_DAMAGED}: a chunk has values of an unknown kind, code {int(kind.max())}")

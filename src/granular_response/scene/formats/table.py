@@ -82,6 +82,8 @@ class Mark:
         """The mark in a line; None if it is another one."""
         match = cls._PATTERN.search(line)
         if match is None:
+            if "granular-response" in line.partition("#")[2]:
+                raise FormatError("is a damaged first line of a table of granular-response", place)
             return None
         width = number(match[2], "width", place)
         if width <= 0.0:
