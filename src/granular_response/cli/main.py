@@ -22,19 +22,21 @@ if TYPE_CHECKING:
 
 PAPER = (
     "C. Goldenberg and I. Goldhirsch, Effects of Friction and Disorder on the Quasi-Static Response of "
-    "Granular Solids to a Localized Force, arXiv:0711.4243"
+    "Granular Solids to a Localized Force, Phys. Rev. E 77, 041303 (2008), arXiv:0711.4243"
 )
 PACKAGE = (
     "granular-response: quasi-static response of two-dimensional granular solids to a localized force, "
     f"version {__version__}"
 )
 BIBTEX = f"""\
-@misc{{goldenberg-goldhirsch,
+@article{{goldenberg-goldhirsch,
   author = {{Goldenberg, C. and Goldhirsch, I.}},
   title  = {{Effects of Friction and Disorder on the Quasi-Static Response of Granular Solids
             to a Localized Force}},
-  year   = {{2007}},
-  month  = nov,
+  journal = {{Physical Review E}},
+  volume = {{77}},
+  pages  = {{041303}},
+  year   = {{2008}},
   eprint = {{0711.4243}},
   archiveprefix = {{arXiv}},
   url    = {{https://arxiv.org/abs/0711.4243}}
