@@ -65,7 +65,7 @@ def test_help_answers_within_half_a_second(package):
 
 @pytest.mark.parametrize(
     ("package", "command"),
-    [(LIBRARY, name) for name in (None, *COMMANDS)] + [(PAPER, name) for name in (None, *OF_THE_PAPER)],
+    [(LIBRARY, name) for name in (None, *COMMANDS)] + [(PAPER, name) for name in (None, *sorted(OF_THE_PAPER))],
 )
 def test_every_help_has_examples(package, command):
     finished = call(*([command] if command else []), "--help", package=package)
