@@ -86,10 +86,11 @@ def fabric_tensor(result: Result) -> xr.DataArray:
 
 
 def mobilization(result: Result) -> xr.Dataset:
-    """How much of the Coulomb limit each contact needs: |f_t| / (friction f_n), 1 where it is fully mobilized.
+    """How much of the Coulomb limit each contact needs: tangential force over friction times normal force.
 
-    ``mobilization`` (state, contact) between disks and ``wall_mobilization`` (state, wall_contact) at floor and walls,
-    in the order of ``result.contacts``; nan where a contact is open, or has no friction.
+    1 is full mobilization. ``mobilization`` (state, contact) between disks and ``wall_mobilization`` (state,
+    wall_contact) at floor and walls, in the order of ``result.contacts``; nan where a contact is open, or has no
+    friction.
 
     Examples
     --------
@@ -151,14 +152,12 @@ def stiffness_matrix(result: Result, *, state: int = -1, sliding: str = "refuse"
     """The tangent stiffness K = -dF/dq of a stable state, as a ``scipy.sparse.csc_array`` in mg per mean radius.
 
     Its unknowns are those of the disks one after another: x and z, and the angle where disks turn. With the turn of
-    contacts under the forces that they bear (geometric stiffness).
+    contacts under the forces that they bear (geometric stiffness). Raises as :meth:`Result.influence` does.
 
     Parameters
     ----------
     state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
     sliding : "refuse" a state with contacts at the Coulomb limit, or take them to "stick".
-
-    Raises as :meth:`Result.influence` does.
 
     Examples
     --------
