@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-import platform
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +12,7 @@ import numpy as np
 from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
 from granular_response.store import atomic
+from granular_response_paper.pipeline.reproduce import processor
 
 
 def scene(friction: float, force: float | None = None, **protocol: Any) -> Scene:
@@ -38,16 +37,6 @@ def interleaved(
             action()
             row[k] = clock() - start
     return seconds.min(axis=0).tolist()
-
-
-def processor() -> str:
-    """The kind of processor, as the system calls it; no name of the machine."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor() or platform.machine()
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()
 
 
 def write(path: str, metrics: dict[str, Any], *, measured: bool = True) -> None:

@@ -35,7 +35,6 @@ CollectionName = Annotated[
 ]
 #: Folders and files that several commands take.
 LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
-SUMMARY = Path("extensions/summary.nc")
 GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
 
 
@@ -108,7 +107,10 @@ def claims(
     output: Annotated[
         Path | None, output_option(help="Table of claims (JSON); figures/claims.json if not given.")
     ] = None,
-    others: Annotated[Path, typer.Option(help="Summary of other preparations; left out if it is not there.")] = SUMMARY,
+    others: Annotated[
+        Path | None,
+        typer.Option(help="Summary of other preparations, left out if not there; extensions/summary.nc if not given."),
+    ] = None,
     name: CollectionName = PAPER.name,
     every: Annotated[bool, typer.Option("--list", help="Print the stored table; judge nothing anew.")] = False,
     figure: Annotated[
@@ -117,11 +119,12 @@ def claims(
 ) -> None:
     """Compare the claims with the stored datasets."""
     from .claims import stored, table
+    from .claims import summary as kept
 
     loaded()
     one = collection(name)
     output, data = output or one.here / stored.OUTPUT, data or one.here / "data"
-    found = stored.read(output) if every else table.write(output, data, others, collection=one)
+    found = stored.read(output) if every else table.write(output, data, others or kept.OUTPUT, collection=one)
     for row in found["table"] if every else ():
         if figure is not None and figure not in row["figures"]:
             continue
@@ -136,16 +139,16 @@ def claims(
 
 @commands.command("summary", "summary --data elsewhere/preparation.nc")
 def summary(
-    data: Annotated[Path, typer.Option(help="Datasets of the group preparation.")] = Path(
-        "extensions/data/preparation.nc"
-    ),
-    output: Annotated[Path, output_option(help="Summary (netCDF).")] = SUMMARY,
+    data: Annotated[
+        Path | None, typer.Option(help="Datasets of the group preparation; those of the extensions if not given.")
+    ] = None,
+    output: Annotated[Path | None, output_option(help="Summary (netCDF); extensions/summary.nc if not given.")] = None,
 ) -> None:
     """Write what the claims read of other preparations of the slab: the forces of its events."""
     from .claims import summary as writing
 
     loaded()
-    typer.echo(str(writing.write(data, output)))
+    typer.echo(str(writing.write(data or writing.SOURCE, output or writing.OUTPUT)))
 
 
 @commands.command("groups", "groups --collection extensions")

@@ -14,13 +14,14 @@ from granular_response.store import files as store
 from .claim import NotMeasured
 from .preparations import GROUP
 
-#: The dataset, its columns, and where the summary is kept.
+#: The dataset, its columns, where it is read from, and where the summary is kept.
 EVENTS = "events"
 COLUMNS = ("name", "friction", "wall_friction", "gravity", "ramp_time", "damping_ratio", "low", "high")
+SOURCE = Path("extensions") / "data" / f"{GROUP}.nc"
 OUTPUT = Path("extensions") / "summary.nc"
 
 
-def write(source: Path = Path("extensions") / "data" / f"{GROUP}.nc", output: Path = OUTPUT) -> Path:
+def write(source: Path = SOURCE, output: Path = OUTPUT) -> Path:
     """Write the summary of the datasets in ``source``; returns its path.
 
     Raises StoreError if they cannot be read, NotMeasured if they are not those of preparations, OSError if the output

@@ -157,7 +157,7 @@ def reproduce(
 
 
 def _store(collection: Collection, root: Path, taken: Mapping[str, float]) -> None:
-    common = {"collection": collection.name, "measured_on": f"{_processor()}, {os.cpu_count()} cores"}
+    common = {"collection": collection.name, "measured_on": f"{processor()}, {os.cpu_count()} cores"}
     own = [common | {"stage": name, "seconds": round(taken[name], 1)} for name in stage_names(collection, root)]
     rows = [row for row in _rows(root) if row["collection"] != collection.name] + own
     names = dict.fromkeys(row["collection"] for row in rows)
@@ -166,7 +166,8 @@ def _store(collection: Collection, root: Path, taken: Mapping[str, float]) -> No
     atomic.write_bytes(root / TIMES, (json.dumps(found, indent=1) + "\n").encode())
 
 
-def _processor() -> str:
+def processor() -> str:
+    """The kind of processor, as the system calls it; no name of the machine."""
     try:
         names = re.findall(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M)
     except OSError:
