@@ -31,10 +31,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import isotonic_regression
 
 from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS, flags
@@ -63,12 +63,18 @@ class Ensemble:
 
     def means(self, weights: FloatArray) -> FloatArray:
         """(d, k, x) weighted means for ``weights`` (d, r); nan where less than ``least`` of the weight is at rest."""
+        here, values = self._known
+        count = weights @ here
+        count[count < max(self.least, 1)] = np.nan
+        total = (weights @ values).reshape(len(weights), *self.response.shape[1:])
+        total /= count[:, :, None]
+        return np.asarray(total)
+
+    @cached_property
+    def _known(self) -> tuple[FloatArray, FloatArray]:
+        """(r, k) 1 where a realization is at rest, and (r, k x) its response, else 0."""
         here = np.isfinite(self.response[:, :, 0])
-        r, k, points = self.response.shape
-        values = np.where(here[:, :, None], self.response, 0.0).reshape(r, k * points)
-        total = (weights @ values).reshape(-1, k, points)
-        count = (weights @ here)[:, :, None]
-        return np.where(count >= self.least, total / np.maximum(count, 1.0), np.nan)
+        return here.astype(float), np.where(here[:, :, None], self.response, 0.0).reshape(len(here), -1)
 
     def mean(self) -> FloatArray:
         """(k, x) mean over all realizations."""
@@ -106,13 +112,26 @@ def lean(response: FloatArray) -> FloatArray:
 
 
 def grown(shapes: FloatArray) -> FloatArray:
-    """Least-squares non-decreasing fits of shapes (..., k) along the last axis; nan where they are."""
-    fits = np.full(shapes.shape, np.nan)
-    for path in np.ndindex(shapes.shape[:-1]):
-        known = np.isfinite(shapes[path])
-        if known.any():
-            fits[path][known] = isotonic_regression(shapes[path][known]).x
-    return fits
+    """Least-squares non-decreasing fits of shapes (..., k) along the last axis; nan where they are.
+
+    The fit at a point is the largest, over all beginnings up to it, of the smallest mean from there to any end from it
+    on (T. Robertson et al., Order Restricted Statistical Inference, 1988, Sec. 1.4). ``scipy.optimize`` fits one path a
+    call; bootstraps have four million.
+    """
+    known = np.isfinite(shapes)
+    total, count = (
+        np.cumsum(np.pad(one, [(0, 0)] * (one.ndim - 1) + [(1, 0)]), axis=-1)
+        for one in (np.where(known, shapes, 0.0), known.astype(float))
+    )
+    fits = np.full(shapes.shape, -np.inf)
+    for begin in range(shapes.shape[-1]):
+        number = count[..., begin + 1 :] - count[..., begin, None]
+        means = np.divide(
+            total[..., begin + 1 :] - total[..., begin, None], number, out=np.full(number.shape, np.inf), where=number > 0
+        )
+        to_any_end = np.minimum.accumulate(means[..., ::-1], axis=-1)[..., ::-1]
+        np.maximum(fits[..., begin:], to_any_end, out=fits[..., begin:])
+    return np.where(known, fits, np.nan)
 
 
 def passed(force: FloatArray, fits: FloatArray, tolerance: float = 0.0) -> tuple[FloatArray, NDArray[np.int8]]:
@@ -159,7 +178,8 @@ def weights(realizations: int, draws: int, seed: int) -> FloatArray:
 
 def counted(picked: NDArray[np.int64], realizations: int) -> FloatArray:
     """(draws, realizations) how often each stands in a row of those ``picked`` (draws, k)."""
-    return np.stack([np.bincount(row, minlength=realizations) for row in picked]).astype(float)
+    places = picked + realizations * np.arange(len(picked))[:, None]
+    return np.bincount(places.ravel(), minlength=len(picked) * realizations).reshape(-1, realizations).astype(float)
 
 
 def two_peaked_means(
