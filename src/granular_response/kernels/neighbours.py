@@ -1,6 +1,8 @@
-"""Candidate contacts, stored as runs, and which of them are closed."""
+"""Candidate contacts: which disks are near, how pairs are stored as runs, and which of them are closed."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -73,6 +75,40 @@ def run_pairs(runs):
     which = np.repeat(np.arange(len(runs)), runs[:, 2])
     along = np.arange(runs[-1, 2] + runs[-1, 3]) - runs[which, 3]
     return runs[which, 0] + along, runs[which, 1] + along
+
+
+@kernel
+def near(along, across, radius, skin, farthest, period, found):
+    """Fill ``found`` (room, 2) with the pairs of disks whose gap is less than ``skin``, as far as there is room.
+
+    ``along``, ``across``, ``radius`` (n,) : places, in the order of ``along``; disks farther apart than ``farthest``
+    along either are no pair; ``period`` : of ``along``, infinite without one. Returns how many pairs there are: each
+    once, in no order.
+    """
+    n, count = along.size, 0
+    for i in range(n):
+        # on to the last disk within reach, then those that are so across the period
+        for lap in range(2):
+            ahead = 0.0 if lap == 0 else period
+            for j in range(i + 1 if lap == 0 else 0, n if lap == 0 else i):
+                away = along[j] + ahead - along[i]
+                if away > farthest:
+                    break
+                if lap == 1 and along[i] - along[j] <= farthest:
+                    continue  # met on the first lap
+                aside = across[j] - across[i]
+                reach = radius[i] + radius[j] + skin
+                if abs(aside) <= farthest:
+                    apart = along[i] - along[j]
+                    if period < math.inf:
+                        apart -= period * np.round(apart / period)
+                    if apart * apart + aside * aside < reach * reach:
+                        if count < found.shape[0]:
+                            found[count, 0], found[count, 1] = i, j
+                        count += 1
+            if period == math.inf:
+                break
+    return count
 
 
 @kernel

@@ -5,15 +5,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..kernels.neighbours import near
 from ..state import FloatArray
 
 IntArray = NDArray[np.int32]
+
+#: Pairs of a disk for which there is room at first: a lattice has 3, and 8 with the second neighbours.
+MOST_NEIGHBOURS = 4
 
 
 def close_pairs(
     position: FloatArray, radius: FloatArray, skin: float, period: float | None = None
 ) -> tuple[IntArray, IntArray]:
-    """All pairs of disks whose gap is less than ``skin``.
+    """All pairs of disks whose gap is less than ``skin``: each disk is compared with those after it along the longer side.
 
     Parameters
     ----------
@@ -24,20 +28,20 @@ def close_pairs(
     -------
     first, second : (m,) with ``first < second``, sorted by ``(first, second)``.
     """
+    position = np.asarray(position, float)
+    farthest = (2.0 * float(radius.max()) + skin) * (1.0 + 1e-12)  # squares of far places overflow
+    axis = 0 if period is not None or np.ptp(position[:, 0]) >= np.ptp(position[:, 1]) else 1
+    along = position[:, axis]
     if period is not None:
-        x = position[:, 0] % period
-        position = np.stack([np.where(x < period, x, 0.0), position[:, 1]], axis=1)
-    from scipy.spatial import KDTree  # large packings alone need it; importing takes a twentieth of a second
-
-    tree = KDTree(position, boxsize=None if period is None else [period, 0.0])
-    farthest = (2.0 * float(radius.max()) + skin) * (1.0 + 1e-12)
-    pairs = tree.query_pairs(farthest, p=np.inf, output_type="ndarray")  # squares of far places overflow
-    first, second = np.sort(pairs, axis=1).T
-    apart = position[first] - position[second]
-    if period is not None:
-        apart[:, 0] -= period * np.round(apart[:, 0] / period)
-    reach = radius[first] + radius[second] + skin
-    close = (apart * apart).sum(axis=1) < reach * reach
-    first, second = first[close], second[close]
-    order = np.lexsort((second, first))
-    return first[order].astype(np.int32), second[order].astype(np.int32)
+        x = along % period
+        along = np.where(x < period, x, 0.0)
+    order = np.argsort(along)
+    sorted_along, across, size = along[order], position[order, 1 - axis], radius[order]
+    count, found = MOST_NEIGHBOURS * len(radius), np.empty((0, 2), np.int64)
+    while count > len(found):
+        found = np.empty((count, 2), np.int64)
+        count = near(sorted_along, across, size, skin, farthest, np.inf if period is None else period, found)
+    pair = np.sort(order[found[:count]], axis=1)
+    keys = np.sort(pair[:, 0] * len(radius) + pair[:, 1])
+    first, second = np.divmod(keys, len(radius))
+    return first.astype(np.int32), second.astype(np.int32)
