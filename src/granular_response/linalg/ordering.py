@@ -21,6 +21,8 @@ REMEMBERED = 40_000
 
 #: What the last dissection of a large network was asked for, and that dissection.
 _last: list = []
+#: The same of the order by Cuthill-McKee of the last network.
+_last_network: list = []
 
 
 @dataclass(frozen=True)
@@ -62,12 +64,19 @@ def node_order(position: FloatArray, first: np.ndarray, second: np.ndarray) -> n
     along = np.lexsort((position[:, 1], position[:, 0]))
     if len(first) == 0:
         return along
-    ones = np.ones(2 * len(first))
-    graph = sp.csr_array((ones, (np.r_[first, second], np.r_[second, first])), shape=(n, n))
     # nodes of a column stand a little askew under their weight, which must not decide their order
     columns = np.lexsort((position[:, 1], np.round(position[:, 0], 1)))
-    orders = [along, columns, np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True))]
-    return min(orders, key=lambda order: _width(order, first, second))
+    return min(along, columns, _by_network(n, first, second), key=lambda order: _width(order, first, second))
+
+
+def _by_network(n: int, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(n,) order by Cuthill-McKee: the last one again for the same network, as from one load to the next."""
+    asked = (np.array(n), first, second)
+    if not (_last_network and all(map(np.array_equal, _last_network[0], asked))):
+        ones = np.ones(2 * len(first))
+        graph = sp.csr_array((ones, (np.r_[first, second], np.r_[second, first])), shape=(n, n))
+        _last_network[:] = [asked, np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True))]
+    return np.asarray(_last_network[1])
 
 
 def _width(order, first, second) -> int:

@@ -365,11 +365,13 @@ class Equations:
         position = self.reference + q[: 2 * n].reshape(2, n).T
         first, second = close_pairs(position, radius, 0.0, box.period)
         listed, listed_at_wall = self.split(self.keys())
+        apart, reach = position[self.first] - position[self.second], radius[self.first] + radius[self.second]
         if box.periodic:  # a listed pair may have met on its other side
-            d = position[self.first] - position[self.second] - self.reference[self.first] + self.reference[self.second]
-            apart = np.hypot(d[:, 0] + self.dx0, d[:, 1] + self.dz0)
-            listed = listed[apart < (radius[self.first] + radius[self.second]) * (1.0 + TOUCHING)]
-        if np.isin(first.astype(np.int64) * n + second, listed, invert=True).any():
+            apart += self.reference[self.second] - self.reference[self.first]
+            listed = listed[np.hypot(apart[:, 0] + self.dx0, apart[:, 1] + self.dz0) < reach * (1.0 + TOUCHING)]
+            if np.isin(first.astype(np.int64) * n + second, listed, invert=True).any():
+                return True
+        elif len(first) > np.count_nonzero((apart * apart).sum(axis=1) < reach * reach):  # as close_pairs measures
             return True
         disk, wall = box.near_walls(position, radius, 0.0)
         return bool(np.isin(n * n + disk * 3 + wall, listed_at_wall, invert=True).any())

@@ -139,20 +139,16 @@ def unbalanced(problem: Problem, state: State) -> tuple[FloatArray, FloatArray]:
     Summed anew from the state's contact forces, not taken from the solver.
     """
     n, radius = problem.n, problem.packing.radius
-    force = np.zeros((n, 2))
-    torque = np.zeros(n)
-    force[:, 1] -= problem.weight
-    np.add.at(force, problem.load_disk, state.load_factor * problem.load[:, :2])
-    np.add.at(torque, problem.load_disk, state.load_factor * problem.load[:, 2])
-    pair_force, wall_force = state.pair_force(), state.wall_force()
     pairs, walls = state.pairs, state.walls
-    for index, push, tangential in (
-        (pairs.first, pair_force, pairs.tangential_force),
-        (pairs.second, -pair_force, pairs.tangential_force),
-        (walls.first, wall_force, walls.tangential_force),
-    ):
-        np.add.at(force, index, push)
-        np.add.at(torque, index, -radius[index] * tangential)
+    on_pairs, on_walls = state.pair_force(), state.wall_force()
+    disk = np.concatenate([np.arange(n), problem.load_disk, pairs.first, pairs.second, walls.first])
+    load = state.load_factor * problem.load
+    weight = np.stack([np.zeros(n), -problem.weight], axis=1)
+    pushes = np.concatenate([weight, load[:, :2], on_pairs, -on_pairs, on_walls])
+    force = np.stack([np.bincount(disk, along, n) for along in pushes.T], axis=1)
+    tangential = np.concatenate([pairs.tangential_force, pairs.tangential_force, walls.tangential_force])
+    turned = -radius[disk[n + len(load) :]] * tangential
+    torque = np.bincount(disk, np.concatenate([np.zeros(n), load[:, 2], turned]), n)
     if problem.rolls:
         couple = problem.pair_arms(pairs.first, pairs.second) * pairs.rolling_force
         np.add.at(torque, pairs.first, couple)

@@ -220,11 +220,11 @@ def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArra
     """
     matrix = system.tangent(trial)
     idle = system.pattern.without_effect(matrix)
-    matrix.data[idle[matrix.indices]] = 0.0
+    if idle.any():
+        matrix.data[idle[matrix.indices]] = 0.0
     mass = system.interleave(1.0 / system.problem.inverse_mass)
     scale = 1.0 / np.sqrt(mass)
-    columns = np.repeat(np.arange(system.dof), np.diff(matrix.indptr))
-    matrix.data *= scale[matrix.indices] * scale[columns]
+    matrix.data *= scale[matrix.indices] * np.repeat(scale, np.diff(matrix.indptr))
     k = system.problem.stiffness
     matrix.data[system.pattern.diagonal] += np.where(idle, k, np.maximum(OPTIONS.neutral, OPTIONS.rounding * k / mass))
     return matrix, scale
