@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationInfo, model_validator
 
 from . import formats
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
+from .contacts import read as read_contacts
 from .disks import ROUNDING, packed
 from .errors import Problem, SceneError, describe, show
 from .formats import csv_table
 from .packing import Packing, exact_mean
+
+
+T = TypeVar("T")
 
 
 def _printable(text: str) -> str:
@@ -76,7 +81,12 @@ class FilePacking(Sparse, PackingDescription):
         "and y for the height where there is no z, r for the radius, or diameter.",
     )
     overlaps: Overlaps = "kept"
-    sparse: ClassVar[tuple[str, ...]] = ("columns", "overlaps")
+    contacts: FileName | None = Field(
+        default=None,
+        description="File with the forces of all contacts, for a packing at rest that goes on with its tangential "
+        "springs: our .contacts.csv, or a LAMMPS dump of patom1 patom2 and pair/local force p1 p2 p3.",
+    )
+    sparse: ClassVar[tuple[str, ...]] = ("columns", "overlaps", "contacts")
 
     # Not part of the description: where it was read, so that a worker process finds the table too.
     _folder: str | None = PrivateAttr(default=None)
@@ -107,6 +117,11 @@ class FilePacking(Sparse, PackingDescription):
         """The table's place."""
         return Path(self._folder or ".", self.path)
 
+    @property
+    def files(self) -> list[Path]:
+        """All that it is read from."""
+        return [self.file, *([Path(self._folder or ".", self.contacts)] if self.contacts else [])]
+
     def build(self) -> Packing:
         """Read the table and rescale it.
 
@@ -118,7 +133,7 @@ class FilePacking(Sparse, PackingDescription):
 
         Warns (UserWarning) where a file of another program has disks of several sizes and no masses.
         """
-        table = self._read()
+        table = self._read(lambda: formats.read(self.file, self.format or formats.by_suffix(self.path), self.columns))
         left, floor, width = self._sides(table.box)
         try:
             packing = packed(table, left, floor, width, self.periodic)
@@ -130,7 +145,9 @@ class FilePacking(Sparse, PackingDescription):
             raise self._error(value + problem.allowed, table.places[place]) from None
         if table.remark and np.ptp(table.radius) > ROUNDING * exact_mean(table.radius):
             warnings.warn(f"{self.path}: {table.remark}", stacklevel=2)
-        return packing
+        if self.contacts is None:
+            return packing
+        return replace(packing, contacts=self._read(lambda: read_contacts(self.files[1], packing, table), "contacts"))
 
     def _sides(self, box: formats.FileBox) -> tuple[float, float, float]:
         """Left wall, floor and width in coordinates of the file; SceneError where they are not known or disagree."""
@@ -152,20 +169,20 @@ class FilePacking(Sparse, PackingDescription):
             raise SceneError(describe(("packing", "width"), width, rule))
         return left, floor, width
 
-    def _read(self) -> formats.Table:
+    def _read(self, read: Callable[[], T], key: str = "path") -> T:
         try:
             with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused where it stands
-                return formats.read(self.file, self.format or formats.by_suffix(self.path), self.columns)
+                return read()
         except formats.FormatError as error:
-            raise self._error(str(error), error.place) from None
+            raise self._error(str(error), error.place, key) from None
         except FileNotFoundError:
-            raise self._error("no such file") from None
+            raise self._error("no such file", key=key) from None
         except UnicodeEncodeError:
-            raise self._error("has a name that this locale cannot spell") from None
+            raise self._error("has a name that this locale cannot spell", key=key) from None
         except UnicodeDecodeError:
-            raise self._error("is not a text file in UTF-8") from None
+            raise self._error("is not a text file in UTF-8", key=key) from None
         except OSError as error:
-            raise self._error(f"cannot be read: {error.strerror}") from None
+            raise self._error(f"cannot be read: {error.strerror}", key=key) from None
 
-    def _error(self, rule: str, place: str = "") -> SceneError:
-        return SceneError(describe(("packing", "path"), self.path, f"{place}: {rule}" if place else rule))
+    def _error(self, rule: str, place: str = "", key: str = "path") -> SceneError:
+        return SceneError(describe(("packing", key), getattr(self, key), f"{place}: {rule}" if place else rule))

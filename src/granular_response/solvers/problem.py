@@ -6,6 +6,7 @@ springs only for the contacts (of disks, of walls) that have it.
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -18,6 +19,7 @@ from ..contact.rolling import Rolling, arms
 from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Contact, Packing, Scene, SceneError, resolve_disk
+from ..scene.contacts import name as contact_name
 from ..state import Contacts, FloatArray, State
 from ..state.box import WALL_MEANINGS
 from .choice import Plan, plan
@@ -31,6 +33,8 @@ from .overlaps import without_overlaps
 SKIN = 0.6
 #: Largest overlap of a start, as a part of the smaller radius.
 MOST_OVERLAP = 0.5
+#: Overlap, in mean radii, that may be rounding of a file, and part of Coulomb's limit.
+ROUNDED = 1e-9
 #: With less room than this left on the lattice, neighbours are searched instead.
 LEAST_LATTICE_LIMIT = 0.25
 
@@ -383,10 +387,54 @@ class Problem:
         return arms(self.packing.radius[disk])
 
     def bare_state(self) -> State:
-        """The unloaded initial packing: no displacement, no motion, no springs."""
+        """The unloaded initial packing: no displacement, no motion, and no springs but those that were given.
+
+        Raises SceneError for given contacts that are not those of the packing.
+        """
         n, none = self.n, spring_contacts((), ())
         position = np.array(self.packing.position, float)
-        return self.relisted(State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), none, none, self.packing.box))
+        bare = self.relisted(State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), none, none, self.packing.box))
+        if self.packing.contacts is None:
+            return bare
+        pairs, walls = (self._given(kind, at_wall) for at_wall, kind in enumerate(self.kinds(bare)))
+        return self.with_static_forces(replace(bare, pairs=pairs, walls=walls))
+
+    def _given(self, kind: Kind, at_wall: int) -> Contacts:
+        """The contacts of one kind with the springs that were given."""
+        given, (c, law, _, rolling), key = self.packing.contacts, kind, ("contact", "wall")[at_wall]
+        assert given is not None
+        rows = np.flatnonzero(given.at_wall == at_wall)
+        place = {pair: k for k, pair in enumerate(zip(c.first.tolist(), c.second.tolist(), strict=True))}
+        pairs = zip(given.first[rows].tolist(), given.second[rows].tolist(), strict=True)
+        here = np.array([place.get(pair, len(place)) for pair in pairs], int)
+        # one more for those that are not listed
+        overlap, normal = np.append(c.overlap, -np.inf), np.append(c.normal_force, 0.0)
+        force, roll = np.zeros((2, len(overlap)))
+        force[here], roll[here] = given.tangential[rows], given.rolling[rows]
+
+        def refuse(wrong, rule: str) -> None:
+            for k in rows[wrong]:
+                two = contact_name(given.first[k], given.second[k], bool(at_wall))
+                raise SceneError(f"packing.contacts: {given.places[k]}: {two} {rule}")
+
+        refuse(overlap[here] < -ROUNDED, "do not touch, must be a contact of this packing")
+        if not law.friction:
+            refuse(force[here] != 0.0, f"bear a tangential force, must be 0 where {key}.friction is 0")
+        if rolling is None:
+            refuse(np.nan_to_num(roll[here]) != 0.0, f"resist rolling, must not where {key}.rolling_friction is 0")
+        else:
+            refuse(np.isnan(roll[here]), f"have no rolling force there, {key}.rolling_friction must be 0")
+        overlap[here] = 0.0
+        if law.friction and overlap.max() > ROUNDED:
+            k = int(overlap.argmax())
+            two = contact_name(c.first[k], c.second[k], bool(at_wall))
+            raise SceneError(f"packing.contacts: {two} overlap by {overlap[k]:.2g} mean radii, must be among them")
+        if len(over := np.flatnonzero(np.abs(force) > law.friction * (1.0 + ROUNDED))):
+            most = f"up to {np.abs(force).max():.4g} of their normal force, {key}.friction is {law.friction:g}"
+            warnings.warn(f"packing.contacts: {len(over)} contacts bear more than Coulomb's limit, {most}", stacklevel=2)
+        spring = -force * normal / (law.tangential_stiffness or 1.0)
+        turned = None if rolling is None else (-roll * normal / rolling.stiffness)[:-1]
+        return spring_contacts(c.first, c.second, spring[:-1], turned)
 
     def relisted(self, state: State) -> State:
         """The same state on candidates listed anew around its positions.
