@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from ..state.box import WALL_MEANINGS
 from . import formats
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector
-from .contacts import GivenContacts, Row
 from .disks import packed
 from .errors import Problem
 from .given import plain
@@ -22,19 +18,6 @@ from .packing import Packing
 def _check_numbers(value: Any) -> Any:
     if not isinstance(value, (list, tuple)) or not value or any(type(one) not in (int, float) for one in value):
         raise Problem("must be a list of finite numbers, one for each disk")
-    return value
-
-
-def _check_contacts(value: Any) -> Any:
-    rule = f"must be lists [disk, disk or {' or '.join(WALL_MEANINGS)}, tangential over normal force]"
-    if not isinstance(value, (list, tuple)):
-        raise Problem(rule)
-    for k, one in enumerate(value):
-        whole = isinstance(one, (list, tuple)) and len(one) == 3 and type(one[0]) is int and type(one[2]) in (int, float)
-        if not whole or not (one[1] in WALL_MEANINGS if isinstance(one[1], str) else type(one[1]) is int):
-            raise Problem(rule, key=(k,), value=one)
-        if not math.isfinite(one[2]):
-            raise Problem("must have a finite number", key=(k,), value=one)
     return value
 
 
@@ -68,13 +51,7 @@ class ArrayPacking(Sparse, PackingDescription):
     origin: Vector = Field(default=(0.0, 0.0), description="[x, z] of left wall and floor.")
     sides: Sides = "walls"
     overlaps: Overlaps = "kept"
-    contacts: Annotated[tuple[tuple[int, int | str, float], ...], BeforeValidator(_check_contacts)] | None = Field(
-        default=None,
-        repr=False,
-        description="All contacts, for a packing at rest that goes on with its tangential springs: [disk, disk or "
-        "floor or left_wall or right_wall, tangential over normal force], as in a table of contacts.",
-    )
-    sparse: ClassVar[tuple[str, ...]] = ("overlaps", "contacts")
+    sparse: ClassVar[tuple[str, ...]] = ("overlaps",)
 
     @model_validator(mode="after")
     def _check_disks(self) -> ArrayPacking:
@@ -93,19 +70,6 @@ class ArrayPacking(Sparse, PackingDescription):
             raise Problem(problem.allowed, key=("x", *problem.key), value=self.x[problem.key[0]]) from None
         return self
 
-    def _contacts(self) -> GivenContacts | None:
-        if self.contacts is None:
-            return None
-        found = (
-            Row(f"contacts[{k}]", first, WALL_MEANINGS.index(other) if isinstance(other, str) else other,
-                isinstance(other, str), 1.0, part, 0.0)
-            for k, (first, other, part) in enumerate(self.contacts)
-        )  # fmt: skip
-        try:
-            return GivenContacts.of(found, self.disk_count)
-        except formats.FormatError as error:
-            raise Problem(f"{error.place}: {error}", key=("contacts",), value=f"{len(self.contacts)} contacts") from None
-
     @property
     def disk_count(self) -> int:
         """Number of disks."""
@@ -119,7 +83,7 @@ class ArrayPacking(Sparse, PackingDescription):
         width = float((x + radius).max()) - left if self.width is None else self.width
         table = formats.Table(x, z, radius, [f"disk {k}" for k in range(len(x))], mass)
         with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused
-            return replace(packed(table, left, floor, width, self.periodic), contacts=self._contacts())
+            return packed(table, left, floor, width, self.periodic)
 
 
 def listed(values: Any, count: int | None = None) -> Any:
@@ -135,8 +99,6 @@ def shortened(scene: dict[str, Any]) -> dict[str, Any]:
     if packing.get("kind") != "arrays":
         return scene
     counted = {
-        key: f"{len(value)} {'contacts' if key == 'contacts' else 'numbers'}"
-        for key, value in packing.items()
-        if key in ("x", "z", "radius", "mass", "contacts") and value
+        key: f"{len(value)} numbers" for key, value in packing.items() if key in ("x", "z", "radius", "mass") and value
     }
     return {**scene, "packing": {**packing, **counted}}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
@@ -127,14 +127,11 @@ class Scene(Sparse):
         return self
 
     @model_validator(mode="after")
-    def _check_given_contacts(self) -> Scene:
-        if getattr(self.packing, "contacts", None) is None:
-            return self
-        if self.preparation.gravity != "at-once":
+    def _check_gravity(self) -> Scene:
+        given, gravity = getattr(self.packing, "contacts", None), self.preparation.gravity
+        if given is not None and gravity != "at-once":
             rule = "must be at-once with packing.contacts, which bear the weights"
-            raise Problem(rule, key=("preparation", "gravity"), value=self.preparation.gravity)
-        if getattr(self.packing, "overlaps", "kept") != "kept":
-            raise Problem("must be kept with packing.contacts", key=("packing", "overlaps"), value="removed")
+            raise Problem(rule, key=("preparation", "gravity"), value=gravity)
         return self
 
     @model_validator(mode="after")
@@ -212,7 +209,6 @@ class Scene(Sparse):
         origin: tuple[float, float] = (0.0, 0.0),
         sides: str = "walls",
         overlaps: str = "kept",
-        contacts: ArrayLike | Sequence[tuple[int, int | str, float]] | None = None,
         vx: ArrayLike | None = None,
         vz: ArrayLike | None = None,
         spin: ArrayLike | None = None,
@@ -232,9 +228,6 @@ class Scene(Sparse):
         origin : x of the left wall and z of the floor.
         sides : "walls" or "periodic".
         overlaps : "kept", or "removed" for measured disks: those that overlap are pushed apart before gravity acts.
-        contacts : of a packing at rest, so that it goes on with its tangential springs: all of them as (disk, other
-            disk or "floor", "left_wall", "right_wall", tangential over normal force), with signs as of
-            :meth:`Result.contacts_table`. If left out, disks begin without.
         vx, vz, spin : (n,) motion at the start, or one for all, for :func:`granular_response.motion`; in reduced units.
         scene : all else, as a scene, whose packing is left out, or nested mappings with its other keys; that of
             ``Scene()`` if left out.
@@ -256,7 +249,6 @@ class Scene(Sparse):
             raise SceneError("scene.packing: must be left out, the packing is that of the arrays")
         rest = scene.to_dict() if isinstance(scene, Scene) else scene or {}
         packing = {"kind": "arrays", **columns, "width": width, "origin": origin, "sides": sides, "overlaps": overlaps}
-        packing |= {} if contacts is None else {"contacts": listed(contacts)}
         motion = {name: listed(one) for name, one in (("vx", vx), ("vz", vz), ("spin", spin)) if one is not None}
         own = {"motion": {**rest.get("motion", {}), **motion}} if motion else {}
         return cls.from_dict({**rest, **own, "packing": packing})

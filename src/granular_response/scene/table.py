@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
@@ -19,7 +20,6 @@ from .disks import ROUNDING, packed
 from .errors import Problem, SceneError, describe, show
 from .formats import csv_table
 from .packing import Packing, exact_mean
-
 
 T = TypeVar("T")
 
@@ -105,6 +105,8 @@ class FilePacking(Sparse, PackingDescription):
         if self.columns is not None and (known := self.format or formats.by_suffix(self.path)) != "csv":
             rule = f"must be left out, format {known} says what its columns are"
             raise Problem(rule, key=("columns",), value=self.columns)
+        if self.contacts is not None and self.overlaps == "removed":
+            raise Problem("must be kept with contacts", key=("overlaps",), value=self.overlaps)
         return self
 
     @property
@@ -147,7 +149,8 @@ class FilePacking(Sparse, PackingDescription):
             warnings.warn(f"{self.path}: {table.remark}", stacklevel=2)
         if self.contacts is None:
             return packing
-        return replace(packing, contacts=self._read(lambda: read_contacts(self.files[1], packing, table), "contacts"))
+        read = partial(read_contacts, self.files[1], packing.position, packing.box, table)
+        return replace(packing, contacts=self._read(read, "contacts"))
 
     def _sides(self, box: formats.FileBox) -> tuple[float, float, float]:
         """Left wall, floor and width in coordinates of the file; SceneError where they are not known or disagree."""

@@ -6,6 +6,7 @@ springs only for the contacts (of disks, of walls) that have it.
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,7 +20,7 @@ from ..contact.rolling import Rolling, arms
 from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Contact, Packing, Scene, SceneError, resolve_disk
-from ..scene.contacts import name as contact_name
+from ..scene.contacts import GivenContact
 from ..state import Contacts, FloatArray, State
 from ..state.box import WALL_MEANINGS
 from .choice import Plan, plan
@@ -401,40 +402,31 @@ class Problem:
 
     def _given(self, kind: Kind, at_wall: int) -> Contacts:
         """The contacts of one kind with the springs that were given."""
-        given, (c, law, _, rolling), key = self.packing.contacts, kind, ("contact", "wall")[at_wall]
-        assert given is not None
-        rows = np.flatnonzero(given.at_wall == at_wall)
-        place = {pair: k for k, pair in enumerate(zip(c.first.tolist(), c.second.tolist(), strict=True))}
-        pairs = zip(given.first[rows].tolist(), given.second[rows].tolist(), strict=True)
-        here = np.array([place.get(pair, len(place)) for pair in pairs], int)
-        # one more for those that are not listed
-        overlap, normal = np.append(c.overlap, -np.inf), np.append(c.normal_force, 0.0)
-        force, roll = np.zeros((2, len(overlap)))
-        force[here], roll[here] = given.tangential[rows], given.rolling[rows]
-
-        def refuse(wrong, rule: str) -> None:
-            for k in rows[wrong]:
-                two = contact_name(given.first[k], given.second[k], bool(at_wall))
-                raise SceneError(f"packing.contacts: {given.places[k]}: {two} {rule}")
-
-        refuse(overlap[here] < -ROUNDED, "do not touch, must be a contact of this packing")
-        if not law.friction:
-            refuse(force[here] != 0.0, f"bear a tangential force, must be 0 where {key}.friction is 0")
-        if rolling is None:
-            refuse(np.nan_to_num(roll[here]) != 0.0, f"resist rolling, must not where {key}.rolling_friction is 0")
-        else:
-            refuse(np.isnan(roll[here]), f"have no rolling force there, {key}.rolling_friction must be 0")
-        overlap[here] = 0.0
-        if law.friction and overlap.max() > ROUNDED:
-            k = int(overlap.argmax())
-            two = contact_name(c.first[k], c.second[k], bool(at_wall))
-            raise SceneError(f"packing.contacts: {two} overlap by {overlap[k]:.2g} mean radii, must be among them")
+        (c, law, _, rolling), key = kind, ("contact", "wall")[at_wall]
+        known = {pair: k for k, pair in enumerate(zip(c.first.tolist(), c.second.tolist(), strict=True))}
+        missing = (c.overlap > ROUNDED) & (law.friction > 0.0)
+        force, roll = np.zeros((2, len(c.first)))
+        for one in (one for one in self.packing.contacts or () if one.at_wall == at_wall):
+            k, wrong = known.get((one.first, one.second)), ""
+            if k is None or c.overlap[k] < -ROUNDED:
+                wrong = "do not touch in this packing"
+            elif one.tangential and not law.friction:
+                wrong = f"bear a tangential force, {key}.friction must be greater than 0"
+            elif abs(one.rolling) > 0.0 if rolling is None else math.isnan(one.rolling):
+                wrong = f"have {'a' if rolling is None else 'no'} rolling force there, unlike {key}.rolling_friction"
+            if wrong:
+                raise SceneError(f"packing.contacts: {one.place}: {one.words} {wrong}")
+            force[k], roll[k], missing[k] = one.tangential, one.rolling, False
+        if missing.any():
+            at = int(missing.argmax())
+            two = GivenContact("", int(c.first[at]), int(c.second[at]), bool(at_wall), 0.0, 0.0).words
+            raise SceneError(f"packing.contacts: {two} overlap by {c.overlap[at]:.2g} mean radii, must be among them")
         if len(over := np.flatnonzero(np.abs(force) > law.friction * (1.0 + ROUNDED))):
-            most = f"up to {np.abs(force).max():.4g} of their normal force, {key}.friction is {law.friction:g}"
-            warnings.warn(f"packing.contacts: {len(over)} contacts bear more than Coulomb's limit, {most}", stacklevel=2)
-        spring = -force * normal / (law.tangential_stiffness or 1.0)
-        turned = None if rolling is None else (-roll * normal / rolling.stiffness)[:-1]
-        return spring_contacts(c.first, c.second, spring[:-1], turned)
+            most = f"{np.abs(force).max():.4g} of the normal force, {key}.friction is {law.friction:g}"
+            warnings.warn(f"packing.contacts: {len(over)} contacts bear up to {most}; they slip", stacklevel=2)
+        spring = -force * c.normal_force / (law.tangential_stiffness or 1.0)
+        turned = None if rolling is None else -roll * c.normal_force / rolling.stiffness
+        return spring_contacts(c.first, c.second, spring, turned)
 
     def relisted(self, state: State) -> State:
         """The same state on candidates listed anew around its positions.

@@ -150,9 +150,8 @@ def read(path: Path) -> Table:
             raise FormatError(f"has {len(cells)} values, must have {len(names)} as ITEM: ATOMS", place)
     ids = None
     if "id" in names:
-        ids = [cells[names.index("id")] for cells in rows]
-        order = by_id(ids, places)
-        ids = [int(ids[k]) for k in order]
+        order = by_id([cells[names.index("id")] for cells in rows], places)
+        ids = [int(rows[k][names.index("id")]) for k in order]
         rows, places = [rows[k] for k in order], [places[k] for k in order]
 
     def column(at: int) -> FloatArray:

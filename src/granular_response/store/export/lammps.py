@@ -143,8 +143,11 @@ def script(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
         lines.append("fix weight all gravity 1.0 vector 0 -1 0")
     grows = f"({last - first!r})*((step<{steps})*step/{steps}+(step>={steps}))"
     lines.append(f"variable factor equal {first!r}" + ("" if first == last else f"+{grows}"))
-    started = state if "loaded_disk" in state else {"loaded_disk": Problem.from_scene(scene).with_loads(position).load_disk}
-    for k, (load, disk) in enumerate(zip(scene.loads, np.asarray(started["loaded_disk"]).tolist(), strict=True)):
+    if "loaded_disk" in state:
+        disks = state["loaded_disk"].values
+    else:  # of a motion; the disks of loads may be chosen by the rows of the packing
+        disks = Problem.from_scene(scene).with_loads(position).load_disk
+    for k, (load, disk) in enumerate(zip(scene.loads, disks.tolist(), strict=True)):
         if load.torque or load.displacement is not None:
             key = "torque" if load.torque else "displacement"
             raise NoCounterpart(f"loads[{k}].{key}: must be left out, LAMMPS has forces on single disks only")
@@ -159,8 +162,8 @@ def script(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
         f"run {steps + round(SETTLING / step)}",
         f"write_dump all custom {path.stem}.dump id type x y z radius mass vx vy omegaz {walls} "
         "modify sort id format float %.17g",
-        f"write_dump all local {path.stem}.contacts.dump c_pair[1] c_pair[2] c_bears[1] c_bears[2] c_bears[3] c_bears[4] "
-        "modify format float %.17g",
+        f"write_dump all local {path.stem}.contacts.dump c_pair[1] c_pair[2] "
+        + " ".join(f"c_bears[{k}]" for k in (1, 2, 3, 4)) + " modify format float %.17g",
     ]  # fmt: skip
     return {path: ("\n".join(lines) + "\n").encode("ascii"), **made}
 
