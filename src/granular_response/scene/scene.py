@@ -128,9 +128,9 @@ class Scene(Sparse):
 
     @model_validator(mode="after")
     def _check_gravity(self) -> Scene:
-        given, gravity = getattr(self.packing, "contacts", None), self.preparation.gravity
+        given, gravity = getattr(self.packing, "springs", None), self.preparation.gravity
         if given is not None and gravity != "at-once":
-            rule = "must be at-once with packing.contacts, which bear the weights"
+            rule = "must be at-once with packing.springs, which bear the weights"
             raise Problem(rule, key=("preparation", "gravity"), value=gravity)
         return self
 

@@ -81,12 +81,12 @@ class FilePacking(Sparse, PackingDescription):
         "and y for the height where there is no z, r for the radius, or diameter.",
     )
     overlaps: Overlaps = "kept"
-    contacts: FileName | None = Field(
+    springs: FileName | None = Field(
         default=None,
         description="File with the forces of all contacts, for a packing at rest that goes on with its tangential "
         "springs: our .contacts.csv, or a LAMMPS dump of patom1 patom2 and pair/local force p1 p2 p3.",
     )
-    sparse: ClassVar[tuple[str, ...]] = ("columns", "overlaps", "contacts")
+    sparse: ClassVar[tuple[str, ...]] = ("columns", "overlaps", "springs")
 
     # Not part of the description: where it was read, so that a worker process finds the table too.
     _folder: str | None = PrivateAttr(default=None)
@@ -105,8 +105,8 @@ class FilePacking(Sparse, PackingDescription):
         if self.columns is not None and (known := self.format or formats.by_suffix(self.path)) != "csv":
             rule = f"must be left out, format {known} says what its columns are"
             raise Problem(rule, key=("columns",), value=self.columns)
-        if self.contacts is not None and self.overlaps == "removed":
-            raise Problem("must be kept with contacts", key=("overlaps",), value=self.overlaps)
+        if self.springs is not None and self.overlaps == "removed":
+            raise Problem("must be kept with springs", key=("overlaps",), value=self.overlaps)
         return self
 
     @property
@@ -122,7 +122,7 @@ class FilePacking(Sparse, PackingDescription):
     @property
     def files(self) -> list[Path]:
         """All that it is read from."""
-        return [self.file, *([Path(self._folder or ".", self.contacts)] if self.contacts else [])]
+        return [self.file, *([Path(self._folder or ".", self.springs)] if self.springs else [])]
 
     def build(self) -> Packing:
         """Read the table and rescale it.
@@ -147,10 +147,10 @@ class FilePacking(Sparse, PackingDescription):
             raise self._error(value + problem.allowed, table.places[place]) from None
         if table.remark and np.ptp(table.radius) > ROUNDING * exact_mean(table.radius):
             warnings.warn(f"{self.path}: {table.remark}", stacklevel=2)
-        if self.contacts is None:
+        if self.springs is None:
             return packing
         read = partial(read_contacts, self.files[1], packing.position, packing.box, table)
-        return replace(packing, contacts=self._read(read, "contacts"))
+        return replace(packing, contacts=self._read(read, "springs"))
 
     def _sides(self, box: formats.FileBox) -> tuple[float, float, float]:
         """Left wall, floor and width in coordinates of the file; SceneError where they are not known or disagree."""

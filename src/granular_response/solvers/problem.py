@@ -415,15 +415,15 @@ class Problem:
             elif abs(one.rolling) > 0.0 if rolling is None else math.isnan(one.rolling):
                 wrong = f"have {'a' if rolling is None else 'no'} rolling force there, unlike {key}.rolling_friction"
             if wrong:
-                raise SceneError(f"packing.contacts: {one.place}: {one.words} {wrong}")
+                raise SceneError(f"packing.springs: {one.place}: {one.words} {wrong}")
             force[k], roll[k], missing[k] = one.tangential, one.rolling, False
         if missing.any():
             at = int(missing.argmax())
             two = GivenContact("", int(c.first[at]), int(c.second[at]), bool(at_wall), 0.0, 0.0).words
-            raise SceneError(f"packing.contacts: {two} overlap by {c.overlap[at]:.2g} mean radii, must be among them")
+            raise SceneError(f"packing.springs: {two} overlap by {c.overlap[at]:.2g} mean radii, must be among them")
         if len(over := np.flatnonzero(np.abs(force) > law.friction * (1.0 + ROUNDED))):
             most = f"{np.abs(force).max():.4g} of the normal force, {key}.friction is {law.friction:g}"
-            warnings.warn(f"packing.contacts: {len(over)} contacts bear up to {most}; they slip", stacklevel=2)
+            warnings.warn(f"packing.springs: {len(over)} contacts bear up to {most}; they slip", stacklevel=2)
         spring = -force * c.normal_force / (law.tangential_stiffness or 1.0)
         turned = None if rolling is None else -roll * c.normal_force / rolling.stiffness
         return spring_contacts(c.first, c.second, spring, turned)

@@ -138,7 +138,7 @@ def _lost(state: xr.Dataset, writer: Writer) -> Iterator[str]:
         if bears:
             yield "a motion has no springs of contacts: those that are closed begin anew"
     elif any(np.any(state[f"{prefix}_spring"].values) for prefix in PREFIXES):
-        kept = "a .contacts.csv beside it has them, for packing.contacts"
+        kept = "a .contacts.csv beside it has them, for packing.springs"
         yield f"the format has no springs of friction: read again, contacts begin anew ({kept})"
 
 
