@@ -279,6 +279,9 @@ def test_velocities_go_to_lammps_and_come_back(tmp_path):
     assert "gravity" not in gr.export(weightless, tmp_path / "in.lammps").read_text()
     with pytest.raises(gr.ExportError, match=r"a.xyz: a motion has no contacts, must be .csv or .data or"):
         gr.export(moved, tmp_path / "a.xyz")
+    for wrong in (moved.isel(time=0), BALLS, moved["energy"]):
+        with pytest.raises(gr.ExportError, match=r"a.data: must be written of a result, its file or dataset, or of what"):
+            gr.export(wrong, tmp_path / "a.data")
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ import os
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -59,15 +60,15 @@ class ExportError(GranularError):
 
 
 def export(
-    result: str | os.PathLike[str] | xr.Dataset, output: str | os.PathLike[str], *, state: int | None = None
+    result: Any, output: str | os.PathLike[str], *, state: int | None = None
 ) -> Path:
-    """Write a stored result, a file or its dataset, or a motion, as a file for another program; returns its path.
+    """Write a result, its file or dataset, or a motion, as a file for another program; returns its path.
 
     What the name of ``output`` ends with (one of ``SUFFIXES``) is the format. ``state`` is the index of the only state
     to write, or of the time of a motion; if None all, or the last one in a file of one state. Of a motion there are
     disks for LAMMPS with their velocities (``.data``, and ``in.lammps`` with a script), and ``.csv``.
 
-    Raises ExportError for another ending, a state that does not exist or of a series of all, or a missing library,
+    Raises ExportError for what is none of these, another ending, a state that does not exist or of a series of all, or a missing library,
     StoreError if the result cannot be read, ResultError if it is none.
 
     Warns (UserWarning) of what a format that can be read again as a packing does not carry: masses, and the tangential
@@ -89,9 +90,13 @@ def export(
         raise ExportError(
             f"state = {state}: {output} is a series of all states, must be left out (.vtu holds one state)"
         )
+    if not isinstance(result, (str, os.PathLike, xr.Dataset)):
+        result = result.to_dataset() if hasattr(result, "to_dataset") else xr.Dataset()
     read = [] if isinstance(result, xr.Dataset) else [result]
     dataset = result if isinstance(result, xr.Dataset) else read_result(result, sealed=False)
-    if "state" not in dataset.dims and {"time", "disk"} <= set(dataset.dims):
+    if not {"disk", "axis"} <= set(dataset.dims) or not {"state", "time"} & set(dataset.dims):
+        raise ExportError(f"{output}: must be written of a result, its file or dataset, or of what gr.motion returns")
+    if "state" not in dataset.dims:
         if writer not in _OF_MOTION:
             known = " or ".join(suffix for suffix, (one, _) in sorted(_WRITERS.items()) if one in _OF_MOTION)
             raise ExportError(f"{output}: a motion has no contacts, must be {known}")
