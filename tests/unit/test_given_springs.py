@@ -4,6 +4,7 @@ import re
 import shutil
 import subprocess
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,8 +12,8 @@ from places import DATA
 
 import granular_response as gr
 from granular_response.solvers.problem import Problem
-from granular_response.state import LEFT_WALL, RIGHT_WALL
-from granular_response.store.export.lammps import winding
+from granular_response.state import LEFT_WALL, RIGHT_WALL, Contacts
+from granular_response.store.export.lammps import NoCounterpart, winding
 
 #: 16 disks that a load has pushed about and left: some contacts slide, between disks and on the floor.
 SCENE = gr.Scene(
@@ -144,20 +145,28 @@ def test_motion_of_a_script_stretches_all_springs(result):
                 assert slip == pytest.approx(contacts.spring[k], rel=0, abs=1e-15)
 
 
+def test_springs_that_no_motion_stretches_are_refused(result):
+    """Two springs of one contact, of which only one can be what the disk slips by."""
+    state, radius = result.rest, result.to_dataset()["radius"].values
+    twice = np.r_[np.arange(len(state.walls.first)), np.flatnonzero(state.walls.touching)[0]]
+    walls = {name: getattr(state.walls, name)[twice] for name in vars(state.walls)}
+    walls["spring"] = walls["spring"] + 1e-3 * (np.arange(len(twice)) == len(twice) - 1)
+    with pytest.raises(NoCounterpart, match="^no motion of the disks stretches the tangential springs"):
+        winding(replace(state, walls=Contacts(**walls)), radius)
+
+
 def test_a_script_brings_the_springs(result, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # nothing is lost
         lines = result.export(tmp_path / "in.lammps", state=-1).read_text().splitlines()
-    text = (tmp_path / "in.springs").read_text().split("\n16\n")
-    assert len(text) == 3 and all(
-        f"variable {name} atomfile in.springs" in lines for name in ("slipx", "slipy", "turn")
-    )
+    text = (tmp_path / "in.slip").read_text().split("\n16\n")
+    assert len(text) == 3 and all(f"variable {name} atomfile in.slip" in lines for name in ("slipx", "slipy", "turn"))
     order = [lines.index(line) for line in ("run 1", "reset_timestep 0", "fix move all nve/sphere disc")]
     assert order == sorted(order)  # no disk moves while springs are stretched
     assert "variable factor equal 0.0" in lines and lines[-1].startswith("write_dump all local in.contacts.dump")
     smooth = gr.solve(SCENE.updated({"contact.friction": 0.0, "wall.friction": 0.0}), progress=False)
     assert "run 1" not in smooth.export(tmp_path / "smooth.lammps").read_text().splitlines()
-    assert not (tmp_path / "smooth.springs").exists()
+    assert not (tmp_path / "smooth.slip").exists()
 
 
 @pytest.mark.skipif(shutil.which("lmp") is None, reason="LAMMPS is not installed")
@@ -280,7 +289,9 @@ def test_velocities_go_to_lammps_and_come_back(tmp_path):
     with pytest.raises(gr.ExportError, match=r"a.xyz: a motion has no contacts, must be .csv or .data or"):
         gr.export(moved, tmp_path / "a.xyz")
     for wrong in (moved.isel(time=0), BALLS, moved["energy"]):
-        with pytest.raises(gr.ExportError, match=r"a.data: must be written of a result, its file or dataset, or of what"):
+        with pytest.raises(
+            gr.ExportError, match=r"a.data: must be written of a result, its file or dataset, or of what"
+        ):
             gr.export(wrong, tmp_path / "a.data")
 
 

@@ -114,7 +114,7 @@ def script(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
     first, last = float(state["state_load_factor"]), scene.protocol.load_factors[-1]
     steps = max(round(ramp / step), 1)
     wound = wound_springs(state)
-    file, motion = path.with_suffix(".data"), path.with_suffix(".springs")
+    file, motion = path.with_suffix(".data"), path.with_suffix(".slip")
     made = lammps_data(dataset, file)
     lines = [
         "# by granular-response; units of mean radius, mean mass and g. z of the scene is y here",
