@@ -151,7 +151,7 @@ def test_springs_that_no_motion_stretches_are_refused(result):
     twice = np.r_[np.arange(len(state.walls.first)), np.flatnonzero(state.walls.touching)[0]]
     walls = {name: getattr(state.walls, name)[twice] for name in vars(state.walls)}
     walls["spring"] = walls["spring"] + 1e-3 * (np.arange(len(twice)) == len(twice) - 1)
-    with pytest.raises(NoCounterpart, match="^no motion of the disks stretches the tangential springs"):
+    with pytest.raises(NoCounterpart, match=r"^no motion of the disks stretches the tangential springs"):
         winding(replace(state, walls=Contacts(**walls)), radius)
 
 
@@ -284,6 +284,10 @@ def test_velocities_go_to_lammps_and_come_back(tmp_path):
         np.testing.assert_array_equal(again[name], moved[name])
     later = gr.export(moved, tmp_path / "later.data")
     assert float(later.read_text().split("\n")[-3].split()[2]) == moved["velocity"].values[-1, 0, 1] < 0.0
+    pushed = BALLS.updated({"loads": [gr.Load(disk="top-centre", force=(1.0, 0.0))]})
+    script = gr.export(gr.motion(pushed, [0.0, 5.0], progress=False), tmp_path / "in.lammps", state=1).read_text()
+    assert "group loaded0 id 2\n" in script  # a quarter of the ramp is over
+    assert "variable factor equal 0.25+(0.75)*((step<30000)*step/30000+(step>=30000))\n" in script
     weightless = gr.motion(BALLS.updated({"motion.weightless": True}), [0.0], progress=False)
     assert "gravity" not in gr.export(weightless, tmp_path / "in.lammps").read_text()
     with pytest.raises(gr.ExportError, match=r"a.xyz: a motion has no contacts, must be .csv or .data or"):

@@ -59,17 +59,15 @@ class ExportError(GranularError):
     """A result that cannot be exported. The message is one line."""
 
 
-def export(
-    result: Any, output: str | os.PathLike[str], *, state: int | None = None
-) -> Path:
+def export(result: Any, output: str | os.PathLike[str], *, state: int | None = None) -> Path:
     """Write a result, its file or dataset, or a motion, as a file for another program; returns its path.
 
     What the name of ``output`` ends with (one of ``SUFFIXES``) is the format. ``state`` is the index of the only state
     to write, or of the time of a motion; if None all, or the last one in a file of one state. Of a motion there are
     disks for LAMMPS with their velocities (``.data``, and ``in.lammps`` with a script), and ``.csv``.
 
-    Raises ExportError for what is none of these, another ending, a state that does not exist or of a series of all, or a missing library,
-    StoreError if the result cannot be read, ResultError if it is none.
+    Raises ExportError for what is none of these, another ending, a state that does not exist or of a series of all, or
+    a missing library, StoreError if the result cannot be read, ResultError if it is none.
 
     Warns (UserWarning) of what a format that can be read again as a packing does not carry: masses, and the tangential
     springs of contacts, from which friction goes on.

@@ -20,6 +20,7 @@ from ...contact import Hertz, Law, Linear
 from ...contact.rolling import Rolling
 from ...errors import GranularError
 from ...scene import Packing
+from ...scene.formats.lammps_dump import WALL_FIXES
 from ...solvers.problem import Problem
 from ...solvers.timestep import resolve_time_step
 from ...state import Box, FloatArray, State, wall_normals
@@ -109,12 +110,12 @@ def script(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
         given_mass=state["mass"].values,
     )  # fmt: skip
     problem = Problem.from_scene(scene, packing)
-    step, ramp = resolve_time_step(problem), scene.protocol.ramp_time
     wall = model(problem.wall_law, problem.wall_rolling)
     first, last = float(state["state_load_factor"]), scene.protocol.load_factors[-1]
+    moving = "loaded_disk" not in state  # of a motion, in which loads have begun to grow
+    step, ramp = resolve_time_step(problem), scene.protocol.ramp_time * (last - first if moving else 1.0)
     steps = max(round(ramp / step), 1)
-    wound = wound_springs(state)
-    file, motion = path.with_suffix(".data"), path.with_suffix(".slip")
+    file, slips = path.with_suffix(".data"), path.with_suffix(".slip")
     made = lammps_data(dataset, file)
     lines = [
         "# by granular-response; units of mean radius, mean mass and g. z of the scene is y here",
@@ -125,15 +126,15 @@ def script(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
     ]  # fmt: skip
     if not box.periodic:
         lines.append(f"fix sides all wall/gran granular {wall} xplane 0.0 {box.width!r} contacts")
-    if wound:
+    if wound_springs(state):
         moved = (winding(state_from(dataset, -1), radius) / WINDING_TIME).tolist()
-        made[motion] = "".join(
+        made[slips] = "".join(
             f"{len(radius)}\n" + "".join(f"{k} {value!r}\n" for k, value in enumerate(one, start=1)) for one in moved
         ).encode("ascii")
         lines += [
             "# tangential springs: one long step without an integrator, in which contacts slip and disks stay in place",
             f"timestep {WINDING_TIME!r}",
-            *(f"variable {name} atomfile {motion.name}" for name in ("slipx", "slipy", "turn")),
+            *(f"variable {name} atomfile {slips.name}" for name in ("slipx", "slipy", "turn")),
             "next slipy", "next turn", "next turn",
             "velocity all set v_slipx v_slipy 0.0", "set group all omega 0.0 0.0 v_turn", "run 1",
             "velocity all set 0.0 0.0 0.0", "set group all omega 0.0 0.0 0.0", "reset_timestep 0",
@@ -143,18 +144,17 @@ def script(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
         lines.append("fix weight all gravity 1.0 vector 0 -1 0")
     grows = f"({last - first!r})*((step<{steps})*step/{steps}+(step>={steps}))"
     lines.append(f"variable factor equal {first!r}" + ("" if first == last else f"+{grows}"))
-    if "loaded_disk" in state:
-        disks = state["loaded_disk"].values
-    else:  # of a motion; the disks of loads may be chosen by the rows of the packing
-        disks = Problem.from_scene(scene).with_loads(position).load_disk
-    for k, (load, disk) in enumerate(zip(scene.loads, disks.tolist(), strict=True)):
+    if moving and scene.loads:  # on disks that are chosen where the motion begins
+        start = Problem.from_scene(scene)
+        state = state.assign(loaded_disk=("load_point", start.with_loads(start.packing.position).load_disk))
+    for k, load in enumerate(scene.loads):
         if load.torque or load.displacement is not None:
             key = "torque" if load.torque else "displacement"
             raise NoCounterpart(f"loads[{k}].{key}: must be left out, LAMMPS has forces on single disks only")
-        lines.append(f"group loaded{k} id {disk + 1}")
+        lines.append(f"group loaded{k} id {int(state['loaded_disk'][k]) + 1}")
         lines += [f"variable {axis}{k} equal {part!r}*v_factor" for axis, part in zip("xy", load.force, strict=True)]
         lines.append(f"fix push{k} loaded{k} addforce v_x{k} v_y{k} 0.0")
-    walls = " ".join(f"f_{fix}[2] f_{fix}[3]" for fix in ("floor", "sides")[: 1 if box.periodic else 2])
+    walls = " ".join(f"f_{fix}[2] f_{fix}[3]" for fix in WALL_FIXES[: 1 if box.periodic else 2])
     lines += [
         "fix plane all enforce2d", "thermo 10000", "thermo_style custom step ke fmax", "thermo_modify norm no",
         "compute pair all property/local patom1 patom2 cutoff radius",
