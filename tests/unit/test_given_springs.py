@@ -198,7 +198,7 @@ ROW = re.compile(r"^1,.*\n", re.MULTILINE)
         (ROW, "1,0,,ceiling,1.0,1.0,sticking,1.0,0.1\n", ".*: line 3: wall = 'ceiling': must be floor or left_wall or"),
         (ROW, "1,x,3,,1.0,1.0,sticking,1.0,0.1\n", ".*: line 3: first and second: must be numbers of disks"),
         (ROW, "1,0,3\n", ".*: line 3: has 3 values, must have 9 as the header"),
-        (",normal_force", ",force", ".*: line 1: must be a table as .contacts.csv, with one column normal_force"),
+        (",normal_force", ",force", ".*: line 1: must have the columns first, second, wall, normal_force, tangent"),
         (re.compile(r"\n$"), "", ".*: is cut: its last line has no end"),
     ],
 )  # fmt: skip

@@ -76,8 +76,8 @@ def read(path: Path, position: FloatArray, box: Box, table: Table) -> tuple[Give
 
 def _of_table(lines: list[str]) -> Iterator[GivenContact]:
     header = next(csv.reader(lines), [])
-    if missing := [one for one in (*_NAMES, *_FORCES) if header.count(one) != 1]:
-        raise FormatError(f"must be a table as .contacts.csv, with one column {' and one '.join(missing)}", "line 1")
+    if any(header.count(one) != 1 for one in (*_NAMES, *_FORCES)):
+        raise FormatError(f"must have the columns {', '.join((*_NAMES, *_FORCES))}, as .contacts.csv", "line 1")
     for place, cells in ((f"line {k}", cells) for k, cells in enumerate(csv.reader(lines), start=1) if k > 1):
         if len(cells) != len(header):
             raise FormatError(f"has {len(cells)} values, must have {len(header)} as the header", place)
