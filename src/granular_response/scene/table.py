@@ -15,7 +15,6 @@ from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, Valida
 
 from . import formats
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
-from .contacts import read as read_contacts
 from .disks import ROUNDING, packed
 from .errors import Problem, SceneError, describe, show
 from .formats import csv_table
@@ -149,6 +148,8 @@ class FilePacking(Sparse, PackingDescription):
             warnings.warn(f"{self.path}: {table.remark}", stacklevel=2)
         if self.springs is None:
             return packing
+        from .contacts import read as read_contacts  # few packings have such a file
+
         read = partial(read_contacts, self.files[1], packing.position, packing.box, table)
         return replace(packing, contacts=self._read(read, "springs"))
 
