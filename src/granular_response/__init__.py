@@ -71,6 +71,7 @@ if TYPE_CHECKING:
     from .state import Event as Event
     from .state import State as State
     from .store.export import ExportError as ExportError
+    from .store.export import export as export
     from .store.files import StoreError as StoreError
     from .store.result import ResultError as ResultError
     from .sweeps.errors import SweepError as SweepError
@@ -112,6 +113,7 @@ _HOME = {
     "Wall": "scene",
     "coordination_number": "api.observables",
     "elastic_moduli": "api.observables",
+    "export": "store.export",
     "fabric_tensor": "api.observables",
     "find_event": "api.event",
     "force_distribution": "api.observables",

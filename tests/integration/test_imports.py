@@ -128,6 +128,7 @@ SIGNATURES = {
         "(scene, ways={...}, measure=floor_response, *, load_factors=None, workers=None, scheduler=None,"
         " checkpoint=None, progress=True)"
     ),
+    "export": "(result, output, *, state=None)",
     "register_law": "(name, law, parameters=NoParameters)",
     "solve": "(scene, *, load_factors=None, method=None, progress=True)",
     "stiffness_matrix": "(result, *, state=-1, sliding='refuse')",

@@ -258,7 +258,7 @@ def test_lammps_disks_are_in_the_order_of_their_ids(tmp_path, name, text, last):
     np.testing.assert_array_equal(shuffled.radius, ordered.radius)
     np.testing.assert_array_equal(shuffled.mass, ordered.mass)
     bad = "".join([*lines[:first], *rows[::-1], *lines[first + last :]]).replace(rows[0], "1" + rows[0])
-    far = build(tmp_path / name, bad, **walls)  # 11 comes after 2
+    far = build(tmp_path / name, bad.replace("\n1 0 0 0", "\n11 0 0 0"), **walls)  # 11 comes after 2
     np.testing.assert_array_equal(far.position, np.roll(ordered.position, -1, axis=0))
 
 

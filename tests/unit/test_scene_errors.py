@@ -43,7 +43,8 @@ MALFORMED = {
         "preparation.gravty = 'slow': unknown key, did you mean gravity? (allowed: gravity, ramp_time, taps)"
     ),
     "packing: {kind: file, path: a.csv, width: 1.0, layers: 3}": (
-        "packing.layers = 3: unknown key (allowed: kind, path, format, width, origin, sides, columns, overlaps)"
+        "packing.layers = 3: unknown key (allowed: kind, path, format, width, origin, sides, columns, overlaps, "
+        "springs)"
     ),
     # Wrong types and values out of range.
     "contact: 3": f"contact = 3: must be a mapping with keys among {CONTACT_KEYS}",

@@ -403,8 +403,8 @@ class Result:
         Parameters
         ----------
         path : its ending is the format: ``.gsd`` and ``.xyz`` for OVITO, ``.vtu`` and ``.pvd`` for ParaView, ``.data``
-            and ``.dump`` for LAMMPS, ``in.lammps`` for a script with the disks beside it, ``.txt`` for YADE, ``.csv``
-            for disks, ``.contacts.csv`` and ``.events.csv``.
+            and ``.dump`` for LAMMPS, ``in.lammps`` for a script with the disks and their springs beside it, ``.txt``
+            for YADE, ``.csv`` for disks, ``.contacts.csv`` and ``.events.csv``.
         state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last
             in a file of one.
 
@@ -416,10 +416,12 @@ class Result:
 
         Examples
         --------
-        >>> result.export("slab.contacts.csv").name
+        >>> result.export("slab.contacts.csv", state=0).name
         'slab.contacts.csv'
-        >>> result.export("in.lammps", state=0).read_text().splitlines()[8]
-        'pair_style granular'
+        >>> path = result.export("slab.csv", state=0)  # a warning: no springs, which are in the table of contacts
+        >>> again = gr.Scene(packing=gr.File(path="slab.csv", springs="slab.contacts.csv"))
+        >>> result.export("in.lammps", state=0).read_text().splitlines()[9]
+        'pair_style gran/hooke/history 3000.0 2400.0 109.54451150103323 97.97958971132712 0.2 1'
         """
         return exporting.export(self._data, path, state=state)
 

@@ -27,8 +27,9 @@ Numbers = Annotated[
 class Motion(Sparse):
     """Velocities and spins with which disks start, for :func:`granular_response.motion`.
 
-    A number is that of all disks, a list has one for each; ``column`` takes them from the column of that name in a
-    packing from a CSV file. Equilibria are found from rest, so ``solve`` refuses a scene with a motion.
+    A number is that of all disks, a list has one for each; ``column`` takes them from the file of the packing: the
+    column of that name in a CSV table, the velocities of a LAMMPS data file, ``vx vy omegaz`` of a dump. Equilibria
+    are found from rest, so ``solve`` refuses a scene with a motion.
 
     Examples
     --------
@@ -60,7 +61,7 @@ class Motion(Sparse):
             if given == COLUMN:
                 columns = packing.columns or {}
                 if name not in columns:
-                    rule = f"must be numbers, the packing is from no CSV file with a column {name}"
+                    rule = f"must be numbers, the packing is from no file with a column {name}"
                     raise SceneError(describe(("motion", name), given, rule))
                 given = columns[name]
                 if not np.isfinite(given).all():

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..state import Box, FloatArray
+
+if TYPE_CHECKING:
+    from .contacts import GivenContact
 
 IntArray = NDArray[np.int32]
 
@@ -41,6 +45,7 @@ class Packing:
     given_mass: FloatArray | None = None  #: (n,) with mean 1, where disks are not of one material
     columns: Mapping[str, FloatArray] | None = None  #: (n,) each, of its file beside places and sizes, as they stand
     given: FloatArray | None = None  #: (n, 2) where a user's own disks were given; None for packings that are made
+    contacts: Sequence[GivenContact] | None = None  #: that a user's own disks begin with; None: without springs
 
     @property
     def n(self) -> int:

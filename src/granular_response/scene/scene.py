@@ -127,6 +127,14 @@ class Scene(Sparse):
         return self
 
     @model_validator(mode="after")
+    def _check_gravity(self) -> Scene:
+        given, gravity = getattr(self.packing, "springs", None), self.preparation.gravity
+        if given is not None and gravity != "at-once":
+            rule = "must be at-once with packing.springs, which bear the weights"
+            raise Problem(rule, key=("preparation", "gravity"), value=gravity)
+        return self
+
+    @model_validator(mode="after")
     def _check_motion(self) -> Scene:
         motion, total = self.motion, self.packing.disk_count
         if np.any(np.asarray(motion.spin) != 0.0) and not self.contact.rubs and not self.resolved_wall.rubs:
@@ -168,7 +176,7 @@ class Scene(Sparse):
     @property
     def files(self) -> list[Path]:
         """Files that the scene is read from, besides its own."""
-        return [self.packing.file] if isinstance(self.packing, FilePacking) else []
+        return self.packing.files if isinstance(self.packing, FilePacking) else []
 
     @property
     def small_disks_gather(self) -> bool:

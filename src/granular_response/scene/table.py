@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationInfo, model_validator
@@ -17,6 +19,8 @@ from .disks import ROUNDING, packed
 from .errors import Problem, SceneError, describe, show
 from .formats import csv_table
 from .packing import Packing, exact_mean
+
+T = TypeVar("T")
 
 
 def _printable(text: str) -> str:
@@ -76,7 +80,12 @@ class FilePacking(Sparse, PackingDescription):
         "and y for the height where there is no z, r for the radius, or diameter.",
     )
     overlaps: Overlaps = "kept"
-    sparse: ClassVar[tuple[str, ...]] = ("columns", "overlaps")
+    springs: FileName | None = Field(
+        default=None,
+        description="File with the forces of all contacts, for a packing at rest that goes on with its tangential "
+        "springs: our .contacts.csv, or a LAMMPS dump of patom1 patom2 and pair/local force p1 p2 p3.",
+    )
+    sparse: ClassVar[tuple[str, ...]] = ("columns", "overlaps", "springs")
 
     # Not part of the description: where it was read, so that a worker process finds the table too.
     _folder: str | None = PrivateAttr(default=None)
@@ -95,6 +104,8 @@ class FilePacking(Sparse, PackingDescription):
         if self.columns is not None and (known := self.format or formats.by_suffix(self.path)) != "csv":
             rule = f"must be left out, format {known} says what its columns are"
             raise Problem(rule, key=("columns",), value=self.columns)
+        if self.springs is not None and self.overlaps == "removed":
+            raise Problem("must be kept with springs", key=("overlaps",), value=self.overlaps)
         return self
 
     @property
@@ -107,6 +118,11 @@ class FilePacking(Sparse, PackingDescription):
         """The table's place."""
         return Path(self._folder or ".", self.path)
 
+    @property
+    def files(self) -> list[Path]:
+        """All that it is read from."""
+        return [self.file, *([Path(self._folder or ".", self.springs)] if self.springs else [])]
+
     def build(self) -> Packing:
         """Read the table and rescale it.
 
@@ -118,7 +134,7 @@ class FilePacking(Sparse, PackingDescription):
 
         Warns (UserWarning) where a file of another program has disks of several sizes and no masses.
         """
-        table = self._read()
+        table = self._read(lambda: formats.read(self.file, self.format or formats.by_suffix(self.path), self.columns))
         left, floor, width = self._sides(table.box)
         try:
             packing = packed(table, left, floor, width, self.periodic)
@@ -130,7 +146,12 @@ class FilePacking(Sparse, PackingDescription):
             raise self._error(value + problem.allowed, table.places[place]) from None
         if table.remark and np.ptp(table.radius) > ROUNDING * exact_mean(table.radius):
             warnings.warn(f"{self.path}: {table.remark}", stacklevel=2)
-        return packing
+        if self.springs is None:
+            return packing
+        from .contacts import read as read_contacts  # few packings have such a file
+
+        read = partial(read_contacts, self.files[1], packing.position, packing.box, table)
+        return replace(packing, contacts=self._read(read, "springs"))
 
     def _sides(self, box: formats.FileBox) -> tuple[float, float, float]:
         """Left wall, floor and width in coordinates of the file; SceneError where they are not known or disagree."""
@@ -152,20 +173,20 @@ class FilePacking(Sparse, PackingDescription):
             raise SceneError(describe(("packing", "width"), width, rule))
         return left, floor, width
 
-    def _read(self) -> formats.Table:
+    def _read(self, read: Callable[[], T], key: str = "path") -> T:
         try:
             with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused where it stands
-                return formats.read(self.file, self.format or formats.by_suffix(self.path), self.columns)
+                return read()
         except formats.FormatError as error:
-            raise self._error(str(error), error.place) from None
+            raise self._error(str(error), error.place, key) from None
         except FileNotFoundError:
-            raise self._error("no such file") from None
+            raise self._error("no such file", key=key) from None
         except UnicodeEncodeError:
-            raise self._error("has a name that this locale cannot spell") from None
+            raise self._error("has a name that this locale cannot spell", key=key) from None
         except UnicodeDecodeError:
-            raise self._error("is not a text file in UTF-8") from None
+            raise self._error("is not a text file in UTF-8", key=key) from None
         except OSError as error:
-            raise self._error(f"cannot be read: {error.strerror}") from None
+            raise self._error(f"cannot be read: {error.strerror}", key=key) from None
 
-    def _error(self, rule: str, place: str = "") -> SceneError:
-        return SceneError(describe(("packing", "path"), self.path, f"{place}: {rule}" if place else rule))
+    def _error(self, rule: str, place: str = "", key: str = "path") -> SceneError:
+        return SceneError(describe(("packing", key), getattr(self, key), f"{place}: {rule}" if place else rule))

@@ -6,6 +6,8 @@ springs only for the contacts (of disks, of walls) that have it.
 
 from __future__ import annotations
 
+import math
+import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -18,6 +20,7 @@ from ..contact.rolling import Rolling, arms
 from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Contact, Packing, Scene, SceneError, resolve_disk
+from ..scene.contacts import GivenContact
 from ..state import Contacts, FloatArray, State
 from ..state.box import WALL_MEANINGS
 from .choice import Plan, plan
@@ -31,6 +34,8 @@ from .overlaps import without_overlaps
 SKIN = 0.6
 #: Largest overlap of a start, as a part of the smaller radius.
 MOST_OVERLAP = 0.5
+#: Overlap, in mean radii, that may be rounding of a file, and part of Coulomb's limit.
+ROUNDED = 1e-9
 #: With less room than this left on the lattice, neighbours are searched instead.
 LEAST_LATTICE_LIMIT = 0.25
 
@@ -383,10 +388,45 @@ class Problem:
         return arms(self.packing.radius[disk])
 
     def bare_state(self) -> State:
-        """The unloaded initial packing: no displacement, no motion, no springs."""
+        """The unloaded initial packing: no displacement, no motion, and no springs but those that were given.
+
+        Raises SceneError for given contacts that are not those of the packing.
+        """
         n, none = self.n, spring_contacts((), ())
         position = np.array(self.packing.position, float)
-        return self.relisted(State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), none, none, self.packing.box))
+        bare = self.relisted(State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), none, none, self.packing.box))
+        if self.packing.contacts is None:
+            return bare
+        pairs, walls = (self._given(kind, at_wall) for at_wall, kind in enumerate(self.kinds(bare)))
+        return self.with_static_forces(replace(bare, pairs=pairs, walls=walls))
+
+    def _given(self, kind: Kind, at_wall: int) -> Contacts:
+        """The contacts of one kind with the springs that were given."""
+        (c, law, _, rolling), key = kind, ("contact", "wall")[at_wall]
+        known = {pair: k for k, pair in enumerate(zip(c.first.tolist(), c.second.tolist(), strict=True))}
+        missing = (c.overlap > ROUNDED) & (law.friction > 0.0)
+        force, roll = np.zeros((2, len(c.first)))
+        for one in (one for one in self.packing.contacts or () if one.at_wall == at_wall):
+            k, wrong = known.get((one.first, one.second)), ""
+            if k is None or c.overlap[k] < -ROUNDED:
+                wrong = "do not touch in this packing"
+            elif one.tangential and not law.friction:
+                wrong = f"bear a tangential force, {key}.friction must be greater than 0"
+            elif abs(one.rolling) > 0.0 if rolling is None else math.isnan(one.rolling):
+                wrong = f"have {'a' if rolling is None else 'no'} rolling force there, unlike {key}.rolling_friction"
+            if wrong:
+                raise SceneError(f"packing.springs: {one.place}: {one.words} {wrong}")
+            force[k], roll[k], missing[k] = one.tangential, one.rolling, False
+        if missing.any():
+            at = int(missing.argmax())
+            two = GivenContact("", int(c.first[at]), int(c.second[at]), bool(at_wall), 0.0, 0.0).words
+            raise SceneError(f"packing.springs: {two} overlap by {c.overlap[at]:.2g} mean radii, must be among them")
+        if len(over := np.flatnonzero(np.abs(force) > law.friction * (1.0 + ROUNDED))):
+            most = f"{np.abs(force).max():.4g} of the normal force, {key}.friction is {law.friction:g}"
+            warnings.warn(f"packing.springs: {len(over)} contacts bear up to {most}; they slip", stacklevel=2)
+        spring = -force * c.normal_force / (law.tangential_stiffness or 1.0)
+        turned = None if rolling is None else -roll * c.normal_force / rolling.stiffness
+        return spring_contacts(c.first, c.second, spring, turned)
 
     def relisted(self, state: State) -> State:
         """The same state on candidates listed anew around its positions.

@@ -115,7 +115,8 @@ class Solution:
             return ""
         disk = int(moved.argmax())
         cure = "are they whole, and do floor and walls stand where they did?"
-        pressed = float(self.problem.bare_state().pairs.overlap.max(initial=0.0))
+        bare = replace(self.problem, packing=replace(self.problem.packing, contacts=None)).bare_state()
+        pressed = float(bare.pairs.overlap.max(initial=0.0))
         if pressed > OVERLAPS_OF_NOISE and getattr(self.scene.packing, "overlaps", "removed") == "kept":
             cure = f"they begin with overlaps of up to {pressed:.2g}, which packing.overlaps: removed takes out gently"
         return (

@@ -28,6 +28,7 @@ from .table import (
 )
 
 _COLUMNS = ("diameter", "density", "x", "y", "z")
+_MOTION = ("vx", "vy", "vz", "wx", "wy", "wz")
 _REASON = "a LAMMPS data file does not say what bounds its disks"
 _BOUNDS = (("xlo", "xhi"), ("ylo", "yhi"), ("zlo", "zhi"))
 #: Edges of a box in newer files, and which of the components must be 0.
@@ -90,6 +91,7 @@ def read(path: Path) -> Table:
     ids: list[str] = []
     rows: list[list[float]] = []
     places: list[str] = []
+    moving: dict[int, list[float]] = {}  #: velocity and angular velocity, by the id
     found: dict[str, int] = {}  #: lines of each section
     section = ""
     lines, whole = lines_of(path)
@@ -121,6 +123,11 @@ def read(path: Path) -> Table:
             ids.append(cells[0])
             rows.append(numbers(cells[2:7], _COLUMNS, place))
             places.append(place)
+        if section == "Velocities":
+            if len(cells) != 7:
+                raise FormatError(f"has {len(cells)} values, must have id vx vy vz wx wy wz", place)
+            once.add(f"velocity of atom {cells[0]}", place)
+            moving[int(cells[0])] = numbers(cells[1:], _MOTION, place)
     count = header.counts.get("atoms")
     if count is None or "x" not in header.sides or len(rows) != count:
         rule = f"must have the headers atoms and xlo xhi, and as many atoms as it says (found {len(rows)})"
@@ -141,7 +148,14 @@ def read(path: Path) -> Table:
             raise FormatError(rule, "line 1")
     order = by_id(ids, places)
     diameter, density, x, y, z = np.array(rows)[order].T
+    up, numbered = upward(y, z), [int(ids[k]) for k in order]
+    columns = None
+    if moving:
+        if sorted(moving) != numbered:
+            raise FormatError("section Velocities must have the ids of section Atoms")
+        v = np.array([moving[k] for k in numbered]).T
+        columns = {"vx": v[0], "vz": v[1] if up == "y" else v[2], "spin": v[5] if up == "y" else -v[4]}
     return Table(
-        x, z if upward(y, z) == "z" else y, 0.5 * diameter, [places[k] for k in order], density * diameter**3,
-        FileBox(left, width, reason=_REASON) if mark is None else mark.box,
+        x, z if up == "z" else y, 0.5 * diameter, [places[k] for k in order], density * diameter**3,
+        FileBox(left, width, reason=_REASON) if mark is None else mark.box, columns=columns, ids=numbered,
     )  # fmt: skip

@@ -1,7 +1,8 @@
 """LAMMPS dump files of text: the last frame, with columns x y z (also unwrapped or scaled) and radius or diameter.
 
 Disks are in the order of their ids, if there is a column id. Sizes and masses may be columns of the atoms or what a
-compute, a fix or a variable calls by their name: ``mass``, ``c_mass``, ``v_mass[1]``.
+compute, a fix or a variable calls by their name: ``mass``, ``c_mass``, ``v_mass[1]``. Velocities, spins and the forces
+of walls are read where there are columns of them. A dump of local quantities has contacts in place of atoms.
 """
 
 from __future__ import annotations
@@ -32,9 +33,11 @@ from .table import (
 )
 
 _AXES = "xyz"
-#: Items of a frame, and how many lines each has; None: a line for each atom.
-_ITEMS = {"UNITS": 1, "TIME": 1, "TIMESTEP": 1, "NUMBER OF ATOMS": 1, "BOX BOUNDS": 3, "ATOMS": None}
-_NEEDED = ("TIMESTEP", "NUMBER OF ATOMS", "BOX BOUNDS", "ATOMS")
+_CONTACT = ("patom1", "patom2", "force", "p1", "p2", "p3")
+#: Items of a frame, and how many lines each has. Beside them are the number of its atoms, or entries, and these.
+_ITEMS = {"UNITS": 1, "TIME": 1, "TIMESTEP": 1, "BOX BOUNDS": 3}
+#: Forces of the walls, by the names that ``fix wall/gran ... contacts`` has in our scripts.
+WALL_FIXES = ("floor", "sides")
 
 
 class _Item(NamedTuple):
@@ -45,8 +48,9 @@ class _Item(NamedTuple):
     lines: list[tuple[int, str]]
 
 
-def _frames(lines: list[str]) -> list[dict[str, _Item]]:
+def _frames(lines: list[str], rows: str = "ATOMS") -> list[dict[str, _Item]]:
     """All frames by their items. Raises FormatError for a line that belongs to none, and for an item given twice."""
+    known = (*_ITEMS, f"NUMBER OF {rows}", rows)
     frames: list[dict[str, _Item]] = [{}]
     item: _Item | None = None
     for k, line in enumerate(lines, start=1):
@@ -59,12 +63,12 @@ def _frames(lines: list[str]) -> list[dict[str, _Item]]:
             item.lines.append((k, line))
             continue
         heading = line[len("ITEM:") :].strip()
-        name = max((name for name in _ITEMS if f"{heading} ".startswith(f"{name} ")), key=len, default=None)
+        name = max((name for name in known if f"{heading} ".startswith(f"{name} ")), key=len, default=None)
         if name is None:
-            raise FormatError(f"ITEM: {shown(heading)[1:-1]}: is no item of a dump of atoms", place)
+            raise FormatError(f"ITEM: {shown(heading)[1:-1]}: is no item of a dump of {rows.lower()}", place)
         frame = frames[-1]
         # units and time stand above the number of the step, which begins a frame
-        if "ATOMS" in frame and "BOX BOUNDS" in frame and name in ("UNITS", "TIME", "TIMESTEP"):
+        if rows in frame and "BOX BOUNDS" in frame and name in ("UNITS", "TIME", "TIMESTEP"):
             frames.append(frame := {})
         if name in frame:
             raise FormatError(f"ITEM: {name}: is given twice in a frame, in {frame[name].place} and here", place)
@@ -72,17 +76,19 @@ def _frames(lines: list[str]) -> list[dict[str, _Item]]:
     return frames
 
 
-def _checked(frame: dict[str, _Item], which: str) -> int:
+def _checked(frame: dict[str, _Item], which: str, rows: str = "ATOMS") -> int:
     """The number of atoms of a frame, once it is whole: every item is there with its lines and no other.
 
     A frame may have none, as the first ones of a packing that is poured.
     """
-    if missing := [name for name in _NEEDED if name not in frame]:
-        if missing == ["TIMESTEP", "NUMBER OF ATOMS", "BOX BOUNDS", "ATOMS"]:
+    number_of, what = f"NUMBER OF {rows}", rows.lower()
+    needed = ["TIMESTEP", number_of, "BOX BOUNDS", rows]
+    if missing := [name for name in needed if name not in frame]:
+        if missing == needed:
             raise FormatError("is not a LAMMPS dump file of text, must have ITEM: TIMESTEP")
-        raise FormatError(f"is not a whole LAMMPS dump file: the {which} lacks its number, box or atoms")
-    for name, expected in _ITEMS.items():
-        if name not in frame or expected is None:
+        raise FormatError(f"is not a whole LAMMPS dump file: the {which} lacks its number, box or {what}")
+    for name, expected in {**_ITEMS, number_of: 1}.items():
+        if name not in frame:
             continue
         item = frame[name]
         if len(item.lines) != expected:
@@ -90,29 +96,45 @@ def _checked(frame: dict[str, _Item], which: str) -> int:
             if name == "BOX BOUNDS":
                 lines += ", and have flags of three axes or none"
             raise FormatError(f"must be followed by {lines}, not {len(item.lines)}", item.place)
-    k, text = frame["NUMBER OF ATOMS"].lines[0]
+    k, text = frame[number_of].lines[0]
     count = whole_number(text.strip())
     if count is None:
-        raise FormatError(f"{shown(text)}: must be the number of atoms", f"line {k}")
-    found = len(frame["ATOMS"].lines)
+        raise FormatError(f"{shown(text)}: must be the number of {what}", f"line {k}")
+    found = len(frame[rows].lines)
     if found != count:
-        raise FormatError(f"holds {found} of {count} atoms in its {which}", frame["ATOMS"].place)
+        raise FormatError(f"holds {found} of {count} {what} in its {which}", frame[rows].place)
     return count
+
+
+def _last_frame(path: Path, rows: str = "ATOMS") -> dict[str, _Item]:
+    """The last frame of a file, once all are whole."""
+    lines, whole = lines_of(path)
+    frames = _frames(lines, rows)
+    for k, one in enumerate(frames, start=1):
+        count = _checked(one, "last frame" if k == len(frames) else f"frame {k} of {len(frames)}", rows)
+    if not whole:
+        raise FormatError("is cut: its last line has no end")
+    if not count:
+        raise FormatError(f"holds 0 of 0 {rows.lower()} in its last frame", frames[-1][rows].place)
+    return frames[-1]
+
+
+def read_contacts(path: Path) -> tuple[list[list[float]], list[str]]:
+    """Rows ``id id force p1 p2 p3`` of the contacts in the last frame of a dump of local quantities, and their lines.
+
+    The first two are ``patom1 patom2`` of ``compute property/local``, the others what ``compute pair/local`` has.
+    """
+    entries = _last_frame(path, "ENTRIES")["ENTRIES"]
+    if len(entries.words) != len(_CONTACT):
+        raise FormatError(f"must have the six columns {' '.join(_CONTACT)}, not {len(entries.words)}", entries.place)
+    return [numbers(line.split(), _CONTACT, f"line {k}") for k, line in entries.lines], [
+        f"line {k}" for k, _ in entries.lines
+    ]
 
 
 def read(path: Path) -> Table:
     """The disks of the last frame."""
-    lines, whole = lines_of(path)
-    frames = _frames(lines)
-    counts = [
-        _checked(one, "last frame" if k == len(frames) else f"frame {k} of {len(frames)}")
-        for k, one in enumerate(frames, start=1)
-    ]
-    if not whole:
-        raise FormatError("is cut: its last line has no end")
-    frame = frames[-1]
-    if not counts[-1]:
-        raise FormatError("holds 0 of 0 atoms in its last frame", frame["ATOMS"].place)
+    frame = _last_frame(path)
     flags, sides = _box(frame["BOX BOUNDS"])
     atoms = frame["ATOMS"]
     names, heading = atoms.words, atoms.place
@@ -126,8 +148,10 @@ def read(path: Path) -> Table:
     for cells, place in zip(rows, places, strict=True):
         if len(cells) != len(names):
             raise FormatError(f"has {len(cells)} values, must have {len(names)} as ITEM: ATOMS", place)
+    ids = None
     if "id" in names:
         order = by_id([cells[names.index("id")] for cells in rows], places)
+        ids = [int(rows[k][names.index("id")]) for k in order]
         rows, places = [rows[k] for k in order], [places[k] for k in order]
 
     def column(at: int) -> FloatArray:
@@ -166,7 +190,18 @@ def read(path: Path) -> Table:
     x, y, z = (coordinate(axis) for axis in range(3))
     up = upward(y, z if np.ptp(z) else 0.0 * z)  # where all z are the same, that is anywhere in the box
     bounded = _file_box(flags, sides, _AXES.index(up))
-    return Table(x, y if up == "y" else z, radius, places, mass, bounded, NO_MASSES if mass is None else "")
+    extra = {name: column(names.index(name)) for name in _further(up) if name in names}
+    columns = {said: sign * extra[name] for name, (said, sign) in _further(up).items() if name in extra}
+    remark = NO_MASSES if mass is None else ""
+    return Table(x, y if up == "y" else z, radius, places, mass, bounded, remark, columns or None, ids)
+
+
+def _further(up: str) -> dict[str, tuple[str, float]]:
+    """Columns that are read where they are: what each is in the plane of the disks, and its sign there."""
+    along = {"x": "[2]", "z": "[3]" if up == "y" else "[4]"}
+    walls = {f"f_{wall}{at}": (f"{wall} {axis}", 1.0) for wall in WALL_FIXES for axis, at in along.items()}
+    spin = {"omegaz": ("spin", 1.0)} if up == "y" else {"omegay": ("spin", -1.0)}
+    return {"vx": ("vx", 1.0), f"v{up}": ("vz", 1.0), **spin, **walls}
 
 
 def _plain(name: str) -> str:

@@ -55,7 +55,9 @@ class Table:
     mass: FloatArray | None = None  #: (n,) in any unit; None where the file says nothing of masses
     box: FileBox = field(default=NO_BOX)
     remark: str = ""  #: what a reader should know where disks differ in size
-    columns: Mapping[str, FloatArray] | None = None  #: (n,) motion of the disks; nan where a cell is no number
+    #: (n,) motion of the disks, nan where a cell is no number, and forces of walls on them
+    columns: Mapping[str, FloatArray] | None = None
+    ids: Sequence[int] | None = None  #: (n,) by which other files call the disks
 
 
 @dataclass(frozen=True)

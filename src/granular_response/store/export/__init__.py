@@ -15,6 +15,7 @@ import os
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -46,6 +47,8 @@ _WRITERS: dict[str, tuple[Writer, str]] = {
 }
 #: Those that a scene reads again.
 _READ = {suffix for suffixes in formats.SUFFIXES.values() for suffix in suffixes}
+#: Those that take what ``gr.motion`` returns, which has no contacts.
+_OF_MOTION = (lammps.script, text.csv_table, text.lammps_data, text.yade)
 #: By which masses may differ from those of one material, relatively.
 _SAME_MASS = 1e-9
 #: What a file name may end with.
@@ -56,19 +59,24 @@ class ExportError(GranularError):
     """A result that cannot be exported. The message is one line."""
 
 
-def export(
-    result: str | os.PathLike[str] | xr.Dataset, output: str | os.PathLike[str], *, state: int | None = None
-) -> Path:
-    """Write a stored result, a file or its dataset, as a file for another program; returns its path.
+def export(result: Any, output: str | os.PathLike[str], *, state: int | None = None) -> Path:
+    """Write a result, its file or dataset, or a motion, as a file for another program; returns its path.
 
     What the name of ``output`` ends with (one of ``SUFFIXES``) is the format. ``state`` is the index of the only state
-    to write; if None all, or the last one in a file of one state.
+    to write, or of the time of a motion; if None all, or the last one in a file of one state. Of a motion there are
+    disks for LAMMPS with their velocities (``.data``, and ``in.lammps`` with a script), and ``.csv``.
 
-    Raises ExportError for another ending, a state that does not exist or of a series of all, or a missing library,
-    StoreError if the result cannot be read, ResultError if it is none.
+    Raises ExportError for what is none of these, another ending, a state that does not exist or of a series of all, or
+    a missing library, StoreError if the result cannot be read, ResultError if it is none.
 
     Warns (UserWarning) of what a format that can be read again as a packing does not carry: masses, and the tangential
     springs of contacts, from which friction goes on.
+
+    Examples
+    --------
+    >>> ball = gr.Scene.from_arrays(x=[5.0], z=[3.0], radius=1.0, width=10.0, vx=0.5, scene={"loads": []})
+    >>> gr.export(gr.motion(ball, [0.0, 1.0]), "ball.data", state=0).read_text().splitlines()[-1]
+    '1 0.5 0.0 0.0 0.0 0.0 0.0'
     """
     output = Path(output)
     double = "".join(output.suffixes[-2:])
@@ -80,8 +88,17 @@ def export(
         raise ExportError(
             f"state = {state}: {output} is a series of all states, must be left out (.vtu holds one state)"
         )
+    if not isinstance(result, (str, os.PathLike, xr.Dataset)):
+        result = result.to_dataset() if hasattr(result, "to_dataset") else xr.Dataset()
     read = [] if isinstance(result, xr.Dataset) else [result]
     dataset = result if isinstance(result, xr.Dataset) else read_result(result, sealed=False)
+    if not {"disk", "axis"} <= set(dataset.dims) or not {"state", "time"} & set(dataset.dims):
+        raise ExportError(f"{output}: must be written of a result, its file or dataset, or of what gr.motion returns")
+    if "state" not in dataset.dims:
+        if writer not in _OF_MOTION:
+            known = " or ".join(suffix for suffix, (one, _) in sorted(_WRITERS.items()) if one in _OF_MOTION)
+            raise ExportError(f"{output}: a motion has no contacts, must be {known}")
+        dataset = dataset.rename(time="state", load_factor="state_load_factor")
     count = dataset.sizes["state"]
     if state is not None and not -count <= state < count:
         raise ExportError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
@@ -117,8 +134,15 @@ def _lost(state: xr.Dataset, writer: Writer) -> Iterator[str]:
     mass = state["mass"].values * np.mean(one_material) / np.mean(state["mass"].values)
     if writer is text.yade and not np.allclose(mass, one_material, rtol=_SAME_MASS, atol=0.0):
         yield "the format has no masses: read again, disks are of one material (.csv and others keep them)"
-    if any(np.any(state[f"{prefix}_spring"].values) for prefix in PREFIXES):
-        yield "the format has no springs of friction: read again, contacts begin anew (continue keeps them)"
+    if writer is lammps.script and lammps.wound_springs(state):
+        return
+    if "contact_spring" not in state:
+        bears = bool(state["contacts"] > 0) and bool(state["state"] > 0.0)
+        if bears:
+            yield "a motion has no springs of contacts: those that are closed begin anew"
+    elif any(np.any(state[f"{prefix}_spring"].values) for prefix in PREFIXES):
+        kept = "a .contacts.csv beside it has them, for packing.springs"
+        yield f"the format has no springs of friction: read again, contacts begin anew ({kept})"
 
 
 __all__ = ["SUFFIXES", "ExportError", "contact_force_sums", "export"]

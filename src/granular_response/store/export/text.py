@@ -48,7 +48,7 @@ def yade(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
 
 
 def lammps_data(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
-    """The disks as atoms of style sphere in two dimensions."""
+    """The disks as atoms of style sphere in two dimensions, with their velocities where some disk moves."""
     state = dataset.isel(state=-1)
     width, height = extent(dataset)
     radius, depth = state["radius"].values, float(state["radius"].values.max())
@@ -61,7 +61,12 @@ def lammps_data(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
         "Atoms # sphere", "",
     ]  # fmt: skip
     rows = _rows([2.0 * radius, density, in_plane(state["position"].values)])
-    return _file(path, [*head, *(f"{k} 1 {row}" for k, row in enumerate(rows, start=1))])
+    lines = [*head, *(f"{k} 1 {row}" for k, row in enumerate(rows, start=1))]
+    velocity, spin = state["velocity"].values, state["angular_velocity"].values
+    if velocity.any() or spin.any():
+        rows = _rows([in_plane(velocity), np.zeros((len(spin), 2)), spin])
+        lines += ["", "Velocities # sphere", "", *(f"{k} {row}" for k, row in enumerate(rows, start=1))]
+    return _file(path, lines)
 
 
 def lammps_dump(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path, bytes]:
