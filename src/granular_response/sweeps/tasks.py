@@ -90,7 +90,7 @@ def map_tasks(
     items = list(items)
     scheduler = scheduler or given.scheduler or os.environ.get(SCHEDULER_VARIABLE) or None
     folder = checkpoint or given.checkpoint
-    memory = Memory(folder, parts, given.packages, _module(function)) if folder and items else None
+    memory = Memory(folder, parts, given.packages) if folder and items else None
     names = [memory.name(function, item) if memory else None for item in items]
     results: list[Any] = [memory.load(name) if memory else MISSING for name in names]
     todo = [index for index, result in enumerate(results) if result is MISSING]
