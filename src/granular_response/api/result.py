@@ -22,7 +22,7 @@ from ..scene import Scene
 from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from ..scene.errors import show
-from ..scene.given import plain, unordered
+from ..scene.given import finite_numbers
 from ..scene.laboratory import FORCE, LENGTH
 from ..solvers.small_loads import influence
 from ..solvers.solution import Progress, Solution, continue_solution, solve_scene
@@ -559,14 +559,11 @@ def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scen
 
 def _places(name: str, given: Any) -> np.ndarray:
     """Coordinates of a grid along one axis."""
-    try:
-        places = np.array(np.nan if unordered(given) else plain(given), float)
-    except (TypeError, ValueError):  # text, or rows of different lengths
-        places = np.array(np.nan)
-    if places.ndim != 1 or not np.isfinite(places).all():
+    places = finite_numbers(given)
+    if places is None:
         said = " ".join(show(given).split())  # an array is several lines
         raise ValueError(f"{name} = {said}: must be a list of finite numbers")
-    return places
+    return np.array(places)
 
 
 def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] | None = None) -> Result:

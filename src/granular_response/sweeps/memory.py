@@ -47,9 +47,7 @@ class Memory:
     ``packages``, if none is named.
     """
 
-    def __init__(
-        self, folder: str | os.PathLike[str], parts: Sequence[str] = (), packages: Sequence[str] = ()
-    ) -> None:
+    def __init__(self, folder: str | os.PathLike[str], parts: Sequence[str] = (), packages: Sequence[str] = ()) -> None:
         self.folder = Path(folder).absolute()  # also where it is used: in a worker process
         self.shelf = self.folder / sources(*(parts or ("", *packages)))
         self.packages = packages
