@@ -76,66 +76,46 @@ if TYPE_CHECKING:
     from .sweeps.errors import SweepError as SweepError
     from .sweeps.tasks import map_tasks as map_tasks
 
-#: Where the public names are: their module, with another name there after a colon; those of "" are modules.
+#: The public names by their module; ``=`` stands before another name there. Those of "" are modules.
 _HOME = {
-    "Arrays": "scene:ArrayPacking",
-    "At": "scene:TopSelector",
-    "Bracket": "observe.events",
-    "Certificate": "state",
-    "Contact": "scene",
-    "Event": "state",
-    "EventNotBracketed": "observe.events",
-    "Events": "api.event_table",
-    "ExportError": "store.export",
-    "File": "scene:FilePacking",
-    "GranularError": "errors",
-    "LaboratoryUnits": "scene",
-    "Load": "scene",
-    "Motion": "scene",
-    "PictureError": "plot.pictures",
-    "Pile": "scene:PilePacking",
-    "Poured": "scene:PouredPacking",
-    "Preparation": "scene",
-    "Protocol": "scene",
-    "Result": "api.result",
-    "ResultError": "store.result",
-    "Row": "scene:RowSelector",
-    "Scene": "scene",
-    "SceneError": "scene",
-    "SceneFileError": "scene",
-    "Slab": "scene:SlabPacking",
-    "SolveError": "errors",
-    "State": "state",
-    "StoreError": "store.files",
-    "SweepError": "sweeps.errors",
-    "Taps": "scene",
-    "Wall": "scene",
-    "coordination_number": "api.observables",
-    "elastic_moduli": "api.observables",
-    "fabric_tensor": "api.observables",
-    "find_event": "api.event",
-    "force_distribution": "api.observables",
-    "map_tasks": "sweeps.tasks",
-    "mobilization": "api.observables",
-    "modes": "api.observables",
-    "motion": "api.motion",
-    "open_result": "api.result",
-    "plot": "",
-    "preparations": "api.preparations",
-    "register_law": "solvers.laws",
-    "solve": "api.result",
-    "stiffness_matrix": "api.observables",
-    "sweep": "api.sweep",
-    "theory": "",
-    "threads": "machine.threads:using",
-    "work": "api.observables",
+    name.partition("=")[0]: (home, name.partition("=")[2])
+    for home, names in {
+        "": "plot theory",
+        "api.event": "find_event",
+        "api.event_table": "Events",
+        "api.motion": "motion",
+        "api.observables": (
+            "coordination_number elastic_moduli fabric_tensor force_distribution mobilization modes "
+            "stiffness_matrix work"
+        ),
+        "api.preparations": "preparations",
+        "api.result": "Result open_result solve",
+        "api.sweep": "sweep",
+        "errors": "GranularError SolveError",
+        "machine.threads": "threads=using",
+        "observe.events": "Bracket EventNotBracketed",
+        "plot.pictures": "PictureError",
+        "scene": (
+            "Arrays=ArrayPacking At=TopSelector Contact File=FilePacking LaboratoryUnits Load Motion "
+            "Pile=PilePacking Poured=PouredPacking Preparation Protocol Row=RowSelector Scene SceneError "
+            "SceneFileError Slab=SlabPacking Taps Wall"
+        ),
+        "solvers.laws": "register_law",
+        "state": "Certificate Event State",
+        "store.export": "ExportError",
+        "store.files": "StoreError",
+        "store.result": "ResultError",
+        "sweeps.errors": "SweepError",
+        "sweeps.tasks": "map_tasks",
+    }.items()
+    for name in names.split()
 }
 
 
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    home, _, own_name = _HOME[name].partition(":")
+    home, own_name = _HOME[name]
     value = import_module(f".{home or name}", __name__)
     if home:
         value = getattr(value, own_name or name)
@@ -147,4 +127,4 @@ def __dir__() -> list[str]:
     return list(__all__)
 
 
-__all__ = ["__version__", *_HOME]
+__all__ = ["__version__", *sorted(_HOME)]

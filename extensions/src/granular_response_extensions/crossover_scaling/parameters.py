@@ -97,8 +97,6 @@ def _different_names(series: tuple[Series, ...]) -> tuple[Series, ...]:
 
 
 class Parameters(SurveyedGroup):
-    """Section ``crossover_scaling``."""
-
     scene: Annotated[Scene, over(_SLAB, *SIZE, *_DECIDED)] = Field(
         _SLAB, description="Base scene; walls are twice as stiff as the disks."
     )

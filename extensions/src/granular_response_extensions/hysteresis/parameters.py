@@ -35,8 +35,6 @@ def _once(cases: tuple[Case, ...]) -> tuple[Case, ...]:
 
 
 class Parameters(SurveyedGroup):
-    """Section ``hysteresis``."""
-
     scene: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of the lattices.")
     disordered: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of all others.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some), AfterValidator(_once)] = Field(description="Materials.")

@@ -71,8 +71,6 @@ class Loaded(Description):
 
 
 class Parameters(SurveyedGroup):
-    """Section ``moduli``."""
-
     scene: Annotated[Scene, over(UNIT_LOAD, *SIZE, *MATERIAL, "packing.sides", "packing.lattice_constant", "loads")] = (
         Field(description="Base scene of the packings.")
     )
