@@ -271,13 +271,9 @@ class Result:
         -------
         Dimensions ``z``, ``x``, ``force`` and ``branch`` ("x", "z"): the first index of the tensor is the force's.
 
-        Raises
-        ------
-        IndexError, TypeError
-            For a state that there is not, and for a ``state`` that is no integer.
-        ValueError
-            Unless ``x`` and ``z`` are lists of finite numbers and ``width`` is positive, and for the added part of the
-            initial equilibrium.
+        Raises IndexError, TypeError for a state that there is not, and for a ``state`` that is no integer; ValueError
+        unless ``x`` and ``z`` are lists of finite numbers and ``width`` is positive, and for the added part of the
+        initial equilibrium.
 
         Examples
         --------
@@ -324,14 +320,9 @@ class Result:
         NaN for disks with fewer than two contacts, unless one resists rolling, and along x where nothing holds the
         packing as a whole. 0 where a load holds the disk.
 
-        Raises
-        ------
-        IndexError, TypeError
-            For a state that there is not, and for a ``state`` that is no integer.
-        ValueError
-            For another ``sliding``.
-        granular_response.SolveError
-            For a state that is not stable, or has contacts at the Coulomb limit where these are refused.
+        Raises IndexError, TypeError for a state that there is not, and for a ``state`` that is no integer; ValueError
+        for another ``sliding``; granular_response.SolveError for a state that is not stable, or has contacts at the
+        Coulomb limit where these are refused.
 
         Examples
         --------
@@ -384,10 +375,7 @@ class Result:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Store as netCDF-4, atomically; :func:`open_result` and ``xarray.open_dataset`` read it.
 
-        Raises
-        ------
-        granular_response.StoreError
-            If the file cannot be written.
+        Raises granular_response.StoreError if the file cannot be written.
 
         Examples
         --------
@@ -408,11 +396,8 @@ class Result:
         state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last
             in a file of one.
 
-        Raises
-        ------
-        granular_response.ExportError
-            For another ending, a state that does not exist, a scene that the program cannot have, a missing library, or
-            a place that cannot be written.
+        Raises granular_response.ExportError for another ending, a state that does not exist, a scene that the program
+        cannot have, a missing library, or a place that cannot be written.
 
         Examples
         --------
@@ -515,12 +500,8 @@ def solve(
     progress : a bar on the terminal, or a line in a notebook, after two seconds; False for none, or a function that is
         called as ``progress(done, total, stage)``.
 
-    Raises
-    ------
-    granular_response.SceneError
-        For a scene that is not allowed.
-    granular_response.SolveError
-        For one that has no such states, with one line that says what to change.
+    Raises granular_response.SceneError for a scene that is not allowed; granular_response.SolveError for one that has
+    no such states, with one line that says what to change.
 
     Warns (UserWarning) of states that are still moving where no static finish is asked for, of states that are not in
     balance as statics does not have their law, of a load so small that rounding is seen in its response, and of
@@ -571,12 +552,8 @@ def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] 
 
     ``folder`` is that of the scene file, where a packing from a table is to be continued.
 
-    Raises
-    ------
-    granular_response.StoreError
-        If the file cannot be read.
-    granular_response.ResultError
-        If it holds something else than a whole result.
+    Raises granular_response.StoreError if the file cannot be read; granular_response.ResultError if it holds something
+    else than a whole result.
 
     Examples
     --------
