@@ -116,7 +116,7 @@ PAPER, PAPER_BAND = "#9A7B4F", "#F1E9DA"
 DIGITISED = "#8C8C8C"
 
 RC: dict[str, Any] = {
-    **mpl.rc_params_from_file(Path(__file__).with_name("pictures.mplstyle"), use_default_template=False),
+    **mpl.rc_params_from_file(Path(__file__).with_suffix(".mplstyle"), use_default_template=False),
     "axes.prop_cycle": cycler(color=COLOURS) + cycler(linestyle=LINE_STYLES),
 }
 #: Settings of the program rather than of a picture; resetting some of them warns or switches the backend.
