@@ -233,13 +233,8 @@ class Result:
         between disks); ``x``, ``z`` the point of contact from the left wall and the floor; ``status`` "sticking" or
         "sliding"; ``normal_force`` positive in compression; ``tangential_force`` on ``first``, along z × n.
         Where rolling is resisted, ``rolling_force`` and ``rolling_status`` too. ``attrs["units"]`` names the units of
-        the columns.
-
-        Parameters
-        ----------
-        state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
-
-        Raises IndexError for a state that there is not, TypeError for a ``state`` that is no integer.
+        the columns. ``state`` is 0 for the initial equilibrium, then one for each load factor, -1 the last one; raises
+        IndexError for one that there is not, TypeError for what is no integer.
 
         Examples
         --------
