@@ -115,8 +115,9 @@ PAPER, PAPER_BAND = "#9A7B4F", "#F1E9DA"
 #: What others published, as somebody read it off their picture.
 DIGITISED = "#8C8C8C"
 
+_SHEET: Any = mpl.rc_params_from_file(Path(__file__).with_suffix(".mplstyle"), use_default_template=False)
 RC: dict[str, Any] = {
-    **mpl.rc_params_from_file(Path(__file__).with_suffix(".mplstyle"), use_default_template=False),
+    **_SHEET,
     "axes.prop_cycle": cycler(color=COLOURS) + cycler(linestyle=LINE_STYLES),
 }
 #: Settings of the program rather than of a picture; resetting some of them warns or switches the backend.
