@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from granular_response.store import files as store
 from granular_response_extensions import COLLECTION
+from granular_response_extensions.parameters import SurveyedGroup
 from granular_response_paper import PACKAGE
-from granular_response_paper.parameters import SurveyedGroup
 from granular_response_paper.pipeline import simulation
 from granular_response_paper.records import columns, table
 from granular_response_paper.registry import group_member
