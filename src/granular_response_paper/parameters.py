@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import Annotated, Any, Self
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from granular_response.scene import Scene, SceneError
 from granular_response.scene.base import Count, Description, Positive, Ratio, allowed
@@ -88,23 +88,6 @@ class SceneGroup(Common):
     def base(self) -> Scene:
         """The base scene, solved by ``method``."""
         return self.scene.updated({"protocol.method": self.method})
-
-
-class SurveyedGroup(SceneGroup):
-    """A group that may leave packings to the survey."""
-
-    survey_file: Path | None = Field(None, description="Stored packings of the survey; null: there are none.")
-
-    @property
-    def surveyed(self) -> bool:
-        """Whether it leaves any."""
-        raise NotImplementedError
-
-    @model_validator(mode="after")
-    def _check_survey(self) -> Self:
-        if self.survey_file is None and self.surveyed:
-            raise Problem("must be named where packings are left to the survey", key=("survey_file",), value=None)
-        return self
 
 
 #: The paper's scene with a load of one disk weight, so that load factors are forces.

@@ -34,15 +34,12 @@ class Column:
 
     long_name: str
     dims: tuple[str, ...]
-    later: bool  #: whether files of earlier versions lack it; there it is read as nan
     attributes: Mapping[str, Any]  #: further ones of the variable
 
 
-def column(
-    long_name: str, *dims: str, later: bool = False, attributes: Mapping[str, Any] = MappingProxyType({})
-) -> Any:
+def column(long_name: str, *dims: str, attributes: Mapping[str, Any] = MappingProxyType({})) -> Any:
     """Declare a field of a record: a number or a text, or an array along ``dims``."""
-    return field(metadata={_DECLARED: Column(long_name, dims, later, attributes)})
+    return field(metadata={_DECLARED: Column(long_name, dims, attributes)})
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(column,))

@@ -244,7 +244,7 @@ def test_a_result_is_continued_and_nothing_else(solved):
         np.testing.assert_array_equal(more["floor_response"][0], one["floor_response"][0])
     assert "load factors 1, 0.5, 0" in succeeded(*to, "0.5", "--to", "0", "-o", "less.nc", folder=solved)
     said = refused(*to, "nan", "-o", "nan.nc", folder=solved)
-    assert "result.nc: load factors nan: must be finite" in said
+    assert "result.nc: load factors [nan]: must be a list of one or more finite numbers" in said
     store.write(solved / "study.nc", {"other": xr.Dataset()})
     said = refused("continue", "study.nc", "--to", "2", "-o", "nan.nc", folder=solved)
     assert "study.nc: holds no states, must be a result of granular-response run" in said

@@ -243,7 +243,7 @@ def test_load_factors_that_are_none_are_one_line_before_anything_is_solved(facto
         ),
         lambda: gr.solve(SCENE, load_factors=factors),
     ):
-        with pytest.raises(SceneError, match=r"^load factors.*must be .*one or more numbers$"):
+        with pytest.raises(SceneError, match=r"^load factors.*must be .*one or more finite numbers$"):
             solved()
     assert calls == []
 

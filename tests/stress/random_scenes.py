@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from audit import Audit, ContactRule, audit
 
 from granular_response.errors import SolveError
-from granular_response.observe.audit import Audit, ContactRule, audit
 from granular_response.observe.floor import floor_force
 from granular_response.scene import Load, Scene, SceneError
 from granular_response.solvers.solution import Solution, solve_scene

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from audit import ContactRule, audit
 from small_scenes import scene
 from stress.random_scenes import (
     anachronism,
@@ -15,7 +16,6 @@ from stress.random_scenes import (
 )
 from unlike_scenes import MASS_RATIO, RADIUS_RATIO, unlike_heap
 
-from granular_response.observe.audit import ContactRule, audit
 from granular_response.scene import Scene
 from granular_response.solvers.path import PathError
 from granular_response.solvers.problem import Problem

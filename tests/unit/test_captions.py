@@ -16,7 +16,6 @@ from granular_response.store import files as store
 from granular_response_paper import captions
 from granular_response_paper.captions import Caption, of_scene
 from granular_response_paper.pipeline import drawing
-from granular_response_paper.pipeline import stored as stored_data
 from granular_response_paper.registry import GroupError, collection_of, collections, group_member, group_path
 
 GROUPS = [name for one in collections() for name in one.groups]
@@ -143,7 +142,7 @@ def test_captions_begin_with_their_message(group):
 @pytest.mark.parametrize("group", GROUPS)
 def test_filled_captions_have_no_empty_field(group):
     try:
-        path, datasets = stored_data.datasets(group, ROOT / collection_of(group).folder / "data" / f"{group}.nc")
+        path, datasets = drawing.stored_datasets(group, ROOT / collection_of(group).folder / "data" / f"{group}.nc")
         filled = group_member(group, "draw", "captions")(datasets, drawing._parameters(group, path))
     except (GroupError, store.StoreError) as error:
         pytest.skip(f"no datasets of {group} as it is now: {error}")

@@ -941,7 +941,7 @@ def test_the_counts_in_words(good):
     number = sum(found["counts"]["ordered"].values())
     assert ordered == (
         f"Of {number} statements on ordered slabs, piles, theory and method: {number - 3 - len(ALGEBRA)} supported, "
-        f"1 not supported, {len(ALGEBRA)} derivation, 2 not measured."
+        f"1 not supported, {len(ALGEBRA)} derivations, 2 not measured."
     )
     beyond = sum(claim.extension for claim in EVERY)
     assert disorder.endswith("1 not supported.") and extension.endswith(f": {beyond} supported.")

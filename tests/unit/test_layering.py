@@ -63,11 +63,11 @@ def test_only_the_entry_point_writes_the_environment():
     assert pinning == {"granular_response/cli/command_line.py"}
 
 
-def test_pickles_go_to_workers_only():
-    """A pickle runs code when it is read: from a file only values are (``sweeps/encoding.py``)."""
+def test_pickles_go_to_workers_and_checkpoints_only():
+    """A pickle runs code when it is read: from a file only what a sweep itself has kept (``sweeps/memory.py``)."""
     reads = {"pickle.load", "pickle.loads", "pickle.Unpickler", "cloudpickle.load", "cloudpickle.loads"}
     found = {str(p.relative_to(SOURCE)) for p in SOURCE.rglob("*.py") if reads & names_used(p)}
-    assert found == {f"granular_response/sweeps/{name}.py" for name in ("encoding", "executor")}
+    assert found == {f"granular_response/sweeps/{name}.py" for name in ("executor", "memory")}
     imported = [p.read_text() for p in SOURCE.rglob("*.py") if "pickle import" in p.read_text()]
     assert imported == []
 

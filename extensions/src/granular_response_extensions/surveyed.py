@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from granular_response.store import files as store
 from granular_response_extensions import COLLECTION
+from granular_response_extensions.parameters import SurveyedGroup
 from granular_response_paper import PACKAGE
-from granular_response_paper.parameters import SurveyedGroup
 from granular_response_paper.pipeline import simulation
 from granular_response_paper.records import columns, table
 from granular_response_paper.registry import group_member
@@ -90,15 +90,12 @@ def read(path: str | Path, key: type[Key], kind: type[Outcome]) -> dict[Key, Out
     """
     found = store.read(path).get(DATASET)
     named, values = columns(key), columns(kind)
-    needed = {*named, *(name for name, one in values.items() if not one.later)}
-    missing = needed - set(found.variables if found is not None else ())
+    missing = {*named, *values} - set(found.variables if found is not None else ())
     if found is None or missing:
         raise store.StoreError(f"{path}: is no file of packings of the survey, lacks {', '.join(sorted(missing))}")
     keys = zip(*(found[name].values.tolist() for name in named), strict=True)
-    unknown = np.full(found.sizes[ALONG], np.nan)
-    stored = {name: found[name].values if name in found else unknown for name in values}
     return {
-        key(*one): kind(**{name: _own(stored[name][row], column.dims) for name, column in values.items()})
+        key(*one): kind(**{name: _own(found[name].values[row], column.dims) for name, column in values.items()})
         for row, one in enumerate(keys)
     }
 

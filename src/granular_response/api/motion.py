@@ -49,12 +49,8 @@ def motion(
     ``momentum`` (time, axis), ``angular_momentum`` (time) about the lower left corner of the box, ``contacts`` that are
     closed. With ``radius`` and ``mass``. All in reduced units.
 
-    Raises
-    ------
-    granular_response.SceneError
-        For times out of order, a motion of another number of disks, a scene for ``path`` or ``minimise``.
-    granular_response.SolveError
-        For a motion that blows up.
+    Raises granular_response.SceneError for times out of order, a motion of another number of disks, a scene for
+    ``path`` or ``minimise``; granular_response.SolveError for a motion that blows up.
 
     Examples
     --------

@@ -1,9 +1,6 @@
 """Observables of the field for a result: its network, its forces, its stiffness, and where the work of a load goes.
 
-One definition of each, which documents and pictures share. The coordination number is the mean number of closed
-contacts of a disk, those with floor and walls included, over all disks; without rattlers it is over the disks that are
-none, and without the contacts of rattlers. Rattlers are disks with fewer than two contacts that bear more than 1e-8 mg,
-removed again and again.
+``state`` is 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
 """
 
 from __future__ import annotations
@@ -120,12 +117,9 @@ def _mobilized(contacts: Contacts, friction: float) -> np.ndarray:
 def force_distribution(result: Result, *, state: int = -1, bins: int = 24, to: float = 6.0) -> xr.DataArray:
     """The probability density P(f / <f>) of the normal forces of closed contacts between disks, over their mean.
 
-    Parameters
-    ----------
-    state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
-    bins, to : how many bins of equal width, from 0 to this multiple of the mean. Forces beyond it count in the norm.
-
-    Dimension ``force``: the middles of the bins; attributes ``mean_force`` in mg and ``contacts``.
+    There are ``bins`` of equal width from 0 ``to`` this multiple of the mean; forces beyond it count in the norm.
+    Dimension ``force``: the middles of the bins; attributes ``mean_force`` in mg and ``contacts``. ``state`` is as of
+    :meth:`Result.influence`.
 
     Examples
     --------
@@ -152,12 +146,8 @@ def stiffness_matrix(result: Result, *, state: int = -1, sliding: str = "refuse"
     """The tangent stiffness K = -dF/dq of a stable state, as a ``scipy.sparse.csc_array`` in mg per mean radius.
 
     Its unknowns are those of the disks one after another: x and z, and the angle where disks turn. With the turn of
-    contacts under the forces that they bear (geometric stiffness). Raises as :meth:`Result.influence` does.
-
-    Parameters
-    ----------
-    state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
-    sliding : "refuse" a state with contacts at the Coulomb limit, or take them to "stick".
+    contacts under the forces that they bear (geometric stiffness). ``state`` and ``sliding`` are as of
+    :meth:`Result.influence`, and so is what it raises.
 
     Examples
     --------
@@ -171,17 +161,11 @@ def stiffness_matrix(result: Result, *, state: int = -1, sliding: str = "refuse"
 def modes(result: Result, count: int = 6, *, state: int = -1, sliding: str = "refuse") -> xr.Dataset:
     """The lowest vibrations of a stable state: K x = omega^2 M x, with the symmetric part of K.
 
-    Parameters
-    ----------
-    count : how many.
-    state, sliding : as of :func:`stiffness_matrix`.
+    So many as ``count``; ``state`` and ``sliding`` are as of :meth:`Result.influence`. Dimensions ``mode``, ``disk``
+    and ``component`` ("x", "z" and, where disks turn, "angle"): ``frequency`` omega in sqrt(g/R), and ``displacement``
+    with x M x = 1. Rattlers are left out, nan there; so is what a load holds.
 
-    Returns
-    -------
-    Dimensions ``mode``, ``disk`` and ``component`` ("x", "z" and, where disks turn, "angle"): ``frequency`` omega in
-    sqrt(g/R), and ``displacement`` with x M x = 1. Rattlers are left out, nan there; so is what a load holds.
-
-    Raises as :func:`stiffness_matrix` does, and ValueError for a ``count`` that there is not.
+    Raises as :meth:`Result.influence` does, and ValueError for a ``count`` that there is not.
 
     Examples
     --------

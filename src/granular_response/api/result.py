@@ -22,7 +22,7 @@ from ..scene import Scene
 from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from ..scene.errors import show
-from ..scene.given import plain, unordered
+from ..scene.given import finite_numbers
 from ..scene.laboratory import FORCE, LENGTH
 from ..solvers.small_loads import influence
 from ..solvers.solution import Progress, Solution, continue_solution, solve_scene
@@ -233,13 +233,8 @@ class Result:
         between disks); ``x``, ``z`` the point of contact from the left wall and the floor; ``status`` "sticking" or
         "sliding"; ``normal_force`` positive in compression; ``tangential_force`` on ``first``, along z × n.
         Where rolling is resisted, ``rolling_force`` and ``rolling_status`` too. ``attrs["units"]`` names the units of
-        the columns.
-
-        Parameters
-        ----------
-        state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
-
-        Raises IndexError for a state that there is not, TypeError for a ``state`` that is no integer.
+        the columns. ``state`` is 0 for the initial equilibrium, then one for each load factor, -1 the last one; raises
+        IndexError for one that there is not, TypeError for what is no integer.
 
         Examples
         --------
@@ -271,13 +266,9 @@ class Result:
         -------
         Dimensions ``z``, ``x``, ``force`` and ``branch`` ("x", "z"): the first index of the tensor is the force's.
 
-        Raises
-        ------
-        IndexError, TypeError
-            For a state that there is not, and for a ``state`` that is no integer.
-        ValueError
-            Unless ``x`` and ``z`` are lists of finite numbers and ``width`` is positive, and for the added part of the
-            initial equilibrium.
+        Raises IndexError, TypeError for a state that there is not, and for a ``state`` that is no integer; ValueError
+        unless ``x`` and ``z`` are lists of finite numbers and ``width`` is positive, and for the added part of the
+        initial equilibrium.
 
         Examples
         --------
@@ -324,14 +315,9 @@ class Result:
         NaN for disks with fewer than two contacts, unless one resists rolling, and along x where nothing holds the
         packing as a whole. 0 where a load holds the disk.
 
-        Raises
-        ------
-        IndexError, TypeError
-            For a state that there is not, and for a ``state`` that is no integer.
-        ValueError
-            For another ``sliding``.
-        granular_response.SolveError
-            For a state that is not stable, or has contacts at the Coulomb limit where these are refused.
+        Raises IndexError, TypeError for a state that there is not, and for a ``state`` that is no integer; ValueError
+        for another ``sliding``; granular_response.SolveError for a state that is not stable, or has contacts at the
+        Coulomb limit where these are refused.
 
         Examples
         --------
@@ -384,10 +370,7 @@ class Result:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Store as netCDF-4, atomically; :func:`open_result` and ``xarray.open_dataset`` read it.
 
-        Raises
-        ------
-        granular_response.StoreError
-            If the file cannot be written.
+        Raises granular_response.StoreError if the file cannot be written.
 
         Examples
         --------
@@ -408,11 +391,8 @@ class Result:
         state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last
             in a file of one.
 
-        Raises
-        ------
-        granular_response.ExportError
-            For another ending, a state that does not exist, a scene that the program cannot have, a missing library, or
-            a place that cannot be written.
+        Raises granular_response.ExportError for another ending, a state that does not exist, a scene that the program
+        cannot have, a missing library, or a place that cannot be written.
 
         Examples
         --------
@@ -517,12 +497,8 @@ def solve(
     progress : a bar on the terminal, or a line in a notebook, after two seconds; False for none, or a function that is
         called as ``progress(done, total, stage)``.
 
-    Raises
-    ------
-    granular_response.SceneError
-        For a scene that is not allowed.
-    granular_response.SolveError
-        For one that has no such states, with one line that says what to change.
+    Raises granular_response.SceneError for a scene that is not allowed; granular_response.SolveError for one that has
+    no such states, with one line that says what to change.
 
     Warns (UserWarning) of states that are still moving where no static finish is asked for, of states that are not in
     balance as statics does not have their law, of a load so small that rounding is seen in its response, and of
@@ -561,14 +537,11 @@ def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scen
 
 def _places(name: str, given: Any) -> np.ndarray:
     """Coordinates of a grid along one axis."""
-    try:
-        places = np.array(np.nan if unordered(given) else plain(given), float)
-    except (TypeError, ValueError):  # text, or rows of different lengths
-        places = np.array(np.nan)
-    if places.ndim != 1 or not np.isfinite(places).all():
+    places = finite_numbers(given)
+    if places is None:
         said = " ".join(show(given).split())  # an array is several lines
         raise ValueError(f"{name} = {said}: must be a list of finite numbers")
-    return places
+    return np.array(places)
 
 
 def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] | None = None) -> Result:
@@ -576,12 +549,8 @@ def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] 
 
     ``folder`` is that of the scene file, where a packing from a table is to be continued.
 
-    Raises
-    ------
-    granular_response.StoreError
-        If the file cannot be read.
-    granular_response.ResultError
-        If it holds something else than a whole result.
+    Raises granular_response.StoreError if the file cannot be read; granular_response.ResultError if it holds something
+    else than a whole result.
 
     Examples
     --------

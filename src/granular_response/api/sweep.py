@@ -31,7 +31,6 @@ from .terminal import shown
 
 #: What a measure may return.
 Measured = Any
-_POINT = "sweep_point"
 
 
 def floor_response(result: Result) -> xr.DataArray:
@@ -83,14 +82,10 @@ def sweep(
     others, and a warning says how many there are. What :func:`solve` warns of is said once, with the number of
     combinations.
 
-    Raises
-    ------
-    granular_response.SceneError
-        For a key, a value or load factors that are not allowed, before anything is solved.
-    ValueError
-        For axes that are no mapping, and for an axis that is no list of values, is empty or has a value twice.
-    granular_response.SweepError
-        If ``measure`` raises or returns something else, if no combination has an equilibrium, or if workers fail.
+    Raises granular_response.SceneError for a key, a value or load factors that are not allowed, before anything is
+    solved; ValueError for axes that are no mapping, and for an axis that is no list of values, is empty or has a value
+    twice; granular_response.SweepError if ``measure`` raises or returns something else, if no combination has an
+    equilibrium, or if workers fail.
 
     Examples
     --------
@@ -203,31 +198,29 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
     if not good:
         raise SweepError(f"none of {len(found)} combinations has an equilibrium, the first: {errors[0]}")
     names = _names(values)
-    taken = {str(name) for _, one in good for name in (*one.variables, *one.dims)} & {*names.values(), "error", _POINT}
+    taken = {str(name) for _, one in good for name in (*one.variables, *one.dims)} & {*names.values(), "error"}
     if taken:
         raise SweepError(f"measure: {min(taken)} is the name of an axis, must be another one")
-    measured = _labelled_alike([one for _, one in good])
-    coordinates = {str(name) for one in measured for name in one.coords if name not in one.dims}
-    side_by_side, bare = _side_by_side(measured)
-
+    measured, bare = _labelled_alike([one for _, one in good])
+    coordinates = {str(name) for one in measured for name in one.coords}
     shape = tuple(len(given) for given in values.values())
-    place = np.array([place for place, _ in good])
+    grid = list(np.ndindex(shape))
+    places = [grid[place] for place, _ in good]
+    labelled = {dim: size for one in measured for dim, size in one.sizes.items() if dim not in bare}
     variables: dict[str, Any] = {}
-    for name, variable in side_by_side.variables.items():
-        if name in bare:
-            continue
-        if _POINT not in variable.dims:
-            variables[str(name)] = variable
-            continue
-        variable = variable.transpose(_POINT, ...)
-        if name in coordinates and _same(variable.values):
-            variables[str(name)] = variable.isel({_POINT: 0})
-        elif name == "step" and name in coordinates and (steps := _shared(variable.values)) is not None:
-            variables[name] = (variable.dims[1:], steps, variable.attrs)
+    for name in dict.fromkeys(str(name) for one in measured for name in one.variables if name not in bare):
+        those = {place: one.variables[name] for place, one in zip(places, measured, strict=True) if name in one}
+        dims = tuple(dict.fromkeys(dim for one in those.values() for dim in one.dims))
+        sizes = [{dim: one.sizes.get(dim, labelled.get(dim, 1)) for dim in dims} for one in those.values()]
+        whole = (one.set_dims(given).values for one, given in zip(those.values(), sizes, strict=True))
+        arrays = dict(zip(those, map(_without_objects, whole), strict=True))
+        attributes, longest = next(iter(those.values())).attrs, max(arrays.values(), key=np.size)
+        heads = (longest[: len(one)] if name == "step" else longest for one in arrays.values())
+        everywhere = name in coordinates and len(those) == len(measured)
+        if dims == (name,) or (everywhere and all(map(_same, arrays.values(), heads))):
+            variables[name] = (dims, longest, attributes)
         else:
-            whole = _spread(variable.values, place, len(found))
-            dimensions = (*names.values(), *variable.dims[1:])
-            variables[str(name)] = (dimensions, whole.reshape((*shape, *whole.shape[1:])), variable.attrs)
+            variables[name] = ((*names.values(), *dims), _stacked(arrays, shape), attributes)
     for key, name in names.items():
         variables[name] = (name, _coordinate(values[key]), {"key": key})
     if any(errors):
@@ -239,11 +232,10 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
             f"{failed[0]}",
             stacklevel=3,
         )
-    inside = [name for name in side_by_side.coords if name in variables]
     first, *others = (one.attrs for _, one in good)
     shared = {k: v for k, v in first.items() if all(np.array_equal(v, np.asarray(one.get(k))) for one in others)}
     gridded = xr.Dataset(variables, attrs=shared)
-    gridded = gridded.set_coords([*names.values(), *inside, *(name for name in coordinates if name in variables)])
+    gridded = gridded.set_coords([*names.values(), *(name for name in coordinates if name in variables)])
     for one in gridded.variables.values():
         if one.dtype.kind in TEXT:
             one.encoding = dict(CHARACTERS)
@@ -255,8 +247,8 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
     return gridded
 
 
-def _labelled_alike(results: Sequence[xr.Dataset]) -> list[xr.Dataset]:
-    """Results of which labels along a dimension can be joined.
+def _labelled_alike(results: Sequence[xr.Dataset]) -> tuple[list[xr.Dataset], set[Any]]:
+    """Results with the same labels along each dimension, and the dimensions that have none.
 
     A step of one load programme is no step of another, though both be at the same factor: where programmes differ,
     ``load`` loses its labels, which ``load_factor`` has too.
@@ -272,7 +264,8 @@ def _labelled_alike(results: Sequence[xr.Dataset]) -> list[xr.Dataset]:
             plain = [_without_labels(one, "floor_disk", "floor_disk_index") for one in plain]
         elif not all(one is None or one.is_unique for one in labels):
             raise SweepError(f"measure: {dim} has a label twice, must have different ones or the same in each result")
-    return plain
+    bare = {dim for one in plain for dim in one.dims if dim not in one.coords}
+    return list(xr.align(*plain, join="outer", exclude=bare)), bare
 
 
 def _without_labels(one: xr.Dataset, dim: str, kept: str) -> xr.Dataset:
@@ -284,51 +277,28 @@ def _without_labels(one: xr.Dataset, dim: str, kept: str) -> xr.Dataset:
     return one.drop_vars(dim)
 
 
-def _side_by_side(results: Sequence[xr.Dataset]) -> tuple[xr.Dataset, set[Any]]:
-    """All results along one dimension, and the dimensions that have no labels in it.
-
-    These are numbered here, and so filled up where a result is shorter, or has nothing along them.
-    """
-    bare = {dim for one in results for dim in one.dims if dim not in one.coords}
-    along: dict[Any, set[Any]] = {dim: set() for dim in bare}
-    for one in results:
-        for name, variable in one.variables.items():
-            for dim in bare & {*variable.dims}:
-                along[dim].add(name)
-    numbered = []
-    for one in results:
-        plain = one.reset_coords([name for name in one.coords if name not in one.dims])
-        for dim in bare - {*one.dims}:  # xarray would repeat the values along it
-            given = {name: plain.variables[name] for name in along[dim] & {*plain.data_vars}}
-            plain = plain.assign({name: variable.set_dims([dim, *variable.dims]) for name, variable in given.items()})
-        numbered.append(plain.assign_coords({dim: np.arange(plain.sizes[dim]) for dim in bare & {*plain.dims}}))
-    return xr.concat(numbered, _POINT, data_vars="all", join="outer", combine_attrs="override"), bare
+def _without_objects(values: np.ndarray) -> np.ndarray:
+    """Text or truth values with gaps as text, or as numbers."""
+    if values.dtype.kind != "O":
+        return values
+    text = any(isinstance(value, str) for value in values.flat)
+    return np.where(values == values, values, "").astype(str) if text else values.astype(float)
 
 
-def _shared(steps: np.ndarray) -> np.ndarray | None:
-    """The numbers that are the same all along the first axis, but for NaN where a programme is shorter; else None."""
-    numbered = np.fmax.reduce(steps, axis=0)
-    if np.isnan(numbered).any() or not (np.isnan(steps) | (steps == numbered)).all():
-        return None
-    return np.asarray(numbered, int)
+def _same(one: np.ndarray, other: np.ndarray) -> bool:
+    return np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
 
 
-def _spread(measured: np.ndarray, place: np.ndarray, count: int) -> np.ndarray:
-    """(count, ...) what was measured at its place along the first axis, and NaN, or no text, at the others."""
-    if measured.dtype.kind == "O":  # text or truth values with gaps
-        text = any(isinstance(value, str) for value in measured.flat)
-        measured = np.where(measured == measured, measured, "").astype(str) if text else measured.astype(float)
-    if len(place) == count:
-        return measured
-    kind = measured.dtype if measured.dtype.kind in "fcSU" else np.dtype(float)
-    whole = np.full((count, *measured.shape[1:]), "" if kind.kind in "SU" else np.nan, kind)
-    whole[place] = measured
-    return whole
-
-
-def _same(measured: np.ndarray) -> bool:
-    """Whether all along the first axis are equal."""
-    return all(np.array_equal(one, measured[0], equal_nan=one.dtype.kind == "f") for one in measured[1:])
+def _stacked(arrays: Mapping[tuple[int, ...], np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
+    """Arrays at their places in a grid of this shape; NaN, or no text, where there is none and behind shorter ones."""
+    sizes = tuple(max(along) for along in zip(*(one.shape for one in arrays.values()), strict=True))
+    kind = np.result_type(*{one.dtype for one in arrays.values()})
+    if kind.kind not in "fcSU" and any(arrays.get(place, np.empty(0)).shape != sizes for place in np.ndindex(shape)):
+        kind = np.dtype(float)
+    found = np.full(shape + sizes, "" if kind.kind in "SU" else np.nan if kind.kind in "fc" else 0, kind)
+    for place, one in arrays.items():
+        found[place + tuple(slice(size) for size in one.shape)] = one
+    return found
 
 
 def _names(values: Iterable[str]) -> dict[str, str]:

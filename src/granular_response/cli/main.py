@@ -28,26 +28,6 @@ PACKAGE = (
     "granular-response: quasi-static response of two-dimensional granular solids to a localized force, "
     f"version {__version__}"
 )
-BIBTEX = f"""\
-@article{{goldenberg-goldhirsch,
-  author = {{Goldenberg, C. and Goldhirsch, I.}},
-  title  = {{Effects of Friction and Disorder on the Quasi-Static Response of Granular Solids
-            to a Localized Force}},
-  journal = {{Physical Review E}},
-  volume = {{77}},
-  pages  = {{041303}},
-  year   = {{2008}},
-  eprint = {{0711.4243}},
-  archiveprefix = {{arXiv}},
-  url    = {{https://arxiv.org/abs/0711.4243}}
-}}
-
-@software{{granular-response,
-  author  = {{{{The granular-response authors}}}},
-  title   = {{granular-response: quasi-static response of two-dimensional granular solids
-             to a localized force}},
-  version = {{{__version__}}}
-}}"""
 
 commands = CommandLine(
     "granular-response",
@@ -339,7 +319,10 @@ def export(
 @commands.command("cite", "cite --bibtex >> references.bib")
 def cite(bibtex: Annotated[bool, typer.Option("--bibtex", help="As BibTeX entries.")] = False) -> None:
     """Print how to cite the paper and this package."""
-    typer.echo(BIBTEX if bibtex else f"The paper:\n  {PAPER}\n\nThis package:\n  {PACKAGE}")
+    if bibtex:
+        typer.echo(Path(__file__).with_name("cite.bib").read_text("utf-8").replace("$version", __version__), nl=False)
+    else:
+        typer.echo(f"The paper:\n  {PAPER}\n\nThis package:\n  {PACKAGE}")
 
 
 @commands.command("version", name="version")

@@ -3,8 +3,6 @@
 Arguments are floats, or the ``Lanes`` of several contacts; ``law`` is any law of :mod:`.law`.
 """
 
-from __future__ import annotations
-
 from ..machine.lanes import magnitude, quotient_where, select
 from ..machine.machine_code import kernel
 

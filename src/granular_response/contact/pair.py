@@ -6,8 +6,6 @@ forgets its spring; that takes no branch. ``du``, ``dw`` : velocity of the first
 (:mod:`.law`); ``rule`` : of :mod:`.coulomb`; ``dt`` : time step of the spring.
 """
 
-from __future__ import annotations
-
 from ..machine.lanes import root, select
 from ..machine.machine_code import kernel
 from .coulomb import tangential

@@ -6,8 +6,6 @@ the ones given as ``ax``, and return the axes, as does ``photoelastic``; ``page`
 ``style``, which take arrays.
 """
 
-from __future__ import annotations
-
 from .animation import animate
 from .motion import motion
 from .photoelastic import photoelastic

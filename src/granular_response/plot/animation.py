@@ -74,9 +74,7 @@ def animate(
     check_positive(fps=fps, dpi=dpi)
     check_target(output)
     frames = Frames(results, half_width=half_width, width=width, figure=figure)
-    frames.figure.set_dpi(dpi)
-    animation = FuncAnimation(frames.figure, frames.draw, frames=frames.count, interval=1000.0 / fps, blit=False)
-    return written(animation, output, fps=fps, dpi=dpi)
+    return animated(frames.figure, frames.draw, frames.count, output, fps=fps, dpi=dpi)
 
 
 def check_target(output: str | os.PathLike[str] | None) -> None:
@@ -89,10 +87,12 @@ def check_target(output: str | os.PathLike[str] | None) -> None:
         atomic.check_writable(output)
 
 
-def written(
-    animation: FuncAnimation, output: str | os.PathLike[str] | None, *, fps: float, dpi: float
+def animated(
+    figure: Figure, draw: Any, count: int, output: str | os.PathLike[str] | None, *, fps: float, dpi: float
 ) -> FuncAnimation:
-    """The animation, written to ``output`` if that is given; PictureError where it cannot be."""
+    """An animation of ``count`` frames, written to ``output`` if that is given; PictureError where it cannot be."""
+    figure.set_dpi(dpi)
+    animation = FuncAnimation(figure, draw, frames=count, interval=1000.0 / fps, blit=False)
     if output is not None:
         with _said(output):
             atomic.write_bytes(output, rendered(animation, Path(output).suffix, fps=fps, dpi=dpi))

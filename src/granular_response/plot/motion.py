@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from ..state import Box
 from . import network, style
-from .animation import check_target, written
+from .animation import animated, check_target
 from .pictures import PictureError, _new_figure, check_positive
 
 #: Inches for the line of text above the picture; height over width up to which that is as wide as a page.
@@ -64,7 +64,6 @@ def motion(
         wide = min(width, width * _TALLEST * (box.width + 2.0) / (top + 1.0))
         high = wide * (top + 1.0) / (box.width + 2.0)
         figure.set_size_inches(wide, high + _ABOVE)
-        figure.set_dpi(dpi)
         axes = figure.add_axes((0.0, 0.0, 1.0, high / (high + _ABOVE)))
 
     def draw(frame: int) -> list[Any]:
@@ -82,5 +81,4 @@ def motion(
             axes.set_title(f"t = {time:.4g}, fastest disk {fast:.3g}", pad=2.0)
         return []
 
-    animation = FuncAnimation(figure, draw, frames=moved.sizes["time"], interval=1000.0 / fps, blit=False)
-    return written(animation, output, fps=fps, dpi=dpi)
+    return animated(figure, draw, moved.sizes["time"], output, fps=fps, dpi=dpi)

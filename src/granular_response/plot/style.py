@@ -115,50 +115,10 @@ PAPER, PAPER_BAND = "#9A7B4F", "#F1E9DA"
 #: What others published, as somebody read it off their picture.
 DIGITISED = "#8C8C8C"
 
-#: Of both axes.
-_TICKS: dict[str, Any] = {
-    "direction": "in",
-    "labelsize": 8,
-    "major.size": 3.0,
-    "major.width": 0.6,
-    "minor.size": 1.6,
-    "minor.width": 0.4,
-}
+_SHEET: Any = mpl.rc_params_from_file(Path(__file__).with_suffix(".mplstyle"), use_default_template=False)
 RC: dict[str, Any] = {
-    "axes.axisbelow": True,
-    "axes.formatter.use_mathtext": True,
-    "axes.grid": False,
-    "axes.labelpad": 3.0,
-    "axes.labelsize": 9,
-    "axes.linewidth": 0.6,
+    **_SHEET,
     "axes.prop_cycle": cycler(color=COLOURS) + cycler(linestyle=LINE_STYLES),
-    "axes.titlesize": 9,
-    "figure.constrained_layout.h_pad": 0.03,
-    "figure.constrained_layout.w_pad": 0.03,
-    "figure.dpi": 100,
-    "figure.facecolor": "white",
-    "font.family": "STIXGeneral",
-    "font.size": 9,
-    "image.cmap": SEQUENTIAL,
-    "legend.borderaxespad": 0.6,
-    "legend.fontsize": 8,
-    "legend.frameon": False,
-    "legend.handlelength": 2.2,
-    "legend.labelspacing": 0.3,
-    "legend.title_fontsize": 8,
-    "lines.linewidth": 1.2,
-    "lines.markersize": 3.5,
-    "mathtext.fontset": "stix",
-    "patch.linewidth": 0.5,
-    "pdf.compression": 6,
-    "pdf.fonttype": 42,
-    "savefig.bbox": None,
-    "savefig.dpi": 200,
-    "svg.fonttype": "path",  # letters as drawn, whatever fonts the reader has
-    "svg.hashsalt": "granular_response",
-    "xtick.top": True,
-    "ytick.right": True,
-    **{f"{axis}tick.{key}": value for axis in "xy" for key, value in _TICKS.items()},
 }
 #: Settings of the program rather than of a picture; resetting some of them warns or switches the backend.
 _NOT_STYLE = ("animation", "backend", "backend_fallback", "docstring", "interactive", "keymap", "macosx", "timezone",

@@ -7,8 +7,10 @@ of more than 64 bits are rounded. A set has no order, so it is no list: it stays
 
 from __future__ import annotations
 
+import math
 from array import array
 from collections.abc import Set as AnySet
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -50,3 +52,22 @@ def _number(value: np.generic) -> Any:
 def unordered(value: Any) -> bool:
     """Whether a value has no order, so that it cannot be a list."""
     return isinstance(value, AnySet)
+
+
+def finite_numbers(value: Any) -> list[float] | None:
+    """The numbers of a list or of a (n,) array; None for anything that is no list of finite numbers.
+
+    Examples
+    --------
+    >>> from granular_response.scene.given import finite_numbers
+    >>> finite_numbers(np.array([1, 3])), finite_numbers([1.0, float("nan")]), finite_numbers({1.0}), finite_numbers(2)
+    ([1.0, 3.0], None, None, None)
+    """
+    listed = plain(value)
+    if not isinstance(listed, list) or any(isinstance(one, bool) or not isinstance(one, Real) for one in listed):
+        return None
+    try:
+        found = [float(one) for one in listed]
+    except OverflowError:
+        return None
+    return found if all(map(math.isfinite, found)) else None

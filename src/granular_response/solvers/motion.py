@@ -10,14 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from numbers import Real
 from typing import Any
 
 import numpy as np
 
 from ..scene import Scene, SceneError
 from ..scene.errors import show
-from ..scene.given import plain
+from ..scene.given import finite_numbers
 from ..state import FloatArray, State
 from .dynamics import Dynamics, DynamicsError, Ramp
 from .problem import Problem
@@ -137,11 +136,8 @@ def _reached(dynamics: Dynamics, rest: float) -> State:
 
 def checked_times(times: Any) -> FloatArray:
     """(t,) times; SceneError unless they are finite numbers that grow, from 0 on."""
-    listed = plain(times)
-    given: list[Any] = listed if isinstance(listed, list) else [None]
-    numbers = all(isinstance(one, Real) and not isinstance(one, bool) for one in given)
-    found = np.array([float(one) for one in given]) if numbers and given else np.array([np.nan])
-    if not np.isfinite(found).all():
+    found = np.array(finite_numbers(times) or [])
+    if not found.size:
         raise SceneError(f"times = {' '.join(show(times).split())}: must be a list of one or more finite numbers")
     if found[0] < 0.0 or (np.diff(found) <= 0.0).any():
         bad = int(np.argmax(np.diff(found, prepend=-math.ulp(0.0)) <= 0.0)) if found[0] >= 0.0 else 0

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,8 @@ import numpy as np
 from ..contact import Linear
 from ..errors import EquilibriumError
 from ..scene import Scene, SceneError
-from ..scene.given import plain, unordered
+from ..scene.errors import show
+from ..scene.given import finite_numbers
 from ..state import FloatArray, State
 from .choice import Choice, idle_settings
 from .dynamics import Dynamics, Stop, relax
@@ -241,19 +241,9 @@ def continue_solution(
 
 def load_programme(factors: Any) -> list[float]:
     """A load programme as numbers; raises ``SceneError`` when it is anything but one or more that are finite."""
-    ordered = np.iterable(factors) and not isinstance(factors, (str, bytes, Mapping)) and not unordered(factors)
-    given = plain(list(factors) if ordered and not hasattr(factors, "__array__") else factors)
-    given = given if ordered and isinstance(given, list) else [None]
-    if not all(isinstance(factor, Real) and not isinstance(factor, (bool, np.bool_)) for factor in given):
-        raise SceneError(f"load factors {factors!r}: must be a list of one or more numbers")
-    try:
-        programme = [float(factor) for factor in given]
-    except OverflowError:
-        raise SceneError(f"load factors {factors!r:.60}: must be finite") from None
+    programme = finite_numbers(factors)
     if not programme:
-        raise SceneError("load factors: none given, must be one or more numbers")
-    if not all(np.isfinite(programme)):
-        raise SceneError(f"load factors {', '.join(f'{factor:g}' for factor in programme)}: must be finite")
+        raise SceneError(f"load factors {show(factors)}: must be a list of one or more finite numbers")
     return programme
 
 

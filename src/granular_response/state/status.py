@@ -1,7 +1,5 @@
 """What a candidate contact does: the codes that kernels, states, datasets and pictures share."""
 
-from __future__ import annotations
-
 #: Part of its limit by which a force may be below it and count as at the limit.
 AT_LIMIT = 1e-9
 

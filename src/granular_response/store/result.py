@@ -47,6 +47,7 @@ from .variables import (
     RADII,
     REACHED,
     ROLLING,
+    VARIABLES,
     WEIGHTS,
     described,
     flags,
@@ -97,7 +98,7 @@ def _states(states: Sequence[State], along: str) -> dict[str, xr.Variable]:
     for prefix, (first, second) in _CANDIDATES.items():
         contacts: list[Contacts] = [getattr(state, _LISTS[prefix]) for state in states]
         data |= {first: described(first, contacts[0].first), second: described(second, contacts[0].second)}
-        for name in (*CONTACT, *(ROLLING if any(one.resists_rolling for one in contacts) else {})):
+        for name in (*CONTACT, *(ROLLING if any(one.resists_rolling for one in contacts) else ())):
             values = [getattr(one, name) for one in contacts]
             data[f"{prefix}_{name}"] = described(f"{prefix}_{name}", values, along=along)
     data["load_factor"] = described("state_load_factor", [state.load_factor for state in states], along=along)
@@ -166,7 +167,7 @@ def chosen_states(dataset: xr.Dataset, indices: Sequence[int]) -> xr.Dataset:
 def _reached(states: Sequence[State]) -> dict[str, xr.Variable]:
     """How the states were reached, along ``state``; a record that none of them has is left out."""
     data = {}
-    for name, (text, *_) in REACHED.items():
+    for name in REACHED:
         known = [getattr(state.reached, name) for state in states]
         if name == "method":
             data["reached_method"] = described("reached_method", [one or "" for one in known])
@@ -174,7 +175,9 @@ def _reached(states: Sequence[State]) -> dict[str, xr.Variable]:
             whole = all(one is None or isinstance(one, (bool, int, np.integer)) for one in known)
             missing, kind, said = (NOT_DETERMINED, np.int64, " (-1: not known)") if whole else (np.nan, float, "")
             values = np.array([missing if one is None else one for one in known], kind)
-            data[f"reached_{name}"] = described(f"reached_{name}", values, text=text + said)
+            data[f"reached_{name}"] = described(
+                f"reached_{name}", values, text=VARIABLES[f"reached_{name}"].text + said
+            )
     return data
 
 

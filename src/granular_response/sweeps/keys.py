@@ -54,7 +54,8 @@ def sources(*parts: str) -> str:
     that or not: ``linalg``, ``state/box.py``, ``other``, ``other/tasks.py``.
     """
     files = sorted({file for part in parts or ("",) for file in _files(part)})
-    versions = [metadata.version(package) for package in ("numba", "numpy", "scipy")]
+    # datasets are kept as xarray pickles them
+    versions = [metadata.version(package) for package in ("numba", "numpy", "scipy", "xarray")]
     return key([(name, read_bytes(path)) for name, path in files], versions)
 
 

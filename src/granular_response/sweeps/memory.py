@@ -2,7 +2,8 @@
 
 One file for each value, ``FOLDER/SOURCES/NAME.kept``: ``SOURCES`` is the key of the code that made it and ``NAME`` that
 of what it was made from (see :mod:`.keys`), so nothing is found that this code would not make of this content. Files
-hold no code (see :mod:`.encoding`) and are sealed: what is damaged or stands under another name counts as absent.
+are sealed pickles: what is damaged or stands under another name counts as absent. A pickle can hold code, so a folder
+is one that nobody else can write to.
 
 A memory is optional. What cannot be written or is of a kind that is not kept costs one warning, never the result.
 """
@@ -12,6 +13,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
+import pickle
 import re
 import shutil
 import time
@@ -22,7 +24,6 @@ from typing import Any, TypeVar
 
 from ..inputs import read_bytes
 from ..store import atomic
-from .encoding import NotDecodable, NotEncodable, decode, encode
 from .keys import Indistinct, key, sources
 
 Value = TypeVar("Value")
@@ -42,20 +43,14 @@ class MemoryWarning(UserWarning):
 class Memory:
     """Values that the present sources make, in a folder, which is made with the first value.
 
-    ``parts`` are the sources that make the values, as :func:`.keys.sources` takes them; all if none is named. Code of
-    ``packages`` makes the values too. Values may be of their classes, and of those of one more ``module``.
+    ``parts`` are the sources that make the values, as :func:`.keys.sources` takes them; all, with those of
+    ``packages``, if none is named.
     """
 
-    def __init__(
-        self,
-        folder: str | os.PathLike[str],
-        parts: Sequence[str] = (),
-        packages: Sequence[str] = (),
-        module: str = "granular_response",
-    ) -> None:
+    def __init__(self, folder: str | os.PathLike[str], parts: Sequence[str] = (), packages: Sequence[str] = ()) -> None:
         self.folder = Path(folder).absolute()  # also where it is used: in a worker process
         self.shelf = self.folder / sources(*(parts or ("", *packages)))
-        self.packages, self.modules = packages, (module, *packages)
+        self.packages = packages
 
     def name(self, *values: Any) -> str | None:
         """The key of values; None, with a MemoryWarning, where they cannot be told from others."""
@@ -80,22 +75,22 @@ class Memory:
             return MISSING
         try:
             data = read_bytes(self._path(name))
-            if data[-32:] != _seal(name, data[:-32]):
-                return MISSING
-            return decode(data[:-32], self.modules)
-        except (OSError, NotDecodable):
+            return pickle.loads(data[:-32]) if data[-32:] == _seal(name, data[:-32]) else MISSING
+        except Exception:  # there is none, or its classes are no longer there
             return MISSING
 
     def save(self, name: str, value: Any) -> None:
         """Keep a value, unless it cannot be kept: then a MemoryWarning says why, once for each reason."""
         try:
-            data = encode(value, self.modules)
+            data = pickle.dumps(value, protocol=5)
+        except Exception as error:  # whatever the methods of a value raise
+            warn(f"{self.folder}: a value is not kept: {error}")
+            return
+        try:
             if not self.shelf.is_dir():
                 self._clear()
                 self.shelf.mkdir(parents=True, exist_ok=True)
             atomic.write_bytes(self._path(name), data + _seal(name, data))
-        except NotEncodable as error:
-            warn(f"{self.folder}: {error}")
         except OSError as error:
             warn(f"{self.folder}: nothing more is kept there: {error.strerror or error}")
 

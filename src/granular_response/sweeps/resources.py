@@ -33,7 +33,7 @@ class Resources:
     progress: Progress | None = None  #: who is told how far each sweep is
     checkpoint: Path | None = None  #: folder for the results of finished tasks
     rest_states: Path | None = None  #: folder for states at rest
-    packages: tuple[str, ...] = ()  #: whose code makes what is kept, and whose classes hold it, beside this one
+    packages: tuple[str, ...] = ()  #: whose code makes what is kept, beside this one
 
 
 _CURRENT: ContextVar[Resources] = ContextVar("resources", default=Resources())  # noqa: B039, it is frozen

@@ -72,11 +72,8 @@ def map_tasks(
     what
         What the tasks are, for the progress line.
 
-    Raises
-    ------
-    SweepError
-        If a task raises (the message names its item), if workers keep dying at one task, if something cannot be sent
-        to a worker or back, or if the cluster cannot be reached or is lost.
+    Raises SweepError if a task raises (the message names its item), if workers keep dying at one task, if something
+    cannot be sent to a worker or back, or if the cluster cannot be reached or is lost.
 
     Examples
     --------
@@ -90,7 +87,7 @@ def map_tasks(
     items = list(items)
     scheduler = scheduler or given.scheduler or os.environ.get(SCHEDULER_VARIABLE) or None
     folder = checkpoint or given.checkpoint
-    memory = Memory(folder, parts, given.packages, _module(function)) if folder and items else None
+    memory = Memory(folder, parts, given.packages) if folder and items else None
     names = [memory.name(function, item) if memory else None for item in items]
     results: list[Any] = [memory.load(name) if memory else MISSING for name in names]
     todo = [index for index, result in enumerate(results) if result is MISSING]

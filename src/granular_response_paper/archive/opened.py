@@ -56,13 +56,9 @@ def listed(source: str = ".") -> list[Entry]:
 def load(path: str, source: str = ".") -> dict[str, xr.Dataset]:
     """The datasets of one file by name, in memory; ``path`` as :func:`listed` has it, ``source`` as there.
 
-    Raises
-    ------
-    ArchiveError
-        If the source is no checkout or archive of the project or cannot be downloaded, or the file is not among its
-        datasets or not the one of ``dvc.lock``.
-    granular_response.store.files.StoreError
-        If the file cannot be read.
+    Raises ArchiveError if the source is no checkout or archive of the project or cannot be downloaded, or the file is
+    not among its datasets or not the one of ``dvc.lock``; granular_response.store.files.StoreError if the file cannot
+    be read.
 
     Examples
     --------

@@ -53,7 +53,8 @@ def quoted(found: dict[str, Any]) -> str:
     lines = []
     for part, text in PARTS.items():
         number = found["counts"][part]
-        parts = [f"{number[key(kind)]} {kind}" for kind in MEANINGS if number[key(kind)]]
+        named = {"derivation": "derivations"} if number["derivation"] > 1 else {}
+        parts = [f"{number[key(kind)]} {named.get(kind, kind)}" for kind in MEANINGS if number[key(kind)]]
         if parts:
             lines.append(f"Of {sum(number.values())} statements on {text}: {', '.join(parts)}.")
     own = [row for row in found["table"] if row["part"] != "extension"]

@@ -8,11 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import xarray as xr
+
 from granular_response.scene import SceneError, text
 from granular_response.store import atomic
 from granular_response.store import files as store
 from granular_response_paper import TOO_LITTLE, captions
-from granular_response_paper.pipeline import figures_folder, stored
+from granular_response_paper.pipeline import data_path, figures_folder
 from granular_response_paper.registry import GroupError, group_member
 
 
@@ -34,7 +36,7 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None, forma
     wanted = tuple(dict.fromkeys(("png", *formats)))
     if unknown := set(wanted) - set(style.FORMATS):
         raise GroupError(f"formats: {', '.join(sorted(unknown))} is unknown, must be among {', '.join(style.FORMATS)}")
-    path, datasets = stored.datasets(group, data)
+    path, datasets = stored_datasets(group, data)
     described = _parameters(group, path)
     target = folder or figures_folder(group)
     paths: list[Path] = []
@@ -68,3 +70,17 @@ def _parameters(group: str, path: Path) -> Any:
         return kind(**text.read(store.read_attributes(path).get("parameters", "{}")))
     except SceneError as error:
         raise GroupError(f"{path}: was made with parameters that {group} does not have now: {error}") from None
+
+
+def stored_datasets(group: str, path: Path | None = None) -> tuple[Path, dict[str, xr.Dataset]]:
+    """The file with a group's datasets, by default the one where they are kept, and what it holds.
+
+    Raises GroupError if they are those of another group, StoreError if they cannot be read.
+    """
+    path = path or data_path(group)
+    found = store.read(path)
+    stored = store.read_attributes(path).get("group")
+    if stored != group:
+        what = f"those of {stored}" if stored else "not those of a figure group"
+        raise GroupError(f"{path}: holds datasets of another kind, {what}, must be those of {group}")
+    return path, found

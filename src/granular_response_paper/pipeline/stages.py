@@ -69,8 +69,12 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
     def code(modules: Iterable[str], own: Iterable[str] = ()) -> list[str]:
         """Files of modules as the pipeline names them; what stands inside a figure group is ``own``."""
         files = {path for name in closure(modules) if (path := file_of(name))}
-        files = {path for path in files if collection.path not in path.parent.parents}
-        return sorted([*(Path(os.path.relpath(path, base)).as_posix() for path in _folded(files)), *own])
+        named = _folded({path for path in files if collection.path not in path.parent.parents})
+        # the data of a module stand beside it under its name
+        named += [
+            data for path in named if path.is_file() for data in path.parent.glob(f"{path.stem}.*") if data != path
+        ]
+        return sorted([*(Path(os.path.relpath(path, base)).as_posix() for path in named), *own])
 
     simulated = [name for group in groups for name in starts(collection, "simulate", group)]
     drawn = [name for group in groups for name in starts(collection, "draw", group)]

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib import resources
 from typing import Any
 
 import xarray as xr
+
+from granular_response.scene import text
 
 from . import markdown as tables
 
@@ -22,22 +25,8 @@ class Reading:
 
 #: By the variant that tries the other option; the order is that of the table.
 READINGS: Mapping[str, Reading] = {
-    "slow_gravity": Reading("gravity", "instantaneous", "grows over 100 sqrt(R/g)"),
-    "sudden_load": Reading("load", "ramp of 20 sqrt(R/g)", "instantaneous"),
-    "ramp_80": Reading("load", "ramp of 20 sqrt(R/g)", "ramp of 80 sqrt(R/g)"),
-    "path": Reading("load", "ramp of 20 sqrt(R/g)", "quasi-static path"),
-    "no_static_finish": Reading("stopping criterion", "1e-13 per disk, then Newton", "1e-13 alone"),
-    "stop_1e-9": Reading("stopping criterion", "1e-13 per disk, then Newton", "1e-9 alone"),
-    "damping_halved": Reading("dashpots", "sqrt(k)", "half of it"),
-    "no_tensile_dashpot": Reading("tension of an opening contact", "allowed, as in eq. (2)", "cut off at zero"),
-    "literal_friction": Reading("Coulomb limit under load", "force cut, spring follows", "as printed"),
-    "unloading_friction": Reading(
-        "Coulomb limit under load", "force cut, spring follows", "spring frozen, free to unload"
-    ),
-    "hertz": Reading("normal force", "linear in the overlap", "power 3/2, matched at the mean contact force"),
-    "time_step_halved": Reading("time step", "5e-4 sqrt(R/g)", "2.5e-4 sqrt(R/g)"),
-    "verlet": Reading("integrator", "Beeman", "velocity Verlet"),
-    "gear": Reading("integrator", "Beeman", "Gear, step 2.4e-4 sqrt(R/g)"),
+    variant: Reading(**said)
+    for variant, said in text.read(resources.files(__package__).joinpath("readings.yaml").read_text("utf-8")).items()
 }
 
 

@@ -54,7 +54,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     slabs, powers = datasets["slabs"], datasets["powers"]
     drawn = {
         "crossover_scaling": of_layers(powers),

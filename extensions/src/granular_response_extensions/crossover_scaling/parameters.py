@@ -12,7 +12,8 @@ from granular_response.scene import Scene
 from granular_response.scene.base import Description, Positive, Ratio, Sides, allowed
 from granular_response.scene.errors import Problem
 from granular_response.state import FloatArray
-from granular_response_paper.parameters import SIZE, UNIT_LOAD, Growing, SurveyedGroup, growing, over, some
+from granular_response_extensions.parameters import SurveyedGroup
+from granular_response_paper.parameters import SIZE, UNIT_LOAD, Growing, growing, over, some
 
 #: Rest without friction is found by statics at every size, and is the same preparation for all.
 _SLAB = UNIT_LOAD.updated({"preparation.gravity": "frictionless", "contact.stiffness_ratio": 0.8})
@@ -97,8 +98,6 @@ def _different_names(series: tuple[Series, ...]) -> tuple[Series, ...]:
 
 
 class Parameters(SurveyedGroup):
-    """Section ``crossover_scaling``."""
-
     scene: Annotated[Scene, over(_SLAB, *SIZE, *_DECIDED)] = Field(
         _SLAB, description="Base scene; walls are twice as stiff as the disks."
     )

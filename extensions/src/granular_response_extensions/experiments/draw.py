@@ -51,7 +51,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     p = parameters
     said = of_scene(p.base, polydispersity=None, packing=None, width=p.width)
     sizes = ", ".join(f"{name}: {packing.build().n} disks" for name, packing in p.packings.items())

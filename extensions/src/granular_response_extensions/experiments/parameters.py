@@ -32,8 +32,6 @@ class Case(Description):
 
 
 class Parameters(SceneGroup):
-    """Section ``experiments``."""
-
     scene: Annotated[Scene, over(UNIT_LOAD, "packing", "loads")] = Field(description="Material and preparation.")
     packings: dict[str, Packing]
     cases: Annotated[tuple[Case, ...], AfterValidator(some)]

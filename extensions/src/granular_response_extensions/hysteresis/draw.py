@@ -41,7 +41,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     curves = datasets["curves"]
     cases, one = looped(curves["polydispersity"].values, curves["friction"].values)
     lattices = [parameters.cases[case] for case in cases]

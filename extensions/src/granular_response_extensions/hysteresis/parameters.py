@@ -9,7 +9,8 @@ from pydantic import AfterValidator, Field
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Part, Positive, Ratio
 from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Growing, SurveyedGroup, over, some
+from granular_response_extensions.parameters import SurveyedGroup
+from granular_response_paper.parameters import UNIT_LOAD, Growing, over, some
 
 #: Keys of the scenes that cases decide.
 OF_CASES = ("packing.polydispersity", "packing.realization", "contact.friction", "loads")
@@ -35,8 +36,6 @@ def _once(cases: tuple[Case, ...]) -> tuple[Case, ...]:
 
 
 class Parameters(SurveyedGroup):
-    """Section ``hysteresis``."""
-
     scene: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of the lattices.")
     disordered: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of all others.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some), AfterValidator(_once)] = Field(description="Materials.")

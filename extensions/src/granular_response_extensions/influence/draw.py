@@ -30,7 +30,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     maps = [case for case in parameters.cases if case.polydispersity == parameters.cases[-1].polydispersity]
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None)
     return of_group(

@@ -21,8 +21,6 @@ class Case(Description):
 
 
 class Parameters(SceneGroup):
-    """Section ``influence``."""
-
     scene: Annotated[Scene, over(UNIT_LOAD, *MATERIAL, "loads")] = Field(description="Base scene.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials.")
     separations: Counts = Field(description="Of the two halves of a load from its disk, in places of the row.")

@@ -41,7 +41,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     packing = f"slabs with periodic sides, {parameters.disks_per_layer} disks in a row for each layer"
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None, packing=packing)
     loaded = of_scene(parameters.lattice, friction=[slab.friction for slab in parameters.loaded.slabs])

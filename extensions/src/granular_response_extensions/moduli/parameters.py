@@ -9,7 +9,8 @@ from pydantic import AfterValidator, Field, model_validator
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio, allowed
 from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Growing, SurveyedGroup, over, some
+from granular_response_extensions.parameters import SurveyedGroup
+from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Growing, over, some
 
 Rows = Annotated[int, Field(strict=True, ge=5), allowed("must be a whole number from 5 on")]
 Margin = Annotated[float, Field(strict=True, ge=0, lt=0.4), allowed("must be from 0 to below 0.4")]
@@ -71,8 +72,6 @@ class Loaded(Description):
 
 
 class Parameters(SurveyedGroup):
-    """Section ``moduli``."""
-
     scene: Annotated[Scene, over(UNIT_LOAD, *SIZE, *MATERIAL, "packing.sides", "packing.lattice_constant", "loads")] = (
         Field(description="Base scene of the packings.")
     )

@@ -81,7 +81,6 @@ def _against_friction(axes: Axes, values: xr.DataArray, **look: Any) -> None:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     said = of_scene(
         parameters.base, friction=None, wall_friction=None, polydispersity=None,
         realizations=parameters.realizations, force=parameters.force,

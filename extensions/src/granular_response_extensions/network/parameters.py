@@ -14,8 +14,6 @@ VERTICAL_MARGIN = 4.0
 
 
 class Parameters(EnsembleGroup):
-    """Section ``network``."""
-
     polydispersities: Spreads = Field(description="delta.")
     frictions: Coefficients = Field(description="Between disks, of floor and walls.")
     realizations: Count = Field(description="Of each polydispersity and friction.")

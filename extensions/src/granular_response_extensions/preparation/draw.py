@@ -113,7 +113,6 @@ def _against_mobilized(data: xr.Dataset) -> Figure:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     frictions = sorted({part.friction for part in parameters.parts})
     said = of_scene(parameters.scene, force=parameters.forces, friction=frictions, wall_friction=None)
     disorder = sorted({part.polydispersity for part in parameters.parts if part.polydispersity})

@@ -58,8 +58,6 @@ class Part(Description):
 
 
 class Parameters(SceneGroup):
-    """Section ``preparation``."""
-
     scene: Annotated[
         Scene, over(UNIT_LOAD, "packing.polydispersity", "contact.friction", "wall.friction", "preparation", "loads")
     ] = UNIT_LOAD

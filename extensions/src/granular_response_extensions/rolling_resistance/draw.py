@@ -44,7 +44,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     p = parameters
     said = of_scene(p.scene, friction=[slab.friction for slab in p.slabs])
     layers = ", ".join(map(str, p.layers))

@@ -23,8 +23,6 @@ class Slab(Description):
 
 
 class Parameters(SceneGroup):
-    """Section ``rolling_resistance``."""
-
     pile: Annotated[Scene, over(_PILE, "packing", "loads", "preparation", *_ROLLING)] = Field(
         description="The pile with support."
     )

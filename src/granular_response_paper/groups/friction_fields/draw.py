@@ -42,7 +42,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     scene, width = parameters.scene, parameters.stress_width
     frictions, profiles = list(parameters.frictions), list(parameters.profiles.frictions)
     given = of_scene(scene, force=parameters.force, frictions=frictions)

@@ -21,8 +21,6 @@ class Profiles(Description):
 
 
 class Parameters(SceneGroup):
-    """Section ``friction_fields``."""
-
     scene: Annotated[Scene, over(UNIT_LOAD, "contact.friction", "wall.friction", "loads")] = UNIT_LOAD
     frictions: Coefficients = Field(description="Of the walls too.")
     force: Positive = Field(description="In mean disk weights.")

@@ -53,8 +53,6 @@ class EqualRows(Description):
 
 
 class Parameters(SceneGroup):
-    """Section ``friction_linear_range``."""
-
     scene: Annotated[Scene, over(UNIT_LOAD, "contact.friction", "loads")] = UNIT_LOAD
     frictions: Coefficients = Field(description="Of Fig. 6.")
     forces: Growing = Field(description="Of Fig. 6, in mean disk weights.")

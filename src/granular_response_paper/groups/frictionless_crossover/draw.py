@@ -60,8 +60,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
-
     def drawn(wanted: tuple[float, ...], dataset: str) -> list[float]:
         stored = datasets[dataset]["force"].values
         return stored[nearest(stored, wanted)].tolist()

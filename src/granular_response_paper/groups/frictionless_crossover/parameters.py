@@ -20,8 +20,6 @@ Shapes = Annotated[
 
 
 class Parameters(SceneGroup):
-    """Section ``frictionless_crossover``."""
-
     scene: Annotated[
         Scene, over(_FRICTIONLESS, "contact.friction", "wall.friction", "wall.normal_stiffness", "loads")
     ] = Field(description="The slab whose states are kept; walls are twice as stiff as the disks.")

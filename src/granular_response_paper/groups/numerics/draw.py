@@ -35,7 +35,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     return of_group("numerics", {"numerics": of_scene(parameters.scene, friction=None)}, p=parameters)
 
 

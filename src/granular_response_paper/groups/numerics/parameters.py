@@ -54,8 +54,6 @@ class Disorder(Description):
 
 
 class Parameters(Description):
-    """Section ``numerics``."""
-
     scene: Annotated[Scene, over(Scene(), "contact.friction", "loads")] = Scene()
     force: Positive = Field(description="In mean disk weights.")
     frictions: Coefficients = Field(description="Of stop_energies.")

@@ -43,7 +43,6 @@ def animations(datasets: Mapping[str, xr.Dataset]) -> dict[str, FuncAnimation]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     forces, experiment = parameters.forces, parameters.experiment
     given = of_scene(parameters.scene, friction=parameters.frictions)
     return of_group(

@@ -21,8 +21,6 @@ class Experiment(Description):
 
 
 class Parameters(SceneGroup):
-    """Section ``overview``."""
-
     scene: Annotated[
         Scene, over(UNIT_LOAD, "packing.polydispersity", "packing.lattice_constant", "contact.friction", "loads")
     ] = Field(description="Base scene; the walls are those of the ordered slabs.")

@@ -66,7 +66,6 @@ def _disorders(data: xr.Dataset) -> list[float]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     crossovers = _usual(datasets["crossovers"])
     frictions, deltas = (different(crossovers[name]) for name in ("friction", "polydispersity"))
     realizations = different(crossovers["realizations"][crossovers["polydispersity"].values > 0.0])

@@ -20,8 +20,6 @@ class Compared(Description):
 
 
 class Parameters(Description):
-    """Section ``phase_diagram``."""
-
     survey: Path = Field(description="Folder with the datasets of the survey.")
     blocks: Names = Field(description="Blocks of the survey with one case for each point of the diagram.")
     linear_range: str = Field(description="Block of the survey with small forces and smooth walls.")

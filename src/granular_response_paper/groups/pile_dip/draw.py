@@ -41,7 +41,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     said = {**of_scene(parameters.scene), "width": parameters.stress_width}
     opened = datasets["piles"]["central_open_contacts"].sel(case=DRAWN).values.astype(int).tolist()
     return of_group("pile_dip", {"fig17_pile": said, "fig17_pile_profiles": said}, p=parameters, open=opened)

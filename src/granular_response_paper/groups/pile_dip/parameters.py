@@ -15,8 +15,6 @@ _PILE = Scene(packing=PilePacking(), loads=())
 
 
 class Parameters(SceneGroup):
-    """Section ``pile_dip``."""
-
     scene: Annotated[Scene, over(_PILE, "loads")] = Field(default=_PILE, description="The pile with friction.")
     stress_width: Positive = Field(description="w of the Gaussian, in radii.")
     stress_spacing: Positive = Field(description="Of the grid, in radii.")

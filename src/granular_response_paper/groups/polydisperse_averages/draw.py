@@ -73,7 +73,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     scene, averages = parameters.scene, datasets["averages"]
     picture, single, linear = parameters.forces_picture, parameters.individual, parameters.linear_range
     disordered = sorted({case.polydispersity for case in parameters.columns if case.polydispersity})

@@ -53,8 +53,6 @@ class ForcesPicture(Description):
 
 
 class Parameters(EnsembleGroup):
-    """Section ``polydisperse_averages``."""
-
     realizations: Count = Field(description="Of a disordered case; a lattice needs one.")
     cases: Annotated[tuple[Cases, ...], AfterValidator(some)]
     widths: Positives = Field(description="w of the smoothing Gaussian, in radii.")

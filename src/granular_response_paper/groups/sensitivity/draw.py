@@ -52,6 +52,5 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     said = of_scene(parameters.scene, force=parameters.force, friction=parameters.friction)
     return of_group("sensitivity", {"sensitivity": said})

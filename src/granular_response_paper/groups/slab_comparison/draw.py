@@ -41,7 +41,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     cases = parameters.cases
     layers = sorted({n for case in cases for n in case.layers})
     said = of_scene(

@@ -30,8 +30,6 @@ class Case(Description):
 
 
 class Parameters(SceneGroup):
-    """Section ``slab_comparison``."""
-
     scene: Annotated[
         Scene, over(UNIT_LOAD, *SIZE, "contact.friction", "wall.friction", "preparation.gravity", "loads")
     ] = Field(description="Base scene; contact.stiffness_ratio is that of packings with friction.")

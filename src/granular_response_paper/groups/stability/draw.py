@@ -42,7 +42,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     axes = sum(f"time_step_{name}" in datasets for name in AXES)
     return of_group("stability", {"stability_steps": {}}, p=parameters, last=chr(ord("a") + axes - 1))
 

@@ -30,7 +30,5 @@ class TimeSteps(Description):
 
 
 class Parameters(Description):
-    """Section ``stability``."""
-
     seed: Index = Field(description="Of everything random.")
     time_steps: TimeSteps

@@ -73,7 +73,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     events = datasets["events"]
     said = of_scene(parameters.scene, force=parameters.force, stiffness_ratio=parameters.ratios)
     return of_group(

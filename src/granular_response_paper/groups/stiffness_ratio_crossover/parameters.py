@@ -12,8 +12,6 @@ from granular_response_paper.parameters import UNIT_LOAD, SceneGroup, growing, o
 
 
 class Parameters(SceneGroup):
-    """Section ``stiffness_ratio_crossover``."""
-
     scene: Annotated[Scene, over(UNIT_LOAD, "contact.stiffness_ratio", "loads")] = UNIT_LOAD
     force: Positive = Field(description="In mean disk weights.")
     ratios: Annotated[

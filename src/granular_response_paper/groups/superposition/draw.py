@@ -36,7 +36,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     diameters = [2 * offset for offset in parameters.offsets]
     scene, distance = parameters.scene, [2.0 * d for d in diameters]
     panels = lettered(f"d = {d:g} diameters" for d in diameters)

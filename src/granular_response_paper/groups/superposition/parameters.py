@@ -18,8 +18,6 @@ FORCES = {"fig23_superposition": 0.2, "fig24_superposition": 1.0}
 
 
 class Parameters(SceneGroup):
-    """Section ``superposition``."""
-
     scene: Annotated[Scene, over(_UNLOADED, "packing.realization", "loads")] = _UNLOADED
     realizations: Count = Field(description="Of the radii.")
     pair_realizations: Count = Field(description="Those of them with two loads.")

@@ -58,7 +58,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     steps = {step for protocol in parameters.protocols for step in protocol.time_steps}
     contacts = (
         " (e), (f) Contact network at the last symmetric and the first asymmetric force, ramp of "

@@ -54,6 +54,5 @@ def _rays(axes: Axes, angle: float) -> None:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     poisson = float(datasets["predictions"]["poisson_ratio"])
     return of_group("theory", {"fig01_predictions": {}}, p=parameters, poisson=poisson)

@@ -18,8 +18,6 @@ def _odd(value: int) -> int:
 
 
 class Parameters(Description):
-    """Section ``theory``."""
-
     stiffness_ratio: Ratio = Field(description="k_T/k_N of the isotropic lattice; fixes its Poisson ratio.")
     ray_angle: Annotated[float, Field(strict=True, ge=0.0, lt=90.0), allowed("must be degrees from 0 to below 90")] = (
         Field(description="Angle of the rays to the vertical, in degrees.")

@@ -25,7 +25,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
-    """By file stem."""
     given = of_scene(parameters.scene, force=parameters.force, angle=parameters.angle, torque=parameters.torques)
     return of_group("torque", {"fig18_torque": given}, last=chr(ord("a") - 1 + len(parameters.torques)))
 

@@ -19,8 +19,6 @@ def _begins_with_0(values: tuple[float, ...]) -> tuple[float, ...]:
 
 
 class Parameters(SceneGroup):
-    """Section ``torque``."""
-
     scene: Annotated[Scene, over(UNIT_LOAD, "loads")] = UNIT_LOAD
     force: Positive = Field(description="In mean disk weights.")
     angle: Finite = Field(description="Of the force below the horizontal, to the right, in degrees.")

@@ -54,9 +54,7 @@ class Outcome:
     )
     #: nan above for what was not seen
     brackets: FloatArray = column(f"forces {WEIGHTS} between which: {'; '.join(EVENTS.values())}", "event", "bracket")
-    by_motion: float = column(
-        "steps of the force in which the motion of the disks had a part; nan: not recorded", later=True
-    )
+    by_motion: float = column("steps of the force in which the motion of the disks had a part; nan: not recorded")
     force: FloatArray = column(f"applied force {WEIGHTS}", "line")
     dip: FloatArray = column(columns(Scalars)["central_dip"].long_name, "line")
     depth: FloatArray = column(f"depth of the region of opened contacts below the loaded disk {RADII}", "line")

@@ -16,13 +16,13 @@ import xarray as xr
 
 from granular_response.observe.difference import wall_force_difference
 from granular_response.observe.stress import line_forces, line_stress, load_forces
-from granular_response.observe.widths import FITS, lengths, powers
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR, FloatArray
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import RADII
 from granular_response_extensions.experiments import LATTICE
 from granular_response_extensions.experiments.parameters import Case, Parameters
+from granular_response_extensions.experiments.simulate.widths import FITS, lengths, powers
 from granular_response_paper.datasets import labelled, pictured
 from granular_response_paper.records import axes, column, labels, record, table
 from granular_response_paper.slab_response import LoadPath

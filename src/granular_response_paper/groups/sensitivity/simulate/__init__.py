@@ -10,13 +10,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from importlib import resources
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from granular_response.observe.floor import floor_disks, floor_response
-from granular_response.scene import Scene
+from granular_response.scene import Scene, text
 from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
@@ -41,27 +42,9 @@ class Variant:
 
 #: By name, the reference first.
 VARIANTS = {
-    "reference": Variant("the paper's protocol as read here"),
-    "time_step_halved": Variant("time step halved", {"protocol.time_step": 2.5e-4}),
-    "gear": Variant("Gear at half the time step (its limit is lower)",
-                    {"protocol.integrator": "gear", "protocol.time_step": 2.4e-4}),
-    "verlet": Variant("velocity Verlet in place of Beeman", {"protocol.integrator": "verlet"}),
-    "no_tensile_dashpot": Variant("normal force cut off at zero", {"protocol.tensile_dashpot": False}),
-    "damping_halved": Variant("dashpots halved", {"contact.damping_ratio": 0.25}),
-    "slow_gravity": Variant("gravity grows over 100 in place of at once", {"preparation.gravity": "slow"}),
-    "stop_1e-9": Variant("stopped at 1e-9 per disk, without the static finish",
-                         {"protocol.stop_kinetic_energy": 1e-9, "protocol.static_finish": False}),
-    "no_static_finish": Variant("stopped at 1e-13 per disk, without the static finish",
-                                {"protocol.static_finish": False}),
-    "ramp_80": Variant("load ramp of 80 in place of 20", load={"protocol.ramp_time": 80.0}),
-    "sudden_load": Variant("load applied at once", load={"protocol.ramp_time": 0.0}),
-    "path": Variant("quasi-static path in place of dynamics", load={"protocol.method": "path"}),
-    "literal_friction": Variant("the paper's equation for the spring taken literally",
-                                law={"protocol.friction_law": "literal"}),
-    "hertz": Variant("normal force with the power 3/2 of the overlap", matched="hertz"),
-    "unloading_friction": Variant("the spring frozen at the limit, free to unload",
-                                  law={"protocol.friction_law": "unloading"}),
-}  # fmt: skip
+    name: Variant(**said)
+    for name, said in text.read(resources.files(__package__).joinpath("variants.yaml").read_text("utf-8")).items()
+}
 
 
 @record

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from granular_response.observe.widths import DEFINITIONS, FITS, lengths, powers
 from granular_response.theory import half_plane, rays
 from granular_response.theory.lattice import Springs, moduli
 from granular_response.theory.moduli import Moduli
+from granular_response_extensions.experiments.simulate.widths import DEFINITIONS, FITS, lengths, powers
 
 T = np.linspace(0.0, 3.0, 3001)
 DEPTHS = np.geomspace(20.0, 200.0, 8)

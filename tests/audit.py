@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..state import OPEN, Contacts, FloatArray, State
+from granular_response.state import OPEN, Contacts, FloatArray, State
 
 #: Inward normals of floor, left and right wall.
 _NORMALS = np.array([[0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]])
