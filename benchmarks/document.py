@@ -78,6 +78,11 @@ TEXTS = {
         "Factorisations of the tangent stiffness",
         "Numerical factorisations by band and by fronts are compared with LAPACK, SuperLU and PARDISO (`linear.json`).",
     ),
+    "neighbours": (
+        "Lists of close disks",
+        "The sweep along the longer side of a packing is compared with a tree of scipy, from places to sorted pairs "
+        "(`neighbours.json`).",
+    ),
     "skipping": (
         "Cost of work that is skipped",
         "A step leaves out rotations without friction, neighbour searches in a network that does not change, and wall "
@@ -176,6 +181,11 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
         rows = [{**row, **{key: NAMED.get(row[key], row[key]) for key in ("kind", "equilibria")}}
                 for row in metrics["groups"]]  # fmt: skip
         return [table(rows, columns, f"Measured: {words}.")]
+    if benchmark == "neighbours":
+        columns = {
+            "disks": "disks", "sweep_milliseconds": "sweep [ms]", "tree_milliseconds": "tree [ms]", "ratio": "ratio",
+        }  # fmt: skip
+        return [table(metrics["runs"], columns)]
     if benchmark == "depth":
         columns = {
             "layers": "layers", "from_force": "from force [mg]", "to_force": "to force [mg]",
