@@ -71,6 +71,7 @@ class Trial:
     kind: str  #: packing
     method: str  #: asked for
     integrator: str
+    rolls: bool  #: whether contacts between disks or at walls resist rolling
     friction: float = column("coefficient of friction between disks")
     disks: int = column("number of disks, 0 after an error")
     states: int = column("states that were checked")
@@ -156,6 +157,11 @@ def draw(
             del wall["rolling_stiffness_ratio"]  # as between disks
     scene = {"packing": packing, "contact": contact, "wall": wall, "loads": loads, "preparation": preparation}
     return scene | {"protocol": protocol}, table
+
+
+def rolls(description: dict[str, Any]) -> bool:
+    """Whether contacts of a scene resist rolling."""
+    return any(description.get(kind, {}).get("rolling_friction", 0.0) > 0.0 for kind in ("contact", "wall"))
 
 
 def log_uniform(g: np.random.Generator, low: float, high: float) -> float:
@@ -268,7 +274,8 @@ def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> 
 
     return Trial(
         outcome, message, description["packing"]["kind"], description["protocol"]["method"],
-        description["protocol"]["integrator"], description["contact"]["friction"], disks, len(checks),
+        description["protocol"]["integrator"], rolls(description), description["contact"]["friction"], disks,
+        len(checks),
         worst("force_residual"), worst("torque_residual"), worst("coulomb_excess"),
         worst("rolling_excess"), difference,
     )  # fmt: skip
