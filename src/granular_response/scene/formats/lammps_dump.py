@@ -1,5 +1,8 @@
 """LAMMPS dump files of text: the last frame, with columns x y z (also unwrapped or scaled) and radius or diameter.
 
+The format has neither an end nor a number of frames: a file that was cut between two frames is whole, and what is read
+of it is the last frame that it has. ``Table.frame`` says which one that is.
+
 Disks are in the order of their ids, if there is a column id. Sizes and masses may be columns of the atoms or what a
 compute, a fix or a variable calls by their name: ``mass``, ``c_mass``, ``v_mass[1]``.
 """
@@ -90,6 +93,9 @@ def _checked(frame: dict[str, _Item], which: str) -> int:
             if name == "BOX BOUNDS":
                 lines += ", and have flags of three axes or none"
             raise FormatError(f"must be followed by {lines}, not {len(item.lines)}", item.place)
+    k, text = frame["TIMESTEP"].lines[0]
+    if whole_number(text.strip()) is None:
+        raise FormatError(f"{shown(text)}: must be the number of the time step", f"line {k}")
     k, text = frame["NUMBER OF ATOMS"].lines[0]
     count = whole_number(text.strip())
     if count is None:
@@ -166,7 +172,10 @@ def read(path: Path) -> Table:
     x, y, z = (coordinate(axis) for axis in range(3))
     up = upward(y, z if np.ptp(z) else 0.0 * z)  # where all z are the same, that is anywhere in the box
     bounded = _file_box(flags, sides, _AXES.index(up))
-    return Table(x, y if up == "y" else z, radius, places, mass, bounded, NO_MASSES if mass is None else "")
+    which = f"{len(frames)} of {len(frames)}, time step {frame['TIMESTEP'].lines[0][1].strip()}"
+    return Table(
+        x, y if up == "y" else z, radius, places, mass, bounded, NO_MASSES if mass is None else "", frame=which
+    )
 
 
 def _plain(name: str) -> str:
