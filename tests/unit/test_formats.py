@@ -273,6 +273,7 @@ def test_lammps_disks_are_in_the_order_of_their_ids(tmp_path, name, text, last):
     np.testing.assert_array_equal(shuffled.radius, ordered.radius)
     np.testing.assert_array_equal(shuffled.mass, ordered.mass)
     bad = "".join([*lines[:first], *rows[::-1], *lines[first + last :]]).replace(rows[0], "1" + rows[0])
+    bad = bad.replace("\n1 0 0 0", "\n11 0 0 0")  # its velocity
     far = build(tmp_path / name, bad, **walls)  # 11 comes after 2
     np.testing.assert_array_equal(far.position, np.roll(ordered.position, -1, axis=0))
 
@@ -335,6 +336,13 @@ CONTRADICTIONS = [
      "line 2: mark of granular-response: is given twice, in line 1 and here"),
     ("a.txt", "# granular-response: 2 disks, width 9.0, si1 0 1 1\n3 0 1 1\n",
      "line 1: is a damaged first line of a table of granular-response"),
+    ("a.csv", "x,z,radius,vx,vx\n1,1,1,0,5\n", "line 1: column vx is given 2 times, must be given once"),
+    ("a.data", DATA + "4 0 0 0 0 0 0\n", "section Velocities has 4 lines, must have 3, as the header atoms says"),
+    ("a.data", DATA.replace("\n3 0 0 0", "\n4 0 0 0"), "line 24: id = '4': must be that of an atom, section"),
+    ("a.data", DATA.replace("\n3 0 0 0", "\n2 0 0 0"), "line 24: 2 in section Velocities: is given twice, in line 23"),
+    ("a.data", DATA.replace("3 1 1.0 4.0", "3 2 1.0 4.0"), "line 18: type = '2': must be from 1 to 1, as the header"),
+    ("a.data", DATA.replace("1 atom types", "2 atom types").replace("1 1.0\n", "1 1.0\n1 2.0\n"),
+     "line 13: 1 in section Masses: is given twice, in line 12 and here"),
     ("a.txt", "#format x_y_z_r\n#1 0 1 1\n3 0 1 1\n# end, granular-response: 2 disks, width 9.0, sides walls\n",
      "the mark of granular-response in its last line is there, that above the spheres is missing or damaged"),
     ("a.txt", "# granular-response: 1 disks, width 9.0, sides walls\n3 0 1 1\n"

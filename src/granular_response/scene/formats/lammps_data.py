@@ -43,6 +43,10 @@ _SECTIONS |= {f"{name.capitalize()} Coeffs": f"{name} types" for name in _NUMBER
 _SECTIONS |= {f"{name.capitalize()} Type Labels": f"{name} types" for name in _NUMBERED}
 
 
+#: Sections whose lines begin with what they are about: an atom, or a type.
+_NAMED_ONCE = {name for name, header in _SECTIONS.items() if header == "atom types"} | {"Velocities"}
+
+
 class _Header:
     """What stands above the sections."""
 
@@ -91,6 +95,8 @@ def read(path: Path) -> Table:
     rows: list[list[float]] = []
     places: list[str] = []
     found: dict[str, int] = {}  #: lines of each section
+    moved: dict[str, str] = {}  #: where each atom has its velocity
+    types: dict[str, str] = {}  #: of atoms, and where one has it
     section = ""
     lines, whole = lines_of(path)
     mark = Mark.found(lines[0], "line 1") if lines else None
@@ -115,9 +121,14 @@ def read(path: Path) -> Table:
         found[section] += 1
         if whole_number(cells[0]) is None:
             raise FormatError(f"{shown(cells[0])}: a line of section {section} must begin with a whole number", place)
+        if section in _NAMED_ONCE:
+            once.add(f"{cells[0]} in section {section}", place)
+        if section == "Velocities":
+            moved[cells[0]] = place
         if section == "Atoms":
             if len(cells) not in (7, 10):  # three numbers of the periodic image may follow
                 raise FormatError(f"has {len(cells)} values, must have id type diameter density x y z", place)
+            types[cells[1]] = place
             ids.append(cells[0])
             rows.append(numbers(cells[2:7], _COLUMNS, place))
             places.append(place)
@@ -131,6 +142,11 @@ def read(path: Path) -> Table:
             raise FormatError(f"section {name} has {number} lines, {rule}")
     if not rows:
         raise FormatError("has no atoms")
+    most = header.counts.get("atom types", 0)
+    for kind, place in types.items():
+        number_of_type = whole_number(kind)
+        if not 1 <= (0 if number_of_type is None else number_of_type) <= most and "Atom Type Labels" not in found:
+            raise FormatError(f"type = {shown(kind)}: must be from 1 to {most}, as the header atom types says", place)
     if not whole:
         raise FormatError("is cut: its last line has no end")
     left, width = header.across()
@@ -140,6 +156,8 @@ def read(path: Path) -> Table:
             rule = f"says width {mark.width!r}, the bounds xlo xhi {left!r} to {left + width!r}; must agree"
             raise FormatError(rule, "line 1")
     order = by_id(ids, places)
+    for atom in moved.keys() - set(ids):
+        raise FormatError(f"id = {shown(atom)}: must be that of an atom, section Velocities has it", moved[atom])
     diameter, density, x, y, z = np.array(rows)[order].T
     return Table(
         x, z if upward(y, z) == "z" else y, 0.5 * diameter, [places[k] for k in order], density * diameter**3,
