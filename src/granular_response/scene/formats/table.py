@@ -113,6 +113,10 @@ class Mark:
             raise FormatError("is cut: its last line has no end")
 
 
+#: What ends a line for Python beside \\n and \\r.
+_OTHER_ENDS = tuple("\v\f\x1c\x1d\x1e\x85\u2028\u2029")
+
+
 class Once:
     """Where each thing that a file says once stands in it."""
 
@@ -126,9 +130,16 @@ class Once:
 
 
 def lines_of(path: Path) -> tuple[list[str], bool]:
-    """The lines of a text file, and whether the last one has an end. OSError, UnicodeError."""
+    """The lines of a text file, and whether the last one has an end. OSError, UnicodeError.
+
+    Raises FormatError for what ends lines or pages elsewhere: in a comment it would take the row after it along.
+    """
     text = read_text(path).replace("\r\n", "\n").replace("\r", "\n")
-    return text.split("\n")[: -1 if text.endswith("\n") else None], text.endswith("\n") or not text
+    lines = text.split("\n")[: -1 if text.endswith("\n") else None]
+    for k, line in enumerate(lines, start=1):
+        if len(line.splitlines()) > 1 or line[-1:] in _OTHER_ENDS:
+            raise FormatError("has a line or page end of another kind within, must be one line", f"line {k}")
+    return lines, text.endswith("\n") or not text
 
 
 def number(text: str, name: str, place: str) -> float:
