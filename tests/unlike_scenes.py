@@ -81,4 +81,7 @@ def main(number: int, seed: int, output: Path | None = None) -> int:
 
 if __name__ == "__main__":
     given = counts.arguments("Solve and check random scenes.", 20260101)
-    sys.exit(main(given.number, given.seed, given.output))
+    try:
+        sys.exit(main(given.number, given.seed, given.output))
+    except KeyboardInterrupt:
+        sys.exit("interrupted: what is finished is kept with --output, and the same command goes on from there")
