@@ -1,8 +1,9 @@
 """A state checked from its positions alone: every contact force summed anew, with none of the solver's code.
 
 Each pair of disks and each wall is looked at, whether the solver listed it or not, so a contact that was overlooked
-shows as an unbalanced force. The only thing taken from the solver is the history of friction: the tangential
-spring of each contact. The loops are dense (n, n) arrays: this is for packings of up to a few hundred disks.
+shows as an unbalanced force. The only thing taken from the solver is the history of friction: the springs of each
+contact along the tangent and along the rolling. The loops are dense (n, n) arrays: this is for packings of up to a few
+hundred disks.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ class ContactRule:
     """Static contact law: stiffnesses in weights per radius, coefficient of friction (0: no tangential force).
 
     ``power`` 3/2 is the law of Hertz, ``normal_stiffness`` then the one at a force of one mean disk weight between
-    bodies of the reduced radius ``reference``.
+    bodies of the reduced radius ``reference``. Without ``rolling_friction`` nothing resists rolling.
     """
 
     normal_stiffness: float
@@ -32,6 +33,8 @@ class ContactRule:
     friction: float
     power: float = 1.0
     reference: float = 1.0
+    rolling_stiffness: float = 0.0
+    rolling_friction: float = 0.0
 
     def normal_force(self, overlap: FloatArray, reduced_radius: FloatArray) -> FloatArray:
         """Forces at ``overlap`` > 0, of any shape.
@@ -43,22 +46,30 @@ class ContactRule:
         factor = (self.normal_stiffness / self.power) ** self.power
         return factor * np.sqrt(reduced_radius / self.reference) * overlap**self.power
 
+    def spring_forces(self, springs: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Tangential and rolling forces (m,) of springs (m, 2)."""
+        tangential = self.tangential_stiffness if self.friction > 0 else 0.0
+        rolling = self.rolling_stiffness if self.rolling_friction > 0 else 0.0
+        return -tangential * springs[:, 0], -rolling * springs[:, 1]
+
 
 @dataclass(frozen=True)
 class Audit:
     """What a state is, by its positions and springs; forces in mean disk weights.
 
     ``force_residual``, ``torque_residual``: largest on any disk. ``coulomb_excess``: largest ``|f_t| - mu f_n`` of a
-    closed contact. ``relative_residual``: largest unbalanced force beyond ``rounding``, as a part of what the disk
-    bears: its weight, its load and the contact forces on it. ``force_mismatch``: largest difference between a recorded
-    contact force and the one found here. ``unlisted``: closed contacts that the state does not list. ``stale_springs``:
-    open contacts that kept a spring. ``escaped``: disks with their centre outside of the box. ``in_flight``: disks out
-    of balance that no chain of contacts joins to a wall.
+    closed contact, ``rolling_excess``: the same of ``|f_r| - mu_r f_n``. ``relative_residual``: largest unbalanced
+    force beyond ``rounding``, as a part of what the disk bears: its weight, its load and the contact forces on it.
+    ``force_mismatch``: largest difference between a recorded contact force and the one found here. ``unlisted``: closed
+    contacts that the state does not list. ``stale_springs``: open contacts that kept a spring, of either kind.
+    ``escaped``: disks with their centre outside of the box. ``in_flight``: disks out of balance that no chain of
+    contacts joins to a wall.
     """
 
     force_residual: float
     torque_residual: float
     coulomb_excess: float
+    rolling_excess: float
     relative_residual: float
     force_mismatch: float
     unlisted: int
@@ -90,28 +101,29 @@ def audit(
     load : (n, 3) external force and torque on each disk, gravity left out.
     periodic : x and x + width are the same place, and there are no side walls.
     rounding : force that a last digit of a position is worth (mean disk weights).
-
-    Raises ValueError for a state whose contacts resist rolling: their couples are not summed here.
     """
-    if state.pairs.resists_rolling or state.walls.resists_rolling:
-        raise ValueError("state: its contacts resist rolling, which is not checked")
     n = len(radius)
     x = state.position
     total = np.array(load, float)
     total[:, 1] -= mass
     borne = np.abs(mass) + np.hypot(load[:, 0], load[:, 1])
-    excess, mismatch, unlisted = 0.0, 0.0, 0
+    excess, beyond, mismatch, unlisted = 0.0, 0.0, 0.0, 0
 
-    def compare(fn: FloatArray, ft: FloatArray, rule: ContactRule, recorded: FloatArray, known: np.ndarray) -> None:
-        nonlocal excess, mismatch, unlisted
+    def compare(forces: FloatArray, rule: ContactRule, recorded: FloatArray, known: np.ndarray) -> None:
+        """Note what is beyond its limit, recorded otherwise or not listed; ``forces``: normal, tangential, rolling."""
+        nonlocal excess, beyond, mismatch, unlisted
+        fn, ft, fr = forces.T
         excess = max(excess, float((np.abs(ft) - rule.friction * fn).max(initial=0.0)))
-        mismatch = max(mismatch, float(np.abs(np.stack([fn, ft], axis=1) - recorded)[known].max(initial=0.0)))
+        beyond = max(beyond, float((np.abs(fr) - rule.rolling_friction * fn).max(initial=0.0)))
+        mismatch = max(mismatch, float(np.abs(forces - recorded)[known].max(initial=0.0)))
         unlisted += int((~known).sum())
 
     # disks: upper triangle of all pairs. The tangential spring and force do not change sign when the two disks are
-    # exchanged: tangent and slip both turn over, and so does the disk the force acts on.
+    # exchanged: tangent and slip both turn over, and so does the disk the force acts on. Those along the rolling do:
+    # the couple of the force is that on the first disk, and what rolls is its spin less that of the second.
     low, high = (which(state.pairs.first, state.pairs.second) for which in (np.minimum, np.maximum))
-    spring, recorded, listed = _tables(state.pairs, low, high, (n, n))
+    turned = np.where(state.pairs.first > state.pairs.second, -1.0, 1.0)
+    springs, recorded, listed = _tables(state.pairs, low, high, (n, n), turned)
     i, j = np.triu_indices(n, 1)
     d = x[i] - x[j]
     if periodic:  # the nearest of the images
@@ -121,27 +133,33 @@ def audit(
     touch = overlap > 0
     i, j, d, overlap, distance = i[touch], j[touch], d[touch], overlap[touch], distance[touch]
     normal = d / distance[:, None]
-    fn = pair.normal_force(overlap, radius[i] * radius[j] / (radius[i] + radius[j]))
-    ft = -pair.tangential_stiffness * spring[i, j] if pair.friction > 0 else np.zeros(len(i))
+    arm = radius[i] * radius[j] / (radius[i] + radius[j])
+    fn = pair.normal_force(overlap, arm)
+    ft, fr = pair.spring_forces(springs[i, j])
     _add(total, i, normal, fn, ft, radius, 1.0)
     _add(total, j, normal, fn, ft, radius, -1.0)
-    for disk in (i, j):
+    for disk, sign in ((i, 1.0), (j, -1.0)):
+        np.add.at(total[:, 2], disk, sign * arm * fr)
         np.add.at(borne, disk, np.hypot(fn, ft))
-    compare(fn, ft, pair, recorded[i, j], listed[i, j])
+    compare(np.stack([fn, ft, fr], axis=1), pair, recorded[i, j], listed[i, j])
 
     # walls
-    spring, recorded, listed = _tables(state.walls, state.walls.first, state.walls.second, (n, 3))
+    springs, recorded, listed = _tables(state.walls, state.walls.first, state.walls.second, (n, 3))
     held = np.zeros(n, bool)
     for side, gap in enumerate((x[:, 1],) if periodic else (x[:, 1], x[:, 0], width - x[:, 0])):
         k = np.flatnonzero(gap < radius)
         held[k] = True
         fn = wall.normal_force(radius[k] - gap[k], radius[k])
-        ft = -wall.tangential_stiffness * spring[k, side] if wall.friction > 0 else np.zeros(len(k))
+        ft, fr = wall.spring_forces(springs[k, side])
         _add(total, k, np.broadcast_to(_NORMALS[side], (len(k), 2)), fn, ft, radius, 1.0)
+        total[k, 2] += radius[k] * fr
         borne[k] += np.hypot(fn, ft)
-        compare(fn, ft, wall, recorded[k, side], listed[k, side])
+        compare(np.stack([fn, ft, fr], axis=1), wall, recorded[k, side], listed[k, side])
 
-    stale = sum(int(((c.status == OPEN) & (c.spring != 0)).sum()) for c in (state.pairs, state.walls))
+    stale = sum(
+        int(((c.status == OPEN) & ((c.spring != 0) | (c.rolling_spring != 0))).sum())
+        for c in (state.pairs, state.walls)
+    )
     outside = (x[:, 1] < 0) | ~np.isfinite(x).all(axis=1)
     if not periodic:
         outside |= (x[:, 0] < 0) | (x[:, 0] > width)
@@ -156,6 +174,7 @@ def audit(
         force_residual=float(unbalanced.max()),
         torque_residual=float(np.abs(total[:, 2]).max()) if turning else 0.0,
         coulomb_excess=excess,
+        rolling_excess=beyond,
         relative_residual=float((np.maximum(unbalanced - rounding, 0.0) / borne).max()),
         force_mismatch=mismatch,
         unlisted=unlisted,
@@ -166,14 +185,17 @@ def audit(
 
 
 def _tables(
-    c: Contacts, row: np.ndarray, column: np.ndarray, shape: tuple[int, int]
+    c: Contacts, row: np.ndarray, column: np.ndarray, shape: tuple[int, int], turned: FloatArray | float = 1.0
 ) -> tuple[FloatArray, FloatArray, np.ndarray]:
-    """Springs, recorded forces (..., 2) and whether listed, in tables where each contact has its place."""
-    spring, recorded, listed = np.zeros(shape), np.zeros((*shape, 2)), np.zeros(shape, bool)
-    spring[row, column] = c.spring
-    recorded[row, column] = np.stack([c.normal_force, c.tangential_force], axis=1)
+    """Springs (..., 2), recorded forces (..., 3) and whether listed, in tables where each contact has its place.
+
+    ``turned`` (m,): sign of what rolls there.
+    """
+    springs, recorded, listed = np.zeros((*shape, 2)), np.zeros((*shape, 3)), np.zeros(shape, bool)
+    springs[row, column] = np.stack([c.spring, turned * c.rolling_spring], axis=1)
+    recorded[row, column] = np.stack([c.normal_force, c.tangential_force, turned * c.rolling_force], axis=1)
     listed[row, column] = True
-    return spring, recorded, listed
+    return springs, recorded, listed
 
 
 def _add(total, disk, normal, fn, ft, radius, sign: float) -> None:

@@ -1,10 +1,13 @@
 """Random scenes of disks that are anything but alike, and a command that tries thousands of both kinds.
 
 ``python tests/unlike_scenes.py 5000`` tries that many on all cores, every second one of disks whose masses differ by up
-to 1e9 and whose radii by up to 100, and counts the outcomes.
+to 1e9 and whose radii by up to 100, and counts the outcomes. Trials that are finished are kept beside ``--output``
+until all are: a run that was interrupted continues where it was, and begins anew where the code has changed.
 """
 
+import shutil
 import sys
+import time
 from collections import Counter
 from functools import partial
 from pathlib import Path
@@ -13,13 +16,17 @@ import counts
 import numpy as np
 from stress.random_scenes import Trial, log_uniform, run, thrown
 
+from granular_response.sweeps.resources import using
 from granular_response.sweeps.tasks import map_tasks
 
 #: Ratios of masses and of radii.
 MASS_RATIO, RADIUS_RATIO = 1e9, 100.0
-#: Most steps of a scene, and what the scenes are in turn.
+#: Most steps of a scene.
 STEPS = 400_000
-KINDS = ("any scene", "unlike disks")
+#: What the scenes are in turn, and what is said of those that resist rolling.
+KINDS, ROLL = ("any scene", "unlike disks"), ", rolling resistance"
+#: Code that makes a trial, beside the library.
+PACKAGES = ("granular_response_paper", "stress")
 
 
 def unlike_heap(g: np.random.Generator) -> tuple[np.ndarray, float]:
@@ -33,23 +40,48 @@ def unlike_heap(g: np.random.Generator) -> tuple[np.ndarray, float]:
 
 
 def either(index: int, entropy: int) -> Trial:
-    return run(STEPS, entropy, index, heap=unlike_heap if index % 2 else None)
+    trial = run(STEPS, entropy, index, heap=unlike_heap if index % 2 else None)
+    if trial.outcome == "wrong":  # at once: what is left may take an hour
+        print(f"scene {index}: {trial.message}", file=sys.stderr, flush=True)
+    return trial
+
+
+def told():
+    """A line of progress for each hundredth."""
+    started, said = time.monotonic(), -1
+
+    def progress(done: float, total: float, what: str = "") -> None:
+        nonlocal said
+        if (hundredths := int(100 * done / total)) > said:
+            said = hundredths
+            minutes = (time.monotonic() - started) / 60.0
+            print(f"{what}: {done:.0f} of {total:.0f} after {minutes:.1f} minutes", file=sys.stderr, flush=True)
+
+    return progress
 
 
 def main(number: int, seed: int, output: Path | None = None) -> int:
     """Try ``number`` scenes; prints what is wrong with which and the counts of the outcomes. 1 if any is wrong."""
-    trials = map_tasks(partial(either, entropy=seed), range(number), what="scenes")
+    kept = None if output is None else output.absolute().with_name(f".{output.stem}.checkpoint")
+    with using(packages=PACKAGES, checkpoint=kept, progress=told()):
+        trials = map_tasks(partial(either, entropy=seed), range(number), what="scenes")
     for index, trial in enumerate(trials):
         if trial.outcome == "wrong":
             print(f"scene {index}: {trial.message}")
-    found = {kind: Counter(trial.outcome for trial in trials[k::2]) for k, kind in enumerate(KINDS)}
-    for kind, outcomes in found.items():
+    found: dict[str, Counter[str]] = {}
+    for index, trial in enumerate(trials):
+        found.setdefault(KINDS[index % 2] + ROLL * trial.rolls, Counter())[trial.outcome] += 1
+    for kind, outcomes in sorted(found.items()):
         print(f"{kind}: " + ", ".join(f"{count} {outcome}" for outcome, count in outcomes.most_common()))
     if output is not None:
         counts.write(output, number, seed, found)
+        shutil.rmtree(kept, ignore_errors=True)
     return int(any(trial.outcome == "wrong" for trial in trials))
 
 
 if __name__ == "__main__":
     given = counts.arguments("Solve and check random scenes.", 20260101)
-    sys.exit(main(given.number, given.seed, given.output))
+    try:
+        sys.exit(main(given.number, given.seed, given.output))
+    except KeyboardInterrupt:
+        sys.exit("interrupted: what is finished is kept with --output, and the same command goes on from there")

@@ -85,13 +85,16 @@ def originals(folder: Path) -> list[File]:
     found = [File("scene.yaml", Scene.from_dict({**scenes["periodic"], "loads": [load]}).to_yaml().encode(), {}, False)]
     for name, scene in scenes.items():
         path = folder / f"{name}.nc"
-        store.write(path, to_dataset(solve_scene(Scene.from_dict({**scene, "loads": [load]}, folder=folder))))
+        solved = to_dataset(solve_scene(Scene.from_dict({**scene, "loads": [load]}, folder=folder)))
+        store.write(path, solved)
         found.append(File(path.name, path.read_bytes(), {}, True))
         for suffix in (".csv", ".data", ".dump", ".txt", ".gsd"):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 made = export(path, folder / f"{name}{suffix}")
-            found.append(File(made.name, made.read_bytes(), {"sides": name}, True))
+            # with a width of the scene a table is read that has lost its mark
+            width = {"width": float(solved.attrs["width"])} if suffix in (".csv", ".txt") else {}
+            found.append(File(made.name, made.read_bytes(), {"sides": name, **width}, True))
     found.append(File("disks.csv", TABLE.encode(), {"width": 6.3}, False))
     data = Path(__file__).parents[1] / "data" / "packings"
     found.append(File("sw.dump", (data / "shrink_wrapped.dump").read_bytes(), {"width": 6.0, "origin": [0, 0]}, True))

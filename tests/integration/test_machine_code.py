@@ -74,6 +74,18 @@ def test_processes_that_compile_a_kernel_at_once_for_different_types_keep_each_t
         assert said == [["6", hits], ["6.0", hits], ["(6+0j)", hits]]
 
 
+@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
+def test_a_pipe_in_the_place_of_the_lock_is_not_waited_for(tmp_path, monkeypatch):
+    os.mkfifo(tmp_path / "lock")
+    monkeypatch.setattr(machine_code, "cache_folder", lambda: tmp_path)
+    assert machine_code.kernel(_doubled)(3.0) == 6.0
+    assert list(tmp_path.rglob("*.nbi"))  # kept all the same
+
+
+def _doubled(x):
+    return 2.0 * x
+
+
 def test_the_first_folder_that_can_be_written_is_taken(tmp_path, monkeypatch):
     blocked = tmp_path / "blocked"
     blocked.write_text("a file")

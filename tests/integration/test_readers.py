@@ -1,6 +1,5 @@
 """Every kind of stored file read by other programs, again and again, in processes of their own: a crash is seen."""
 
-import importlib.util
 import shutil
 import subprocess
 import sys
@@ -100,21 +99,13 @@ def read(reader, files):
     assert done.returncode == 0 and done.stdout == "read to the end\n", (done.returncode, done.stderr[-2000:])
 
 
-def installed(reader):
-    for package in ("h5netcdf", "h5py") if reader == "h5netcdf" else ():
-        if importlib.util.find_spec(package) is None:
-            pytest.skip(f"{package} is not installed")
-
-
 @pytest.mark.parametrize("reader", READERS)
 def test_files_of_ours_are_read_repeatedly(reader, files):
-    installed(reader)
     read(reader, files)
 
 
 @pytest.mark.parametrize("reader", [name for name in READERS if name != "chunks of xarray's choice"])
 def test_what_xarray_stores_of_ours_is_read_repeatedly(reader, by_xarray):
-    installed(reader)
     read(reader, by_xarray)
 
 

@@ -27,7 +27,8 @@ from granular_response_paper.slab_response import lost
 #: Certified: in balance and stable. Uncertified: the scene asked for no static finish, and the certificate says what
 #: is left. The others are errors of one line: which, is stored beside.
 OUTCOMES = ("certified", "uncertified", "not settled", "no equilibrium", "time step refused", "scene refused", "wrong")
-#: Largest unbalanced force of a certified state, and largest excess over Coulomb's limit (mean disk weights).
+#: Largest unbalanced force of a certified state, and largest excess over the limits of friction and of rolling
+#: resistance (mean disk weights).
 BALANCE, COULOMB = 1e-8, 1e-8
 #: Largest unbalanced force of a disk in a certified state, as a part of what this disk bears.
 RELATIVE = 1e-6
@@ -40,6 +41,8 @@ LAST_DIGIT, TURNED = 1e-15, 1e-6
 #: Stiffnesses (weights per radius) from soft to nearly rigid.
 STIFFNESS = ((1.0, 1e2), (1e2, 1e4), (1e4, 1e6), (1e6, 1e9))
 METHODS = ("auto", "dynamics", "path", "minimise")
+#: Part of the scenes that are drawn with resistance to rolling, if their contacts rub.
+ROLLS = 0.5
 #: What a mirror turns over along x in a load.
 _VECTORS = ("force", "displacement")
 #: Least time of a fall over that of the closed form.
@@ -68,12 +71,14 @@ class Trial:
     kind: str  #: packing
     method: str  #: asked for
     integrator: str
+    rolls: bool  #: whether contacts between disks or at walls resist rolling
     friction: float = column("coefficient of friction between disks")
     disks: int = column("number of disks, 0 after an error")
     states: int = column("states that were checked")
     force_residual: float = column("largest unbalanced force, summed anew from positions, in mean disk weights")
     torque_residual: float = column("largest unbalanced torque")
     coulomb_excess: float = column("largest friction force beyond Coulomb's limit")
+    rolling_excess: float = column("largest force along the rolling beyond its limit")
     twin_difference: float = column("largest difference of floor responses to the mirrored twin, over the load")
 
 
@@ -145,8 +150,18 @@ def draw(
         protocol["time_step"] = "auto"
         contact["normal_stiffness"] = log_uniform(g, 10.0, 1e4)
         wall.pop("normal_stiffness", None)
+    if g.random() < ROLLS and ratio > 0.0:
+        contact |= _rolling(g, contact["friction"])
+        wall |= _rolling(g, wall["friction"])
+        if contact["friction"] > 0.0 and wall["friction"] > 0.0 and g.random() < 0.5:
+            del wall["rolling_stiffness_ratio"]  # as between disks
     scene = {"packing": packing, "contact": contact, "wall": wall, "loads": loads, "preparation": preparation}
     return scene | {"protocol": protocol}, table
+
+
+def rolls(description: dict[str, Any]) -> bool:
+    """Whether contacts of a scene resist rolling."""
+    return any(description.get(kind, {}).get("rolling_friction", 0.0) > 0.0 for kind in ("contact", "wall"))
 
 
 def log_uniform(g: np.random.Generator, low: float, high: float) -> float:
@@ -166,6 +181,12 @@ def _programme(g: np.random.Generator) -> list[float]:
 def _friction(g: np.random.Generator) -> float:
     """None, moderate, or anything up to 100."""
     return [0.0, float(g.uniform(0.05, 1.0)), log_uniform(g, 0.01, 100.0)][int(g.choice(3, p=[0.35, 0.45, 0.2]))]
+
+
+def _rolling(g: np.random.Generator, friction: float) -> dict[str, float]:
+    """Resistance to rolling of contacts that rub, of one kind in five none: hardly any to all that can be."""
+    limit = log_uniform(g, 1e-3, 10.0) if g.random() < 0.8 and friction > 0.0 else 0.0
+    return {"rolling_friction": limit, "rolling_stiffness_ratio": log_uniform(g, 0.01, 2.0)}
 
 
 def _load(g: np.random.Generator, disks: int, turns: bool) -> dict[str, Any]:
@@ -253,9 +274,10 @@ def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> 
 
     return Trial(
         outcome, message, description["packing"]["kind"], description["protocol"]["method"],
-        description["protocol"]["integrator"], description["contact"]["friction"], disks, len(checks),
+        description["protocol"]["integrator"], rolls(description), description["contact"]["friction"], disks,
+        len(checks),
         worst("force_residual"), worst("torque_residual"), worst("coulomb_excess"),
-        difference,
+        worst("rolling_excess"), difference,
     )  # fmt: skip
 
 
@@ -272,7 +294,8 @@ def check(solution: Solution, state: State) -> Audit:
         friction = law.friction if law.stiffness_ratio > 0 else 0.0
         power = 1.5 if law.law == "hertz" else 1.0
         tangential = law.stiffness_ratio * law.normal_stiffness
-        return ContactRule(law.normal_stiffness, tangential, friction, power, reference)
+        rolling = (law.rolling_stiffness, law.rolling_friction)
+        return ContactRule(law.normal_stiffness, tangential, friction, power, reference, *rolling)
 
     # reduced radii of two mean disks, and of one at a wall
     pair, wall_rule = rule(scene.contact, 0.5), rule(wall, 1.0)
@@ -379,7 +402,7 @@ def contradiction(state: State, found: Audit, rounding: float) -> str:
     certificate = state.reached.certificate
     if certificate is None:
         return "a state without a certificate"
-    for name in ("force_residual", "torque_residual", "coulomb_excess"):
+    for name in ("force_residual", "torque_residual", "coulomb_excess", "rolling_excess"):
         said, true = getattr(certificate, name), getattr(found, name)
         if abs(said - true) > rounding + 1e-6 * abs(true):
             return f"{name} is {true:.3g}, the certificate says {said:.3g}"
@@ -392,6 +415,7 @@ def contradiction(state: State, found: Audit, rounding: float) -> str:
         return f"certified as stable with an unbalanced force of {found.force_residual:.3g}"
     if certificate.stable and found.relative_residual > RELATIVE:
         return f"certified as stable with a disk out of balance by {found.relative_residual:.3g} of what it bears"
-    if certificate.stable and found.coulomb_excess > COULOMB + rounding:
-        return f"certified with a friction force {found.coulomb_excess:.3g} beyond Coulomb's limit"
+    for name, what in (("coulomb_excess", "friction force"), ("rolling_excess", "force along the rolling")):
+        if certificate.stable and getattr(found, name) > COULOMB + rounding:
+            return f"certified with a {what} {getattr(found, name):.3g} beyond its limit"
     return ""

@@ -20,7 +20,7 @@ from granular_response.scene import Scene
 from granular_response.solvers.path import PathError
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import Solution, solve_scene
-from granular_response.state import OPEN, SLIDING, Contacts, Reached
+from granular_response.state import OPEN, SLIDING, STICKING, Contacts, Reached
 
 
 @pytest.fixture(scope="module")
@@ -45,8 +45,7 @@ def with_entry(contacts: Contacts, which: int, **values: float) -> Contacts:
 
 
 def without(contacts: Contacts, which: int) -> Contacts:
-    names = ("first", "second", "overlap", "normal_force", "tangential_force", "spring", "status")
-    return replace(contacts, **{name: np.delete(getattr(contacts, name), which) for name in names})
+    return Contacts(**{name: np.delete(values, which) for name, values in vars(contacts).items()})
 
 
 def complaint(solution: Solution, state) -> str:
@@ -254,8 +253,69 @@ def test_a_disk_out_of_balance_by_a_part_of_what_it_bears_is_found(solution, sta
     assert said == "certified as stable with a disk out of balance by 0.001 of what it bears"
 
 
-def test_rolling_resistance_is_not_checked_and_that_is_said():
-    keys = {"contact__friction": 0.3, "contact__rolling_friction": 0.1, "contact__rolling_stiffness_ratio": 0.5}
-    rolls = solve_scene(scene(3, 5, loads=[], **keys))
-    with pytest.raises(ValueError, match="resist rolling"):
-        check(rolls, rolls.rest)
+# Rolling resistance
+
+
+@pytest.fixture(scope="module")
+def rolling() -> Solution:
+    """With contacts at either limit; disks of two sizes, so that an arm is not a radius."""
+    resists = {"friction": 0.3, "rolling_friction": 0.02, "rolling_stiffness_ratio": 0.5}
+    changes = {f"{kind}__{name}": value for kind in ("contact", "wall") for name, value in resists.items()}
+    loads = [{"disk": "top-centre", "force": [1.0, -4.0], "torque": 0.3}]
+    sizes = {"packing__polydispersity": 0.2, "packing__lattice_constant": "touching-largest", "packing__seed": 3}
+    return solve_scene(scene(protocol__time_step="auto", loads=loads, **changes, **sizes))
+
+
+def test_couples_of_rolling_resistance_balance(rolling):
+    for state in (rolling.rest, *rolling.loaded):
+        found = check(rolling, state)
+        assert max(found.force_residual, found.torque_residual, found.coulomb_excess, found.rolling_excess) < 1e-9
+        assert complaint(rolling, state) == ""
+    for contacts in (rolling.loaded[0].pairs, rolling.loaded[0].walls):  # or they would not have been tried
+        assert (contacts.rolling_status == STICKING).any()
+    assert (rolling.loaded[0].pairs.rolling_status == SLIDING).any()
+
+
+def test_a_contact_may_name_its_disks_either_way(rolling):
+    """Who is first turns over what rolls, and leaves normal and tangential parts as they are."""
+    state = rolling.loaded[0]
+    pairs = state.pairs
+    turned = replace(
+        pairs, first=pairs.second, second=pairs.first,
+        rolling_force=-pairs.rolling_force, rolling_spring=-pairs.rolling_spring,
+    )  # fmt: skip
+    assert check(rolling, replace(state, pairs=turned)) == check(rolling, state)
+
+
+@pytest.mark.parametrize("side", ["pairs", "walls"])
+def test_a_couple_that_is_not_that_of_its_spring_is_found(rolling, side):
+    state = rolling.loaded[0]
+    contacts = getattr(state, side)
+    which = int(np.argmax(np.where(contacts.rolling_status == STICKING, np.abs(contacts.rolling_force), -1.0)))
+    recorded = with_entry(contacts, which, rolling_force=contacts.rolling_force[which] + 1e-3)
+    tampered = replace(state, **{side: recorded})
+    assert check(rolling, tampered).force_mismatch == pytest.approx(1e-3, rel=1e-6)
+    assert "a recorded contact force is off by 0.001" in complaint(rolling, tampered)
+    stretched = with_entry(contacts, which, rolling_spring=contacts.rolling_spring[which] + 1e-6)
+    assert "torque_residual is" in complaint(rolling, replace(state, **{side: stretched}))
+    none = np.zeros(len(contacts.first))
+    assert check(rolling, replace(state, **{side: replace(contacts, rolling_spring=none)})).torque_residual > 1e-4
+
+
+def test_a_couple_beyond_its_limit_and_one_of_an_open_contact_are_found(rolling):
+    state = rolling.loaded[0]
+    which = int(np.flatnonzero(state.pairs.rolling_status == SLIDING)[0])
+    beyond = with_entry(state.pairs, which, rolling_spring=1.001 * state.pairs.rolling_spring[which])
+    assert check(rolling, replace(state, pairs=beyond)).rolling_excess > 1e-6
+    certificate = replace(state.certificate, rolling_excess=1e-3)
+    tampered = replace(state, reached=replace(state.reached, certificate=certificate))
+    assert complaint(rolling, tampered).startswith("rolling_excess is")
+    which = int(np.flatnonzero(state.pairs.status == OPEN)[0])
+    stale = replace(state, pairs=with_entry(state.pairs, which, rolling_spring=1e-5))
+    assert complaint(rolling, stale) == "1 stale springs"
+
+
+@pytest.mark.parametrize("key", ["contact.rolling_friction", "wall.rolling_friction"])
+def test_rolling_resistance_that_is_not_the_scenes_is_found(rolling, key):
+    tampered = replace(rolling, scene=rolling.scene.updated({key: 0.0}))
+    assert complaint(tampered, rolling.loaded[0])

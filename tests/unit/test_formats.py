@@ -1,10 +1,12 @@
 """Packings from other programs, and back."""
 
 import os
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import succeeded
 from places import ROOT
 
 import granular_response as gr
@@ -217,6 +219,19 @@ def test_lammps_dump_has_the_last_frame(tmp_path):
     assert packing.width * 1.25 == pytest.approx(10)
 
 
+def test_which_frame_was_read_is_said(tmp_path):
+    """A dump has no end: cut between two frames it is whole, and its last frame is an earlier one."""
+    assert build(tmp_path / "a.dump", DUMP).frame == "2 of 2, time step 7"
+    cut = DUMP[: DUMP.index("ITEM: TIMESTEP\n7")]
+    assert build(tmp_path / "b.dump", cut).frame == "1 of 1, time step 0"
+    file = {"kind": "file", "path": str(tmp_path / "a.dump")}
+    result = gr.solve(Scene.from_dict({"packing": file, "protocol": {"time_step": "auto"}, "loads": []}))
+    result.save(tmp_path / "result.nc")
+    assert re.search(r"packing frame +2 of 2, time step 7\s", succeeded("show", tmp_path / "result.nc"))
+    with pytest.raises(SceneError, match=r"line 2: 'x': must be the number of the time step"):
+        build(tmp_path / "a.dump", DUMP.replace("TIMESTEP\n0", "TIMESTEP\nx"))
+
+
 def test_lammps_dump_begins_without_atoms_where_disks_are_poured(tmp_path):
     empty = DUMP.replace("ATOMS\n1", "ATOMS\n0").replace("1 1 0.5 0.5 0 0.5\n", "")
     np.testing.assert_array_equal(build(tmp_path / "a.dump", empty).position, build(tmp_path / "b.dump", DUMP).position)
@@ -320,6 +335,20 @@ CONTRADICTIONS = [
      "line 2: mark of granular-response: is given twice, in line 1 and here"),
     ("a.txt", "# granular-response: 2 disks, width 9.0, si1 0 1 1\n3 0 1 1\n",
      "line 1: is a damaged first line of a table of granular-response"),
+    ("a.csv", "x,z,radius\n1,1,1\n# a note\u20283,1,1\n", "line 3: has a line or page end of another kind within"),
+    ("a.txt", "1 0 1 1\n# page 1\f3 0 1 1\n", "line 2: has a line or page end of another kind within"),
+    ("a.dump", DUMP.replace("1 0.1 0", "1 0.1 0\v"), "line 20: has a line or page end of another kind within"),
+    ("a.csv", "x,z,radius,vx,vx\n1,1,1,0,5\n", "line 1: column vx is given 2 times, must be given once"),
+    ("a.data", DATA + "4 0 0 0 0 0 0\n", "section Velocities has 4 lines, must have 3, as the header atoms says"),
+    ("a.data", DATA.replace("\n3 0 0 0", "\n4 0 0 0"), "line 24: id = '4': must be that of an atom, section"),
+    ("a.data", DATA.replace("\n3 0 0 0", "\n2 0 0 0"), "line 24: 2 in section Velocities: is given twice, in line 23"),
+    ("a.data", DATA.replace("3 1 1.0 4.0", "3 2 1.0 4.0"), "line 18: type = '2': must be from 1 to 1, as the header"),
+    ("a.data", DATA.replace("1 atom types", "2 atom types").replace("1 1.0\n", "1 1.0\n1 2.0\n"),
+     "line 13: 1 in section Masses: is given twice, in line 12 and here"),
+    ("a.txt", "#format x_y_z_r\n#1 0 1 1\n3 0 1 1\n# end, granular-response: 2 disks, width 9.0, sides walls\n",
+     "the mark of granular-response in its last line is there, that above the spheres is missing or damaged"),
+    ("a.txt", "# granular-response: 1 disks, width 9.0, sides walls\n3 0 1 1\n"
+     "# end, granular-response: 1 disks, width 8.0, sides walls\n", "that above the spheres says something else"),
     ("a.txt", "#format x_y_z_r_r\n1 0 1 1 0.5\n", "line 1: format names 'r' 2 times, must name it once"),
     ("a.txt", "#format x_y_z_r\n#format r_x_y_z\n1 0 1 1\n", "line 2: #format: is given twice, in line 1 and here"),
     ("a.txt", "1 0 1 1\n#format x_y_z_r\n", "line 2: format must be one word such as x_y_z_r, above the spheres"),
@@ -622,6 +651,25 @@ def test_a_file_that_was_cut_is_refused(result, tmp_path, name):
     assert refused > 100
 
 
+@pytest.mark.filterwarnings("ignore:.*read again")
+def test_no_damage_at_one_place_takes_a_sphere_away(result, tmp_path):
+    """A mark that merges with the row after it was a comment like any other, and the sphere in it was gone."""
+    whole = export(result, tmp_path / "whole.txt").read_bytes()
+    expected, taken = formats.read(tmp_path / "whole.txt", "yade"), 0
+    path = tmp_path / "damaged.txt"
+    for start in range(0, len(whole), 3):
+        for size in (1, 7, 20, 45, 64, 90):
+            for end in (whole[start + size :], whole[start : start + size] + whole[start:]):
+                path.write_bytes(whole[:start] + end)
+                try:
+                    table = formats.read(path, "yade")
+                except formats.FormatError:
+                    continue
+                assert (len(table.radius), table.box) == (len(expected.radius), expected.box)
+                taken += 1
+    assert taken > 50
+
+
 def test_a_bond_to_nowhere_and_half_a_log_are_one_line(tmp_path):
     hoomd = pytest.importorskip("gsd.hoomd")
 
@@ -701,6 +749,7 @@ def test_gsd_takes_from_the_first_frame_what_the_last_one_leaves_out(tmp_path):
         expected = file[1].particles
         assert not file.file.chunk_exists(frame=1, name="particles/mass")
     table = formats.read(tmp_path / "a.gsd", "gsd")
+    assert table.frame == "2 of 2"
     np.testing.assert_array_equal(table.radius, 0.5 * expected.diameter)
     np.testing.assert_array_equal(table.mass, expected.mass)
     np.testing.assert_array_equal(np.column_stack([table.x, table.z]), expected.position[:, :2])

@@ -83,9 +83,9 @@ def test_arrays_of_any_kind_are_their_numbers(entry, kind):
 @pytest.mark.parametrize("kind", MISSING)
 def test_what_is_missing_is_no_number(entry, kind):
     """Masks were dropped, and what stands under them was taken."""
-    if entry == "axis" or (entry == "displacement" and kind not in ("nan", "DataArray")):
+    if entry == "axis" or (entry == "displacement" and kind == "none"):
         known = plain(MISSING[kind])[1]  # null is a value of some keys, and says that a direction is free
-        assert known is None or known != 3.0
+        assert known is None if kind == "none" else pd.isna(known)
         return
     with pytest.raises(ValueError) as caught:
         ENTRIES[entry](MISSING[kind])
@@ -98,6 +98,25 @@ def test_what_has_no_order_is_no_list(entry, kind):
     """Sets were taken in the order of their hashes."""
     with pytest.raises(ValueError, match=r"must be|no item"):
         ENTRIES[entry](UNORDERED[kind])
+
+
+@pytest.mark.parametrize("key", ["wall.normal_stiffness", "protocol.time_step", "contact.friction"])
+@pytest.mark.parametrize("missing", [np.ma.masked, np.ma.masked_equal(3.0, 3.0), np.ma.masked_equal([3], 3)[0]])
+def test_what_is_missing_is_not_what_is_left_open(key, missing):
+    """A mask was null, and so the default of keys that may be null."""
+    part, _, name = key.partition(".")
+    with pytest.raises(gr.SceneError, match=rf"^{key} = nan: must be"):
+        gr.Scene.from_dict({part: {name: missing}, "loads": []})
+    with pytest.raises(gr.SceneError, match=r"^packing\.width = nan: must be a number greater than 0"):
+        gr.Scene.from_arrays(x=[1, 3], z=[1, 1], radius=1.0, width=missing)
+
+
+def test_tasks_have_an_order():
+    """Results are in that of the items: those of a set came in the order of its hashes."""
+    for items in ({-1, 2}, frozenset((-1, 2))):
+        with pytest.raises(gr.SweepError, match=r"^items = .*: must be a list, a set has no order"):
+            gr.map_tasks(abs, items, workers=1)
+    assert gr.map_tasks(abs, {-1: None, 2: None}.keys(), workers=1) == [1, 2]
 
 
 def test_arrays_in_laboratory_units_are_reduced():

@@ -309,8 +309,8 @@ def test_velocities_go_to_lammps_and_come_back(tmp_path):
         ("1 0.5 0.25 0.0 0.0 0.0 2.0", "1 fast 0.25 0.0 0.0 0.0 2.0", "line 17: vx = 'fast': must be a finite number"),
         ("1 0.5 0.25 0.0 0.0 0.0 2.0", "1 0.5 0.25 0.0 0.0 0.0 nan", "line 17: wz = 'nan': must be a finite number"),
         ("1 0.5 0.25 0.0 0.0 0.0 2.0", "1 0.5 0.25 0.0", "line 17: has 4 values, must have id vx vy vz wx wy wz"),
-        ("\n1 0.5 0.25", "\n2 0.5 0.25", "line 18: velocity of atom 2: is given twice, in line 17 and here"),
-        ("\n1 0.5 0.25", "\n7 0.5 0.25", "section Velocities must have the ids of section Atoms"),
+        ("\n1 0.5 0.25", "\n2 0.5 0.25", "line 18: 2 in section Velocities: is given twice, in line 17 and here"),
+        ("\n1 0.5 0.25", "\n7 0.5 0.25", "line 17: id = '7': must be that of an atom, section Velocities has it"),
     ],
 )
 def test_velocities_that_are_none_are_refused(tmp_path, old, new, said):

@@ -245,3 +245,7 @@ def test_walls_have_names_in_messages():
         sunk = problem.relisted(replace(state, position=np.array([place, [5.0, 6.0]])))
         with pytest.raises(gr.SolveError, match=rf"^disk 0 and the {wall} overlap by 1\.5 mean radii at load"):
             check_overlaps(problem, sunk)
+        with pytest.raises(gr.SolveError, match=r"take a larger contact\.normal_stiffness$"):  # no load does this
+            check_overlaps(problem, sunk)
+        with pytest.raises(gr.SolveError, match=r"take a smaller load or a larger contact\.normal_stiffness$"):
+            check_overlaps(problem, replace(sunk, load_factor=0.5))

@@ -130,6 +130,8 @@ def test_a_packing_has_its_disks_and_values(result, ax):
     np.testing.assert_array_equal(disks.get_array(), result.loaded[0].angle)
     with pytest.raises(pictures.PictureError, match=r"values: must have shape \(73,\)"):
         gr.plot.packing(result, ax=ax, values=[1.0])
+    with pytest.raises(pictures.PictureError, match=r"^values = \{1\.0\}: must be numbers, a disk each$"):
+        gr.plot.packing(result, ax=ax, values={1.0})
 
 
 @pytest.mark.parametrize("name", ["forces", "contacts", "stress", "packing"])

@@ -169,6 +169,14 @@ def test_a_fall_that_is_cut_short_is_no_rest_state():
         solve_scene(falling)
 
 
+def test_steps_that_run_out_without_friction_are_what_is_said():
+    """It was said that there is no static equilibrium near the state, as if one had been asked for."""
+    smooth = {"preparation__gravity": "frictionless", "packing__polydispersity": 0.1, "loads": []}
+    moving = scene(contact__friction=0.3, protocol__maximum_steps=333, protocol__static_finish=False, **smooth)
+    with pytest.raises(NotSettled, match=r"under gravity without friction within protocol.maximum_steps = 333 "):
+        solve_scene(moving)
+
+
 @pytest.mark.parametrize("law", ["literal", "unloading"])
 def test_friction_laws_of_motion_are_left_to_dynamics(law):
     literal = scene(protocol__friction_law=law, protocol__stop_kinetic_energy=1e-6, loads=LOAD)

@@ -1,5 +1,7 @@
 """The survey's parameters, and that its runs go on where they were."""
 
+import os
+
 import numpy as np
 import pytest
 import yaml
@@ -75,6 +77,9 @@ def test_mistakes_are_one_line_each(file, tmp_path):
         survey.ensemble("large", file)
     with pytest.raises(survey.SurveyError, match=r"none\.yaml: cannot be read"):
         survey.read_parameters(tmp_path / "none.yaml")
+    os.mkfifo(tmp_path / "pipe.yaml")  # it was waited for without end
+    with pytest.raises(survey.SurveyError, match=r"pipe\.yaml: cannot be read: is not a regular file"):
+        survey.read_parameters(tmp_path / "pipe.yaml")
     file.write_text(yaml.safe_dump({**SMALL, "realizations": 0}))
     with pytest.raises(SceneError, match=r"params\.yaml: realizations = 0"):
         survey.read_parameters(file)

@@ -210,6 +210,11 @@ def test_scenes_are_drawn_from_all_that_a_scene_may_say():
     stiffness = [scene["contact"]["normal_stiffness"] for scene in drawn]
     assert min(stiffness) < 10.0
     assert max(stiffness) > 1e8
+    resists = [(scene["contact"].get("rolling_friction", 0.0) > 0.0, scene["wall"].get("rolling_friction", 0.0) > 0.0)
+               for scene in drawn]  # fmt: skip
+    assert set(resists) == {(True, True), (True, False), (False, True), (False, False)}
+    assert 0.2 < np.mean([random_scenes.rolls(scene) for scene in drawn]) < 0.6
+    assert any(random_scenes.rolls(s) and "rolling_stiffness_ratio" not in s["wall"] for s in drawn)
     programmes = [p["load_factors"] for p in protocols]
     assert any(f != sorted(f) and 0.0 in f and len(set(f)) < len(f) for f in programmes)
     steps = [p["time_step"] for p in protocols]

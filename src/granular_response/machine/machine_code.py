@@ -61,7 +61,10 @@ def _keep_own_types_alone(compiled: Any, lock: Path) -> None:
             return
         with ExitStack() as held:
             with suppress(OSError):  # a file system without locks
-                fcntl.lockf(held.enter_context(lock.open("w")), fcntl.LOCK_EX)
+                # a pipe in its place would wait to be opened
+                descriptor = os.open(lock, os.O_WRONLY | os.O_CREAT | os.O_NONBLOCK, 0o666)
+                held.callback(os.close, descriptor)
+                fcntl.lockf(descriptor, fcntl.LOCK_EX)
             save(arguments, data)
 
     compiled._cache.save_overload = save_own

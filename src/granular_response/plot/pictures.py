@@ -8,6 +8,7 @@ figure of its own, made by pyplot.
 from __future__ import annotations
 
 import os
+import reprlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -415,7 +416,10 @@ def packing(
                 axes, shown.position, shown.radius, shown.values("angle"), color=style.SKY, linewidth=0.5
             )
         else:
-            number: FloatArray = np.ma.filled(np.ma.array(values, dtype=float), np.nan)  # masked: not known
+            try:
+                number: FloatArray = np.ma.filled(np.ma.array(values, dtype=float), np.nan)  # masked: not known
+            except (TypeError, ValueError):
+                raise PictureError(f"values = {reprlib.repr(values)}: must be numbers, a disk each") from None
             if number.shape != shown.radius.shape:
                 raise PictureError(f"values: must have shape {shown.radius.shape}, a disk each, not {number.shape}")
             look = {"cmap": cmap, "edgecolor": style.MUTED, **patches}

@@ -69,6 +69,7 @@ def packed(table: Table, left: float, floor: float, width: float, periodic: bool
         periodic=periodic,
         given_mass=None if table.mass is None else mass / exact_mean(mass),
         columns=table.columns,
+        frame=table.frame,
     )
 
 

@@ -1,8 +1,9 @@
 """The door through which values come in: arrays of any kind as the numbers and lists that scenes hold.
 
 Arrays of numpy, masked ones too, of xarray, pandas, dask and the standard library become lists of Python numbers, each
-value where it stands. What is missing in them (a masked place) becomes None, which no rule takes for a number. Numbers
-of more than 64 bits are rounded. A set has no order, so it is no list: it stays a set, and is refused.
+value where it stands. What is missing in them (a masked place) becomes nan, which no rule takes for a number; None
+would be a key that is left open. Numbers of more than 64 bits are rounded. A set has no order, so it is no list: it
+stays a set, and is refused.
 """
 
 from __future__ import annotations
@@ -23,17 +24,18 @@ def plain(value: Any) -> Any:
     --------
     >>> from granular_response.scene.given import plain
     >>> plain(np.ma.masked_equal([1.0, 3.0], 3.0)), plain(np.array([1, 3], np.longdouble)), plain(range(2))
-    ([1.0, None], [1.0, 3.0], [0, 1])
+    ([1.0, nan], [1.0, 3.0], [0, 1])
     """
-    if value is np.ma.masked:
-        return None
     if isinstance(value, np.generic):
         return _number(value)
     if isinstance(value, (list, tuple, range)):
         return [plain(part) for part in value]
     if isinstance(value, (array, memoryview)) or (hasattr(value, "__array__") and not isinstance(value, type)):
         try:
-            listed = np.asanyarray(value).tolist()  # asanyarray keeps the mask, and tolist has None there
+            values = np.asanyarray(value)  # which keeps the mask
+            if isinstance(values, np.ma.MaskedArray):
+                values = np.ma.filled(values.astype(object), math.nan)
+            listed = values.tolist()
         except (TypeError, ValueError):  # a dataset, which has an __array__ that refuses
             return value
         return [plain(part) for part in listed] if isinstance(listed, list) else _scalar(listed)

@@ -46,6 +46,7 @@ class Packing:
     columns: Mapping[str, FloatArray] | None = None  #: (n,) each, of its file beside places and sizes, as they stand
     given: FloatArray | None = None  #: (n, 2) where a user's own disks were given; None for packings that are made
     contacts: Sequence[GivenContact] | None = None  #: that a user's own disks begin with; None: without springs
+    frame: str = ""  #: which frame of its file this is, such as "3 of 3, time step 200", where the format has frames
 
     @property
     def n(self) -> int:

@@ -218,10 +218,13 @@ def check_overlaps(problem: Problem, state: State) -> None:
         beyond = np.flatnonzero(contacts.overlap >= size)
         if len(beyond):
             k = beyond[np.argmax((contacts.overlap / size)[beyond])]
+            cure = "a smaller load or a larger contact.normal_stiffness"
+            if state.load_factor == 0.0:  # no load does this, whatever the scene has
+                cure = "a larger contact.normal_stiffness"
             raise EquilibriumError(
                 f"disk {contacts.first[k]} and {other(contacts.second[k])} overlap by "
                 f"{contacts.overlap[k]:.3g} mean radii at load factor {state.load_factor:g}, as much as a radius: "
-                "take a smaller load or a larger contact.normal_stiffness"
+                f"take {cure}"
             )
 
 

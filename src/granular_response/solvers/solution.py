@@ -265,7 +265,12 @@ def _under_gravity(problem: Problem, progress: Progress | None) -> State:
         smooth = _under_gravity(problem.without_friction(), progress)
         # no tangential spring is stretched: an equilibrium with friction too
         start = problem.with_static_forces(smooth)
-        found = finish(problem, start)
+        try:
+            found = finish(problem, start)
+        except EquilibriumError:
+            if smooth.reached.settled is False:  # statics is not what failed
+                raise NotSettled(not_settled(problem, smooth, "gravity without friction")) from None
+            raise
         if found.certificate.stable or not problem.plan.static:
             return found
         # contacts that touch without bearing may open in the last digit, and what they held turns away

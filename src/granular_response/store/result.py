@@ -328,6 +328,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "scene": solution.scene.to_yaml(),
         "scene_folder_note": "paths in the scene are relative to the folder of the scene file",
         **_law_module(solution.scene),
+        **({"packing_frame": packing.frame} if packing.frame else {}),
         "width": packing.width,
         "sides": "periodic" if packing.box.periodic else "walls",
         "method": json.dumps({stage: getattr(one, "method", "none") for stage, one in choices.items()}),

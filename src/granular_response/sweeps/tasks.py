@@ -15,6 +15,7 @@ import contextlib
 import functools
 import logging
 import os
+import reprlib
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -72,8 +73,8 @@ def map_tasks(
     what
         What the tasks are, for the progress line.
 
-    Raises SweepError if a task raises (the message names its item), if workers keep dying at one task, if something
-    cannot be sent to a worker or back, or if the cluster cannot be reached or is lost.
+    Raises SweepError for a set of items, which has no order, if a task raises (the message names its item), if workers
+    keep dying at one task, if something cannot be sent to a worker or back, or if the cluster cannot be reached or is lost.
 
     Examples
     --------
@@ -84,6 +85,8 @@ def map_tasks(
     workers, progress = given.workers if workers is None else workers, progress or given.progress
     if workers is not None and not (isinstance(workers, SupportsIndex) and workers.__index__() >= 1):
         raise SweepError(f"workers = {workers!r}: must be a whole number, 1 or more")
+    if isinstance(items, (set, frozenset)):
+        raise SweepError(f"items = {reprlib.repr(items)}: must be a list, a set has no order for the results to be in")
     items = list(items)
     scheduler = scheduler or given.scheduler or os.environ.get(SCHEDULER_VARIABLE) or None
     folder = checkpoint or given.checkpoint

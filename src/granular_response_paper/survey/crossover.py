@@ -126,9 +126,8 @@ def grown(shapes: FloatArray) -> FloatArray:
     fits = np.full(shapes.shape, -np.inf)
     for begin in range(shapes.shape[-1]):
         number = count[..., begin + 1 :] - count[..., begin, None]
-        means = np.divide(
-            total[..., begin + 1 :] - total[..., begin, None], number, out=np.full(number.shape, np.inf), where=number > 0
-        )
+        sums = total[..., begin + 1 :] - total[..., begin, None]
+        means = np.divide(sums, number, out=np.full(number.shape, np.inf), where=number > 0)
         to_any_end = np.minimum.accumulate(means[..., ::-1], axis=-1)[..., ::-1]
         np.maximum(fits[..., begin:], to_any_end, out=fits[..., begin:])
     return np.where(known, fits, np.nan)

@@ -25,6 +25,7 @@ import numpy as np
 import xarray as xr
 
 from granular_response.errors import GranularError
+from granular_response.inputs import read_text
 from granular_response.scene import Scene, SceneError, text
 from granular_response.store import files as store
 from granular_response.store.variables import variable
@@ -84,7 +85,7 @@ def read_parameters(path: Path) -> Parameters:
     Raises SurveyError if it cannot be read, SceneError for a parameter that is missing, unknown or not what it must be.
     """
     try:
-        return Parameters(**text.read(path.read_text(encoding="utf-8")))
+        return Parameters(**text.read(read_text(path)))
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from None
     except (OSError, UnicodeDecodeError) as error:

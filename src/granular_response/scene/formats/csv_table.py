@@ -76,7 +76,10 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
             header = cells
             chosen = _chosen(header, columns or {})
             titles = [_name_and_unit(cell)[0] for cell in header]
-            motion = {name: titles.index(name) for name in MOTION if titles.count(name) == 1}
+            for name in MOTION:
+                if titles.count(name) > 1:
+                    raise FormatError(f"column {name} is given {titles.count(name)} times, must be given once", place)
+            motion = {name: titles.index(name) for name in MOTION if name in titles}
             once.add("header", place)
             continue
         if cells == header:

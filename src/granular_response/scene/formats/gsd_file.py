@@ -105,6 +105,11 @@ class _Frames:
             raise FormatError(f"chunk {name}: has values of another kind, code {kind}")
         return np.frombuffer(self._bytes(at, rows * columns * number.itemsize), number).reshape(rows, columns)
 
+    @property
+    def which(self) -> str:
+        """The last frame, of how many."""
+        return f"{self._last + 1} of {self._last + 1}"
+
     def check(self, name: str, rows: int, columns: int) -> None:
         """Raise FormatError where the last frame has a chunk of another shape."""
         found = self._chunk(self._last, name, any_kind=True)
@@ -146,7 +151,7 @@ def read(path: Path) -> Table:
         raise FormatError("the box must not be tilted")
     places = [f"particle {k}" for k in range(n)]
     up = y if upward(y, z) == "y" else z
-    return Table(x, up, 0.5 * diameter, places, mass, _file_box(frames, float(box[0])))
+    return Table(x, up, 0.5 * diameter, places, mass, _file_box(frames, float(box[0])), frame=frames.which)
 
 
 def _file_box(frames: _Frames, width: float) -> FileBox:

@@ -44,6 +44,10 @@ _SECTIONS |= {f"{name.capitalize()} Coeffs": f"{name} types" for name in _NUMBER
 _SECTIONS |= {f"{name.capitalize()} Type Labels": f"{name} types" for name in _NUMBERED}
 
 
+#: Sections whose lines begin with what they are about: an atom, or a type.
+_NAMED_ONCE = {name for name, header in _SECTIONS.items() if header == "atom types"} | {"Velocities"}
+
+
 class _Header:
     """What stands above the sections."""
 
@@ -91,8 +95,9 @@ def read(path: Path) -> Table:
     ids: list[str] = []
     rows: list[list[float]] = []
     places: list[str] = []
-    moving: dict[int, list[float]] = {}  #: velocity and angular velocity, by the id
     found: dict[str, int] = {}  #: lines of each section
+    moving: dict[str, tuple[str, list[float]]] = {}  #: where each atom has its velocity and angular velocity, and these
+    types: dict[str, str] = {}  #: of atoms, and where one has it
     section = ""
     lines, whole = lines_of(path)
     mark = Mark.found(lines[0], "line 1") if lines else None
@@ -117,17 +122,19 @@ def read(path: Path) -> Table:
         found[section] += 1
         if whole_number(cells[0]) is None:
             raise FormatError(f"{shown(cells[0])}: a line of section {section} must begin with a whole number", place)
+        if section in _NAMED_ONCE:
+            once.add(f"{cells[0]} in section {section}", place)
         if section == "Atoms":
             if len(cells) not in (7, 10):  # three numbers of the periodic image may follow
                 raise FormatError(f"has {len(cells)} values, must have id type diameter density x y z", place)
+            types[cells[1]] = place
             ids.append(cells[0])
             rows.append(numbers(cells[2:7], _COLUMNS, place))
             places.append(place)
         if section == "Velocities":
             if len(cells) != 7:
                 raise FormatError(f"has {len(cells)} values, must have id vx vy vz wx wy wz", place)
-            once.add(f"velocity of atom {cells[0]}", place)
-            moving[int(cells[0])] = numbers(cells[1:], _MOTION, place)
+            moving[cells[0]] = place, numbers(cells[1:], _MOTION, place)
     count = header.counts.get("atoms")
     if count is None or "x" not in header.sides or len(rows) != count:
         rule = f"must have the headers atoms and xlo xhi, and as many atoms as it says (found {len(rows)})"
@@ -138,6 +145,11 @@ def read(path: Path) -> Table:
             raise FormatError(f"section {name} has {number} lines, {rule}")
     if not rows:
         raise FormatError("has no atoms")
+    most = header.counts.get("atom types", 0)
+    for kind, place in types.items():
+        number_of_type = whole_number(kind)
+        if not 1 <= (0 if number_of_type is None else number_of_type) <= most and "Atom Type Labels" not in found:
+            raise FormatError(f"type = {shown(kind)}: must be from 1 to {most}, as the header atom types says", place)
     if not whole:
         raise FormatError("is cut: its last line has no end")
     left, width = header.across()
@@ -147,15 +159,14 @@ def read(path: Path) -> Table:
             rule = f"says width {mark.width!r}, the bounds xlo xhi {left!r} to {left + width!r}; must agree"
             raise FormatError(rule, "line 1")
     order = by_id(ids, places)
+    for atom in moving.keys() - set(ids):
+        raise FormatError(f"id = {shown(atom)}: must be that of an atom, section Velocities has it", moving[atom][0])
     diameter, density, x, y, z = np.array(rows)[order].T
-    up, numbered = upward(y, z), [int(ids[k]) for k in order]
-    columns = None
+    up, columns = upward(y, z), None
     if moving:
-        if sorted(moving) != numbered:
-            raise FormatError("section Velocities must have the ids of section Atoms")
-        v = np.array([moving[k] for k in numbered]).T
+        v = np.array([moving[ids[k]][1] for k in order]).T
         columns = {"vx": v[0], "vz": v[1] if up == "y" else v[2], "spin": v[5] if up == "y" else -v[4]}
     return Table(
         x, z if up == "z" else y, 0.5 * diameter, [places[k] for k in order], density * diameter**3,
-        FileBox(left, width, reason=_REASON) if mark is None else mark.box, columns=columns, ids=numbered,
+        FileBox(left, width, reason=_REASON) if mark is None else mark.box, columns=columns, ids=[int(ids[k]) for k in order],
     )  # fmt: skip

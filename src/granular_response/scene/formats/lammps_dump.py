@@ -1,5 +1,8 @@
 """LAMMPS dump files of text: the last frame, with columns x y z (also unwrapped or scaled) and radius or diameter.
 
+The format has neither an end nor a number of frames: a file that was cut between two frames is whole, and what is read
+of it is the last frame that it has. ``Table.frame`` says which one that is.
+
 Disks are in the order of their ids, if there is a column id. Sizes and masses may be columns of the atoms or what a
 compute, a fix or a variable calls by their name: ``mass``, ``c_mass``, ``v_mass[1]``. Velocities, spins and the forces
 of walls are read where there are columns of them. A dump of local quantities has contacts in place of atoms.
@@ -96,6 +99,9 @@ def _checked(frame: dict[str, _Item], which: str, rows: str = "ATOMS") -> int:
             if name == "BOX BOUNDS":
                 lines += ", and have flags of three axes or none"
             raise FormatError(f"must be followed by {lines}, not {len(item.lines)}", item.place)
+    k, text = frame["TIMESTEP"].lines[0]
+    if whole_number(text.strip()) is None:
+        raise FormatError(f"{shown(text)}: must be the number of the time step", f"line {k}")
     k, text = frame[number_of].lines[0]
     count = whole_number(text.strip())
     if count is None:
@@ -106,8 +112,8 @@ def _checked(frame: dict[str, _Item], which: str, rows: str = "ATOMS") -> int:
     return count
 
 
-def _last_frame(path: Path, rows: str = "ATOMS") -> dict[str, _Item]:
-    """The last frame of a file, once all are whole."""
+def _last_frame(path: Path, rows: str = "ATOMS") -> tuple[dict[str, _Item], str]:
+    """The last frame of a file, once all are whole, and which one it is."""
     lines, whole = lines_of(path)
     frames = _frames(lines, rows)
     for k, one in enumerate(frames, start=1):
@@ -116,7 +122,8 @@ def _last_frame(path: Path, rows: str = "ATOMS") -> dict[str, _Item]:
         raise FormatError("is cut: its last line has no end")
     if not count:
         raise FormatError(f"holds 0 of 0 {rows.lower()} in its last frame", frames[-1][rows].place)
-    return frames[-1]
+    frame, last = frames[-1], len(frames)
+    return frame, f"{last} of {last}, time step {frame['TIMESTEP'].lines[0][1].strip()}"
 
 
 def read_contacts(path: Path) -> tuple[list[list[float]], list[str]]:
@@ -124,7 +131,7 @@ def read_contacts(path: Path) -> tuple[list[list[float]], list[str]]:
 
     The first two are ``patom1 patom2`` of ``compute property/local``, the others what ``compute pair/local`` has.
     """
-    entries = _last_frame(path, "ENTRIES")["ENTRIES"]
+    entries = _last_frame(path, "ENTRIES")[0]["ENTRIES"]
     if len(entries.words) != len(_CONTACT):
         raise FormatError(f"must have the six columns {' '.join(_CONTACT)}, not {len(entries.words)}", entries.place)
     return [numbers(line.split(), _CONTACT, f"line {k}") for k, line in entries.lines], [
@@ -134,7 +141,7 @@ def read_contacts(path: Path) -> tuple[list[list[float]], list[str]]:
 
 def read(path: Path) -> Table:
     """The disks of the last frame."""
-    frame = _last_frame(path)
+    frame, which = _last_frame(path)
     flags, sides = _box(frame["BOX BOUNDS"])
     atoms = frame["ATOMS"]
     names, heading = atoms.words, atoms.place
@@ -193,7 +200,7 @@ def read(path: Path) -> Table:
     extra = {name: column(names.index(name)) for name in _further(up) if name in names}
     columns = {said: sign * extra[name] for name, (said, sign) in _further(up).items() if name in extra}
     remark = NO_MASSES if mass is None else ""
-    return Table(x, y if up == "y" else z, radius, places, mass, bounded, remark, columns or None, ids)
+    return Table(x, y if up == "y" else z, radius, places, mass, bounded, remark, columns or None, ids, which)
 
 
 def _further(up: str) -> dict[str, tuple[str, float]]:

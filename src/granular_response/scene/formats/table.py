@@ -58,11 +58,16 @@ class Table:
     #: (n,) motion of the disks, nan where a cell is no number, and forces of walls on them
     columns: Mapping[str, FloatArray] | None = None
     ids: Sequence[int] | None = None  #: (n,) by which other files call the disks
+    frame: str = ""  #: which frame of its file this is, such as "3 of 3, time step 200", where the format has frames
 
 
 @dataclass(frozen=True)
 class Mark:
-    """The line by which our own tables say what their format has no place for, and by which a cut one is known."""
+    """The line by which our own tables say what their format has no place for, and by which a cut one is known.
+
+    Where a table has no header, damage to that line alone could make it a comment that takes the disk after it along:
+    there the last line repeats it.
+    """
 
     disks: int
     width: float
@@ -73,6 +78,11 @@ class Mark:
     def __str__(self) -> str:
         sides = "periodic" if self.periodic else "walls"
         return f"granular-response: {self.disks} disks, width {self.width!r}, sides {sides}"
+
+    @property
+    def last_line(self) -> str:
+        """What repeats it at the end of a table."""
+        return f"end, {self}"
 
     @property
     def box(self) -> FileBox:
@@ -92,12 +102,21 @@ class Mark:
             raise FormatError(f"width = {shown(match[2])}: must be greater than 0", place)
         return cls(int(match[1]), width, match[3] == "periodic")
 
+    @staticmethod
+    def ends(line: str) -> bool:
+        """Whether a line with a mark is the one that repeats it."""
+        return line.lstrip("# ").startswith("end, ")
+
     def check(self, disks: int, whole: bool) -> None:
         """Raise FormatError unless there are as many disks as it says, and the last line is ``whole``."""
         if disks != self.disks:
             raise FormatError(f"holds {disks} of the {self.disks} disks of its first line")
         if not whole:
             raise FormatError("is cut: its last line has no end")
+
+
+#: What ends a line for Python beside \\n and \\r.
+_OTHER_ENDS = tuple("\v\f\x1c\x1d\x1e\x85\u2028\u2029")
 
 
 class Once:
@@ -113,9 +132,16 @@ class Once:
 
 
 def lines_of(path: Path) -> tuple[list[str], bool]:
-    """The lines of a text file, and whether the last one has an end. OSError, UnicodeError."""
+    """The lines of a text file, and whether the last one has an end. OSError, UnicodeError.
+
+    Raises FormatError for what ends lines or pages elsewhere: in a comment it would take the row after it along.
+    """
     text = read_text(path).replace("\r\n", "\n").replace("\r", "\n")
-    return text.split("\n")[: -1 if text.endswith("\n") else None], text.endswith("\n") or not text
+    lines = text.split("\n")[: -1 if text.endswith("\n") else None]
+    for k, line in enumerate(lines, start=1):
+        if len(line.splitlines()) > 1 or line[-1:] in _OTHER_ENDS:
+            raise FormatError("has a line or page end of another kind within, must be one line", f"line {k}")
+    return lines, text.endswith("\n") or not text
 
 
 def number(text: str, name: str, place: str) -> float:

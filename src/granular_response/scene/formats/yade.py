@@ -19,13 +19,17 @@ def read(path: Path) -> Table:
     rows: list[list[float]] = []
     places: list[str] = []
     mark: Mark | None = None
+    last: Mark | None = None
     once = Once()
     values = 0  #: in each line, where the format leaves their number open
     lines, whole = lines_of(path)
     for line_number, line in enumerate(lines, start=1):
         place = f"line {line_number}"
         if line.lstrip().startswith("#"):
-            if found := Mark.found(line, place):
+            if (found := Mark.found(line, place)) and Mark.ends(line):
+                once.add("last line of granular-response", place)
+                last = found
+            elif found:
                 once.add("mark of granular-response", place)
                 mark = found
             words = line.split()
@@ -45,6 +49,9 @@ def read(path: Path) -> Table:
         places.append(place)
     if not rows:
         raise FormatError("has no spheres, must have a line x y z r for each")
+    if last is not None and last != mark:
+        above = "is missing or damaged" if mark is None else "says something else"
+        raise FormatError(f"the mark of granular-response in its last line is there, that above the spheres {above}")
     if mark is not None:
         mark.check(len(rows), whole)
     x, y, z, radius = np.array(rows).T

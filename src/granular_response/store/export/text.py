@@ -44,7 +44,8 @@ def yade(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
     state = dataset.isel(state=-1)
     x, z = state["position"].values.T
     rows = _rows([x, np.zeros_like(x), z, state["radius"].values])
-    return _file(path, ["#format x_y_z_r", f"# {mark(dataset)}", *rows])
+    own = mark(dataset)
+    return _file(path, ["#format x_y_z_r", f"# {own}", *rows, f"# {own.last_line}"])
 
 
 def lammps_data(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
