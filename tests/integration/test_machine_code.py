@@ -1,6 +1,7 @@
 """Machine code: where it is kept, never that of other sources, and the same digits on every processor."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -137,3 +138,9 @@ def test_sums_are_the_same_compiled_for_processors_with_wide_and_with_narrow_reg
         matrix = np.random.default_rng(b).standard_normal((n, n)) + 4.0 * b * np.eye(n)
         exact.append(np.linalg.solve(np.tril(np.triu(matrix, -b), b), np.ones(n)))
     np.testing.assert_allclose(values, np.concatenate(exact), rtol=1e-13)
+
+
+def test_every_compiled_module_is_among_the_sources_that_name_the_machine_code():
+    compiled = [path for path in PACKAGE.rglob("*.py") if re.search(r"^@kernel|^@by_type", path.read_text(), re.M)]
+    names = [path.relative_to(PACKAGE).as_posix() for path in compiled]
+    assert len(names) > 8 and [name for name in names if not name.startswith(machine_code.SOURCES)] == []

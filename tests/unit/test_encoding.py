@@ -4,6 +4,7 @@ import dataclasses
 import functools
 import os
 import pickle
+import re
 import subprocess
 from collections import namedtuple
 from pathlib import Path
@@ -12,6 +13,7 @@ import cloudpickle
 import numpy as np
 import pytest
 import xarray as xr
+from places import SOURCE
 
 from granular_response.scene import Scene
 from granular_response.solvers.solution import solve_scene
@@ -119,3 +121,10 @@ def test_a_planted_file_runs_nothing_and_is_refused(data):
     with pytest.raises(NotDecodable):
         decode(data, HERE)
     assert not hasattr(builtins, "planted_code_has_run")
+
+
+def test_pickles_are_read_from_workers_only():
+    """A pickle runs code when it is read: from a file only values are."""
+    reads = re.compile(r"\b(cloud)?pickle\.(loads?|Unpickler)\b|from (cloud)?pickle import")
+    found = {str(path.relative_to(SOURCE)) for path in SOURCE.rglob("*.py") if reads.search(path.read_text("utf-8"))}
+    assert found == {f"granular_response/sweeps/{name}.py" for name in ("encoding", "executor")}

@@ -9,7 +9,7 @@ from matplotlib.colors import to_hex
 
 from granular_response.plot import network as nd
 from granular_response.plot import style
-from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, Box
+from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL
 
 POSITION = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 1.0 + np.sqrt(3.0)], [4.2, 2.5]])
 RADIUS = np.array([1.0, 1.0, 1.0, 0.5])
@@ -19,14 +19,6 @@ FIRST, SECOND = np.array([0, 0, 1, 1]), np.array([1, 2, 2, 3])
 @pytest.fixture
 def axes():
     return style.figure()[1][0, 0]
-
-
-def test_disks_have_their_place_and_diameter(axes) -> None:
-    disks = nd.draw_disks(axes, POSITION, RADIUS, values=[1.0, 2.0, 3.0, 4.0])
-    np.testing.assert_array_equal(disks.get_offsets(), POSITION)
-    np.testing.assert_allclose(disks.get_widths(), 2.0 * RADIUS)
-    np.testing.assert_array_equal(disks.get_array(), [1.0, 2.0, 3.0, 4.0])
-    assert axes.get_xlim()[0] <= 0.0 and axes.get_xlim()[1] >= 4.7
 
 
 def test_a_drawn_disk_covers_its_area() -> None:
@@ -40,30 +32,6 @@ def test_a_drawn_disk_covers_its_area() -> None:
     assert np.sum(1.0 - picture) == pytest.approx(np.pi * 1.5**2 * per_unit**2, rel=5e-3)
 
 
-def test_contacts_join_centres(axes) -> None:
-    lines = nd.draw_contacts(axes, POSITION, FIRST, SECOND)
-    np.testing.assert_allclose(np.array(lines.get_segments()), POSITION[np.stack([FIRST, SECOND], axis=1)])
-
-
-def test_contact_changes_are_sorted_into_kinds(axes) -> None:
-    drawn = nd.draw_contact_changes(
-        axes,
-        POSITION,
-        FIRST,
-        SECOND,
-        touching_before=[True, True, False, True],
-        touching=[True, False, True, True],
-        sliding=[False, False, False, True],
-    )
-    ends = {name: np.array(lines.get_segments())[:, 1].tolist() for name, lines in drawn.items()}
-    expected = {"unchanged": 1, "opened": 2, "closed": 2, "sliding": 3}
-    assert ends == {name: [POSITION[disk].tolist()] for name, disk in expected.items()}
-    width = {name: float(lines.get_linewidth()[0]) for name, lines in drawn.items()}
-    assert width["opened"] > 4.0 * width["unchanged"]
-    unchanged = nd.draw_contact_changes(axes, POSITION, [0], [1], touching_before=[True], touching=[True])
-    assert list(unchanged) == ["unchanged"]
-
-
 def test_contact_points_lie_between_the_surfaces() -> None:
     point = nd.pair_points(POSITION, RADIUS, FIRST, SECOND)
     np.testing.assert_allclose(point[0], [2.0, 1.0])
@@ -73,18 +41,6 @@ def test_contact_points_lie_between_the_surfaces() -> None:
         np.testing.assert_allclose(distance, 0.5 * other, atol=1e-12)
     walls = nd.wall_points(POSITION, RADIUS, [0, 0, 3], [FLOOR, LEFT_WALL, RIGHT_WALL])
     np.testing.assert_allclose(walls, [[1.0, 0.0], [0.0, 1.0], [4.7, 2.5]], atol=1e-15)
-
-
-def test_force_lines_are_centred_and_scaled_by_magnitude(axes) -> None:
-    point = nd.pair_points(POSITION, RADIUS, FIRST, SECOND)
-    force = np.array([[3.0, 4.0], [-1.0, 0.0], [0.0, 2.0], [1e-4, 0.0]])
-    lines = nd.draw_force_chains(axes, point, force, smallest=1e-3, length_per_force=0.4, width_per_force=0.6)
-    segments = np.array(lines.get_segments())
-    np.testing.assert_allclose(segments.mean(axis=1), point[:3])
-    vector = segments[:, 1] - segments[:, 0]
-    magnitude = np.linalg.norm(force[:3], axis=1)
-    np.testing.assert_allclose(vector, 2.0 * force[:3] / 5.0)
-    np.testing.assert_allclose(lines.get_linewidth(), 3.0 * magnitude / 5.0)
 
 
 def test_forces_that_press_together_and_apart_are_told_apart(axes) -> None:
@@ -106,12 +62,6 @@ def test_rotation_marks_start_vertical_and_turn_counter_clockwise(axes) -> None:
     direction = marks[:, 1] - marks[:, 0]
     np.testing.assert_allclose(direction / np.linalg.norm(direction, axis=1)[:, None], [[0, 1], [-1, 0]], atol=1e-15)
     np.testing.assert_allclose(marks.mean(axis=1), POSITION[:2])
-
-
-def test_annotations_extend_the_view(axes) -> None:
-    nd.draw_box(axes, Box(8.0), 5.0)
-    nd.draw_load(axes, (4.0, 5.0), length=4.0)
-    assert axes.dataLim.ymax >= 9.0 and axes.dataLim.xmax >= 8.0
 
 
 def test_bad_input_is_named(axes) -> None:

@@ -70,31 +70,11 @@ def test_a_png_has_the_pixels_of_matplotlib_in_fewer_bytes() -> None:
             assert other.info["dpi"] == pytest.approx((200.0, 200.0), rel=1e-3)
 
 
-def test_failed_save_leaves_the_old_file(tmp_path, monkeypatch) -> None:
-    (path,) = style.save(_drawn(), "a", tmp_path, formats=("png",))
-    before = path.read_bytes()
-
-    def fail(*arguments, **keywords):
-        raise OSError("no space left")
-
-    monkeypatch.setattr(style.atomic.os, "replace", fail)
-    with pytest.raises(OSError, match="no space left"):
-        style.save(_drawn(), "a", tmp_path, formats=("png",))
-    assert path.read_bytes() == before
-    assert [p.name for p in tmp_path.iterdir()] == ["a.png"]
-
-
 def test_fonts_are_those_that_matplotlib_ships() -> None:
     with style.context():
         for properties in ({}, {"style": "italic"}, {"weight": "bold"}):
             font = font_manager.FontProperties(**properties)
             assert font_manager.findfont(font, fallback_to_default=False).startswith(mpl.get_data_path())
-
-
-def test_settings_outside_are_untouched() -> None:
-    before = dict(mpl.rcParams)
-    style.render(_drawn())
-    assert dict(mpl.rcParams) == before
 
 
 @pytest.mark.parametrize("of", style.RAMPS)
@@ -104,13 +84,6 @@ def test_ordered_colours_darken_to_one_side_and_are_seen_on_white(of: str) -> No
     luminance = linear @ np.array([0.2126, 0.7152, 0.0722])  # of WCAG 2
     assert np.all(np.diff(luminance) > 0.0)
     assert 1.05 / (luminance[-1] + 0.05) > 2.9
-
-
-def test_categorical_cycle_has_a_style_of_its_own_for_each_colour() -> None:
-    looks = [str(style.line(index)) for index in range(len(style.COLOURS))]
-    assert len(set(looks)) == len(style.LINE_STYLES) == len(style.MARKERS) == len(style.COLOURS)
-    assert style.line(len(looks)) == style.line(0)
-    assert style.marked_line(1)["marker"] != style.marked_line(2)["marker"]
 
 
 def test_bad_input_is_named() -> None:
@@ -126,17 +99,3 @@ def test_a_symbol_with_its_value_is_set_with_unit_and_power() -> None:
     assert style.equals(style.FRICTION, 0.2) == r"$\mu = 0.2$"
     assert style.equals("k_N", 1e5, style.STIFFNESS_UNIT) == r"$k_N = 10^{5}\,\bar m g/\bar R$"
     assert style.equals("k_N", 3000.0) == "$k_N = 3000$"
-
-
-@pytest.mark.parametrize("along", ["x", "y"])
-def test_a_value_of_the_paper_is_a_line_or_a_band_with_its_text(along: str) -> None:
-    panel = style.figure()[1][0, 0]
-    panel.plot([0.0, 10.0], [0.0, 10.0])
-    style.paper_value(panel, 4.0, "paper: 4", along=along, side="behind")
-    line = panel.lines[-1]
-    assert np.unique(line.get_xdata() if along == "x" else line.get_ydata()).tolist() == [4.0]
-    style.paper_value(panel, 6.0, along=along, band=7.0)
-    lower, upper = panel.patches[-1].get_window_extent().get_points()
-    ends = panel.transData.inverted().transform([lower, upper])[:, "xy".index(along)]
-    np.testing.assert_allclose(ends, [6.0, 7.0])
-    assert [text.get_text() for text in panel.texts] == ["paper: 4"]
