@@ -28,16 +28,6 @@ OF_GROUPS = {group: simulation.parameters(group, PARAMETERS)[1] for group in GRO
 SAME = 0.02
 
 
-def test_the_pipeline_of_the_survey_names_a_stage_and_the_sources_of_every_group():
-    stage = yaml.safe_load((FOLDER / "dvc.yaml").read_text())["stages"]["packings"]
-    named = ("../src/", "../extensions/src/", "granular_response/")
-    declared = stage["do"]["deps"]
-    for start in named:
-        declared = [path.removeprefix(start) for path in declared]
-    assert {*surveyed.sources_of("${item}"), "granular_response_paper/survey"} <= set(declared)
-    assert stage["foreach"] == GROUPS
-
-
 @record
 class Slab:
     """What tells a packing from others."""

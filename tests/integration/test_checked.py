@@ -9,10 +9,10 @@ from commands import refused, succeeded
 from small_scenes import scene
 
 import granular_response as gr
-from granular_response.solvers.solution import continue_solution, solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
-from granular_response.store.result import ResultError, indexed, load_coordinates, state_from, to_dataset
+from granular_response.store.result import ResultError, load_coordinates, state_from, to_dataset
 
 
 @pytest.fixture(scope="module")
@@ -52,12 +52,6 @@ def test_load_is_a_dimension_for_any_number_of_loads(solution, factors):
     assert checked(data).identical(data)
 
 
-def test_factors_may_repeat():
-    made = indexed(xr.Dataset({"a": ("load", [1, 2, 3])}, load_coordinates([0.5, 1.0, 0.5])))
-    assert made["a"].sel(load=0.5).values.tolist() == [1, 3]
-    assert made["a"].sel(step=3) == 3 and made["load_factor"].values.tolist() == [0.5, 1.0, 0.5]
-
-
 @pytest.mark.parametrize(
     ("factors", "branches"),
     [
@@ -69,18 +63,6 @@ def test_factors_may_repeat():
 )
 def test_each_load_has_its_branch(factors, branches):
     assert load_coordinates(factors)["branch"].values.tolist() == branches.split()
-
-
-def test_codes_say_what_they_mean(path):
-    with xr.open_dataset(path) as plain:
-        for name, meanings in (
-            ("contact_status", "open sticking sliding"),
-            ("wall_status", "open sticking sliding"),
-            ("wall_index", "floor left_wall right_wall"),
-        ):
-            attributes = plain[name].attrs
-            assert attributes["flag_meanings"] == meanings and attributes["flag_values"].tolist() == [0, 1, 2]
-            assert attributes["flag_values"].dtype == plain[name].dtype
 
 
 def test_force_vectors_carry_weight_and_load(path):
@@ -169,19 +151,6 @@ def test_a_sealed_file_that_is_no_result(solution, tmp_path, damage):
     assert said in str(caught.value)
     with pytest.raises(ResultError):
         gr.open_result(tmp_path / "bad.nc")
-
-
-def test_commands_say_so_in_one_line(solution, tmp_path):
-    store.write(tmp_path / "bad.nc", spoil(to_dataset(solution), "position", np.nan))
-    for command, *more in (["show"], ["continue", "--to", "3", "-o", "a.nc"], ["export", "-o", "a.xyz"]):
-        said = refused(command, "bad.nc", *more, folder=tmp_path)
-        assert "bad.nc: is not a whole result: variable position: must be finite" in said
-
-
-def test_every_result_that_is_written_is_whole(solution):
-    checked(to_dataset(solution))
-    checked(to_dataset(continue_solution(solution, [3.0])))
-    checked(to_dataset(solve_scene(scene(loads=[]))))
 
 
 def test_what_a_file_says_is_shown_as_it_is(solution, tmp_path):

@@ -2,16 +2,6 @@
 
 import numpy as np
 
-from granular_response_paper.groups.frictionless_crossover import draw as figures
-
-STEMS = [
-    "fig03_frictionless_response",
-    "fig04_frictionless_contacts",
-    "fig05_teardrop",
-    "fig05b_stiffness",
-    "fig05c_depth",
-]
-
 
 def test_events(datasets) -> None:
     """Each bracket is as narrow as asked and the stored states on both sides of it say the same."""
@@ -61,39 +51,9 @@ def test_stored_states_give_the_stored_measurements(datasets) -> None:
         assert bool(region.any()) == (float(response["teardrop_depth"].sel(force=force)) > 0.0)
 
 
-def test_one_slab_has_one_result(datasets) -> None:
-    """The same slab in two tables was solved once."""
-    forces = [0.5, 1.0]
-    tables = [
-        datasets["response"].sel(force=forces),
-        datasets["sizes"].isel(slab=0).sel(force=forces),
-        datasets["widths"].isel(slab=0).sel(force=forces),
-        datasets["stiffness"].sel(normal_stiffness=3000.0, force=forces),
-    ]
-    for data in tables[1:]:
-        places = tables[0].sizes["floor_disk"]
-        np.testing.assert_array_equal(data["floor_response"][:, :places], tables[0]["floor_response"])
-
-
 def test_soft_slabs_open_later(datasets) -> None:
     """Sec. IV.C: the region of opened contacts is smaller in softer slabs, its opening is at larger forces."""
     stiffness = datasets["stiffness"]
     opening = stiffness["first_opening_bracket"].mean("bracket").values
     assert np.all(np.diff(opening) < 0.0)
     assert np.all(np.diff(stiffness["teardrop_depth"].sel(force=1.0).values) >= -0.01)
-
-
-def test_figures(datasets) -> None:
-    drawn = figures.draw(datasets)
-    assert list(drawn) == STEMS
-    profiles, _ = drawn["fig03_frictionless_response"].axes
-    response = datasets["response"]
-    inside = response["interior"].values > 0
-    np.testing.assert_array_equal(
-        profiles.lines[0].get_ydata(), response["floor_response"].sel(force=0.25).values[inside]
-    )
-    networks = [axes for axes in drawn["fig04_frictionless_contacts"].axes if axes.get_title(loc="left")]
-    assert len(networks) == len(figures.nearest(response["force"].values, figures.NETWORK_FORCES))
-    curve = drawn["fig05_teardrop"].axes[0].lines[0]
-    depth = datasets["sizes"]["teardrop_depth"][0].values
-    np.testing.assert_array_equal(curve.get_ydata(), depth[: len(curve.get_ydata())])

@@ -41,14 +41,6 @@ def test_superposition_holds_for_small_loads_and_fails_for_large_ones(datasets) 
         assert float(errors[name].isel(force=2).mean()) > 1e-2
 
 
-def test_loads_stand_where_they_should(datasets) -> None:
-    x = datasets["responses"]["load_x"]
-    expected = 2.0 * np.array(PARAMETERS["offsets"], dtype=float)
-    np.testing.assert_allclose(x.sel(side="right").mean("realization"), expected, atol=0.1)
-    np.testing.assert_allclose(x.sel(side="left").mean("realization"), -expected, atol=0.1)
-    np.testing.assert_array_equal(datasets["errors"]["distance"], [2.0, 8.0])
-
-
 def test_the_end_of_the_linear_range_is_bracketed(datasets) -> None:
     linear = datasets["linear_range"]
     assert linear.sizes["realization"] == 3
@@ -84,7 +76,3 @@ def test_the_size_of_an_error(both, rms, largest) -> None:
     np.testing.assert_allclose(found, (rms, largest), atol=1e-15)
     as_vectors = study.superposition_error(*(np.stack([v, 0.0 * v], axis=1) for v in (left, right, np.array(both))))
     np.testing.assert_allclose(as_vectors, (rms, largest), atol=1e-15)
-
-
-def test_no_force_has_no_relative_error() -> None:
-    assert np.isnan(study.superposition_error(np.ones(2), np.ones(2), np.zeros(2))).all()

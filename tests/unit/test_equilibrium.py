@@ -11,20 +11,12 @@ from granular_response.solvers.equilibrium import certify, external_force, finis
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state
 from granular_response.solvers.system import StaticSystem
-from granular_response.state import SLIDING
 
 
 @pytest.fixture(scope="module")
 def settled():
     problem = Problem.from_scene(scene(wall__friction=0.2))
     return problem, rest_state(problem)
-
-
-def test_finish_of_a_finished_state_changes_nothing(settled):
-    problem, rest = settled
-    again = finish(problem, rest)
-    assert again.position == pytest.approx(rest.position, abs=1e-13)
-    assert again.pairs.spring == pytest.approx(rest.pairs.spring, abs=1e-13)
 
 
 def test_finish_brings_a_displaced_state_back_to_balance(settled):
@@ -41,20 +33,6 @@ def test_finish_far_from_rest_is_an_error():
     problem = Problem.from_scene(scene())
     with pytest.raises(EquilibriumError, match="relax it further first"):
         finish(problem, shaken(problem, size=0.2))
-
-
-def test_a_disk_of_which_all_contacts_slide_turns_by_no_more_than_a_contact_would_allow(settled):
-    problem, rest = settled
-    system = StaticSystem(problem, rest)
-    known, disk = system.start(rest), int(np.argmax(rest.position[:, 1]))
-    touches = ((system.first == disk) | (system.second == disk)) & (rest.pairs.overlap > 0.0)
-    turned = known.q.copy()
-    turned[2 * problem.n + disk] += 2.0 * problem.pair_law.friction / problem.pair_law.tangential_stiffness
-    trial = system.trial(known, turned)
-    assert (np.abs(trial.sense[: len(touches)][touches]) == SLIDING).all()
-    left = trial.contact_force + external_force(problem, 0.0)
-    step = system.step(trial, left)
-    assert 0.0 < np.abs(step[2 * problem.n + disk]) < 10.0 * np.abs(left).max() / problem.stiffness
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.5])
@@ -89,14 +67,6 @@ def test_certificate_measures_what_it_says(settled):
     assert moving.kinetic_energy == pytest.approx((0.5 * 0.25 + 0.5 * 0.5 * 4.0) / problem.n)
 
 
-def test_loads_count_in_the_balance():
-    loads = [{"disk": 0, "force": [0.0, -1.0]}]
-    problem, state = free_disks([[500.0, 1.0 - 3.0 / 6000.0]], contact__friction=0.0, loads=loads)
-    problem = problem.with_loads(state.position)
-    assert certify(problem, replace(state, load_factor=2.0)).force_residual < 1e-9
-    assert certify(problem, replace(state, load_factor=1.0)).force_residual == pytest.approx(1.0)
-
-
 def test_torques_count_in_the_balance():
     problem = Problem.from_scene(scene(loads=[{"disk": "top-centre", "force": [0.0, 0.0], "torque": 1.0}]))
     rest = rest_state(problem)
@@ -105,8 +75,3 @@ def test_torques_count_in_the_balance():
     turned = certify(problem, replace(rest, load_factor=1.0), modes=0)
     assert turned.torque_residual == pytest.approx(1.0) and turned.unbalanced_part > 0.1
     assert not turned.balanced and turned.stable is False
-
-
-def test_loose_disks_are_counted():
-    problem, state = free_disks([[500.0, 1.0 - 1 / 6000.0], [510.0, 1.0 - 1 / 6000.0]])
-    assert certify(problem, state).loose_disks == 2

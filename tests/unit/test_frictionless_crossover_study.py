@@ -3,16 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
-from granular_response.scene import Packing
 from granular_response.solvers.problem import Problem
 from granular_response_paper.groups.frictionless_crossover import simulate as study
-from granular_response_paper.groups.frictionless_crossover.draw import nearest
 from granular_response_paper.groups.frictionless_crossover.simulate.slab import (
     Slab,
     new_neighbours,
-    rest_asymmetry,
     settle,
 )
 
@@ -48,23 +44,6 @@ def test_each_slab_is_one_task_with_all_its_forces() -> None:
     assert tasks[Slab(5, 15, 3000.0)][2] == 0.05
 
 
-def test_asymmetry_is_the_lean_alone() -> None:
-    """Spreading apart is symmetric, a shift is not; heights do not count."""
-    problem = Problem.from_scene(Slab(3, 7, 3000.0).scene(BASE))
-    packing: Packing = problem.packing
-    state = problem.bare_state()
-    middle = 0.5 * packing.width
-    away = packing.position[:, 0] - middle
-
-    def asymmetry(shift) -> float:
-        moved = packing.position + np.stack([shift, 0.1 * away], axis=1)
-        return rest_asymmetry(packing.position, replace(state, position=moved), packing.width)
-
-    assert asymmetry(0.01 * away) == pytest.approx(0.0, abs=1e-15)
-    assert asymmetry(0.01 * away + 0.03) == pytest.approx(0.03)
-    assert asymmetry(np.where(np.arange(len(away)) == 0, 0.04, 0.0)) == pytest.approx(0.02)
-
-
 def test_new_neighbours_are_touching_pairs_that_were_apart() -> None:
     problem = Problem.from_scene(Slab(3, 7, 3000.0).scene(BASE))
     packing = problem.packing
@@ -92,20 +71,3 @@ def test_soft_disks_are_settled_by_dynamics() -> None:
     assert new_neighbours(packing.position, fallen) > 0
     assert held.reached.method == "minimise"
     assert new_neighbours(packing.position, held) == 0
-
-
-def test_a_wide_slab_leans_to_one_side() -> None:
-    """A slab whose symmetric equilibrium is a saddle rests in a stable state beside it."""
-    wide, narrow = Slab(15, 241, 3000.0), Slab(15, 61, 3000.0)
-    lean = {}
-    for slab in (wide, narrow):
-        packing = Problem.from_scene(slab.scene(BASE)).packing
-        rest = settle(slab.scene(BASE))
-        assert rest.certificate.stable
-        lean[slab] = rest_asymmetry(packing.position, rest, packing.width)
-    assert lean[narrow] < 1e-10
-    assert 1e-3 < lean[wide] < 1e-2
-
-
-def test_nearest_stored_values_once_each() -> None:
-    assert nearest(np.array([0.5, 1.0, 3.0]), (0.4, 0.6, 2.9, 50.0)) == [0, 2]

@@ -56,31 +56,8 @@ def test_fixed_limits_lead_to_the_same_equilibrium(start, monkeypatch):
     assert solve_increment(system, known, external, known.q, Work()) is None
 
 
-def test_a_minimisation_ends_where_steps_no_longer_pay(start, monkeypatch):
-    problem, system, known = start
-    external = external_force(problem, 0.5)
-    limits = np.full(len(known.spring), 0.2)
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, minimise=25, rough=0.0, still=0.0))
-    long, short = Work(), Work()
-    assert module.minimise_with_limits(system, known, external, known.q, limits, long) is None
-    assert long.factorisations == 25  # rounding never lets the residual vanish
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, still=1e-5))
-    trial = module.minimise_with_limits(system, known, external, known.q, limits, short)
-    assert short.factorisations < 15
-    assert np.abs(trial.contact_force + external).max() < 1e-8
-
-
 def test_hopeless_increment_returns_none():
     """A sideways pull far beyond what a frictionless-walled free surface holds."""
     problem, rest = at_rest(scene(2, 4, loads=[{"disk": "top-centre", "force": [0.0, 50.0]}]))
     system, known = started(problem, rest)
     assert solve_increment(system, known, external_force(problem, 1.0), known.q, Work()) is None
-
-
-def test_an_increment_gives_up_after_its_work(start, monkeypatch):
-    """That of one minimisation, which leaves no work for further rounds."""
-    problem, system, known = start
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, direct=1, minimise=0))
-    work = Work()
-    assert solve_increment(system, known, external_force(problem, 0.5), known.q, work) is None
-    assert work.factorisations == 1

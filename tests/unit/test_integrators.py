@@ -5,16 +5,7 @@ import pytest
 from small_scenes import free_disks
 
 from granular_response.kernels.integrators import INTEGRATORS
-from granular_response.kernels.integrators.stepping import moved_beyond, ramp
 from granular_response.solvers.dynamics import Dynamics
-
-
-@pytest.mark.parametrize("name", INTEGRATORS)
-def test_record_describes_the_integrator(name):
-    record = INTEGRATORS[name]
-    assert record.name == name
-    assert record.title and record.reference
-    assert record.order >= 1 and record.scheme.rows >= 1
 
 
 @pytest.mark.parametrize("name", INTEGRATORS)
@@ -48,19 +39,3 @@ def test_same_bits_in_one_part_or_many(name):
         runs.append(np.concatenate([dynamics.q, dynamics.v]))
     assert np.array_equal(runs[0], runs[1])
     assert np.array_equal(runs[0], runs[2])
-
-
-def test_ramp():
-    assert [ramp(t, 1.0, 3.0, 2.0) for t in (0.0, 1.0, 2.0, 5.0)] == [1.0, 2.0, 3.0, 3.0]
-    assert ramp(0.0, 1.0, 3.0, 0.0) == 3.0
-
-
-def test_moved_beyond_counts_where_a_disk_will_be():
-    q, v = np.array([0.0, 0.3, 0.0, 0.4]), np.array([0.0, 0.0, 0.0, 1.0])
-    assert moved_beyond(q, v, 2, 0.49, 0.0)
-    assert not moved_beyond(q, v, 2, 0.51, 0.0)
-    assert moved_beyond(q, v, 2, 0.51, 0.02)
-
-
-def test_a_scene_may_name_these():
-    assert list(INTEGRATORS) == ["beeman", "verlet", "leapfrog", "gear"]

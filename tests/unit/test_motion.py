@@ -76,13 +76,6 @@ def test_columns_of_a_table_are_taken_where_the_scene_asks_for_them(tmp_path):
         gr.motion(base.updated({"motion.vz": "column"}), [0.0])
 
 
-def test_laboratory_units_of_a_motion():
-    units = gr.LaboratoryUnits()
-    data = {"motion": {"vx": 2.0 * units.unit("velocity"), "spin": [3.0 * units.unit("frequency")]}}
-    reduced = units.reduced_scene(data)["motion"]
-    assert reduced["vx"] == pytest.approx(2.0) and reduced["spin"] == pytest.approx([3.0])
-
-
 def test_a_film_of_a_motion(tmp_path):
     moved = gr.motion(BALL, [0.0, 0.5, 1.0], progress=False)
     film = gr.plot.motion(moved, output=tmp_path / "fall.gif", width=2.0)

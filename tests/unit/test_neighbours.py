@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from granular_response.kernels.neighbours import make_runs, run_pairs
-from granular_response.scene import SlabPacking
 from granular_response.solvers.close_pairs import close_pairs
 
 
@@ -30,12 +29,6 @@ def test_close_pairs(seed, skin):
     radius = rng.uniform(0.3, 1.3, len(position))
     first, second = close_pairs(position, radius, skin)
     assert list(zip(first.tolist(), second.tolist(), strict=True)) == brute_force(position, radius, skin)
-
-
-def test_close_pairs_of_a_lattice_are_its_neighbours():
-    packing = SlabPacking(kind="slab", layers=5, disks_per_row=9).build()
-    found = np.stack(close_pairs(packing.position, packing.radius, 0.6), axis=1)
-    assert np.array_equal(found, packing.neighbour_pairs())
 
 
 def test_one_disk_has_no_pairs():
@@ -82,15 +75,6 @@ def test_lengthened_runs_hold_every_pair_in_a_slot_of_its_own(pairs, multiple):
     long = count > 1
     room = n - j - count + i
     assert np.all((count % multiple == 0) | (room < -count % multiple) | ~long)
-
-
-def test_lattice_is_three_runs():
-    packing = SlabPacking(kind="slab", layers=15, disks_per_row=61).build()
-    pairs = packing.neighbour_pairs()
-    runs, slot = make_runs(pairs[:, 0], pairs[:, 1], packing.n)
-    assert sorted((runs[:, 1] - runs[:, 0]).tolist()) == [1, 60, 61]
-    assert len(slot) == len(pairs)
-    assert int(runs[:, 2].sum()) < 1.03 * len(pairs)
 
 
 @pytest.mark.parametrize("far", [1e6, 1e300])

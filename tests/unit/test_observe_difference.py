@@ -1,4 +1,3 @@
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -40,15 +39,6 @@ def test_misalignment_is_the_weighted_angle_to_the_contact_line():
     pulled = with_pairs(rest, first, normal_force=-2.0)
     assert force_misalignment(rest, pulled) == pytest.approx(0.0, abs=1e-12)
     assert np.isnan(force_misalignment(rest, rest))
-
-
-def test_other_candidates_are_refused():
-    rest = slab(2, 2)
-    require_same_candidates(rest, slab(2, 2))
-    with pytest.raises(ValueError, match="pairs"):
-        require_same_candidates(rest, replace(rest, pairs=contacts([(0, 1)])))
-    with pytest.raises(ValueError, match="walls"):
-        pair_force_difference(rest, replace(rest, walls=contacts([(0, FLOOR)])))
 
 
 def test_matching_gives_one_list_and_keeps_the_forces():

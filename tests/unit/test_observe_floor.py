@@ -1,8 +1,7 @@
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from observe_states import contacts, slab, state
+from observe_states import contacts, state
 
 from granular_response.observe.floor import floor_disks, floor_force, floor_response, interior_mask, smoothed_response
 from granular_response.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, STICKING
@@ -27,10 +26,6 @@ def test_floor_disks_are_ordered_by_x_and_come_from_row_or_touch():
     assert floor_disks([rest, lowered]).tolist() == [2, 1, 0]
 
 
-def test_floor_disks_of_a_slab_are_its_bottom_row():
-    assert floor_disks([slab(3, 5)]).tolist() == [0, 1, 2, 3, 4]
-
-
 def test_floor_force_is_vertical_and_leaves_out_the_side_walls():
     np.testing.assert_array_equal(floor_force(three_disks(), np.array([2, 1, 0])), [0.0, 2.0, 1.0])
 
@@ -41,12 +36,6 @@ def test_floor_response_is_the_difference_per_applied_force():
     np.testing.assert_allclose(floor_response(rest, loaded, disks, 4.0), [0.125, 0.75, 0.125])
 
 
-def test_floor_force_sums_over_several_contacts_of_one_disk():
-    once = three_disks()
-    twice = replace(once, walls=contacts([(1, FLOOR), (1, FLOOR)], normal_force=np.array([1.0, 2.5])))
-    assert floor_force(twice, np.array([1])).tolist() == [3.5]
-
-
 def test_smoothed_response_keeps_its_integral_and_has_the_stated_kernel():
     x_disk, response = np.array([-2.0, 0.0, 2.0]), np.array([0.2, 0.5, 0.4])
     x = np.linspace(-30.0, 30.0, 6001)
@@ -54,19 +43,6 @@ def test_smoothed_response_keeps_its_integral_and_has_the_stated_kernel():
     assert np.sum(smooth) * (x[1] - x[0]) == pytest.approx(response.sum(), rel=1e-10)
     single = smoothed_response([1.0, 4.0], [1.0], [2.0], 3.0)
     np.testing.assert_allclose(single, 2.0 / (3.0 * np.sqrt(np.pi)) * np.array([1.0, np.exp(-1.0)]))
-
-
-def test_smoothed_response_takes_several_responses_at_once():
-    x_disk = np.array([0.0, 2.0, 4.0])
-    response = np.arange(6.0).reshape(2, 3)
-    both = smoothed_response(np.linspace(0, 4, 5), x_disk, response, 1.5)
-    assert both.shape == (2, 5)
-    np.testing.assert_allclose(both[1], smoothed_response(np.linspace(0, 4, 5), x_disk, response[1], 1.5))
-
-
-@pytest.mark.parametrize("width", [2, np.float32(2.0), np.array(2.0)])
-def test_a_width_may_be_any_number(width):
-    assert smoothed_response([0.0], [0.0], [1.0], width) == smoothed_response([0.0], [0.0], [1.0], 2.0)
 
 
 def test_interior_leaves_out_ten_radii_at_both_walls():

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from observe_states import contacts, opened, pair_index, slab, state, with_pairs
+from observe_states import contacts, opened, pair_index, slab, state
 
 from granular_response.observe.network import (
     FALLING,
@@ -19,7 +19,6 @@ from granular_response.observe.network import (
     mirror_disks,
     network_asymmetry,
     rattlers,
-    sliding_count,
     unmatched_contacts,
 )
 from granular_response.state import FLOOR, OPEN, SLIDING, STICKING
@@ -36,21 +35,6 @@ def test_contact_changes_between_all_statuses():
     assert np.flatnonzero(changes.stopped_sliding).tolist() == [6, 7]
 
 
-def test_contact_changes_refuse_other_candidates():
-    with pytest.raises(ValueError, match=r"contacts: .* different candidate contacts"):
-        contact_changes(contacts([(0, 1), (1, 2)]), contacts([(0, 1), (0, 2)]))
-    with pytest.raises(ValueError, match=r"contacts: .* different candidate contacts"):
-        contact_changes(contacts([(0, 1), (1, 2)]), contacts([(0, 1)]))
-
-
-def test_sliding_count_with_and_without_walls():
-    position = np.array([[1.0, 1.0], [3.0, 1.0], [5.0, 1.0]])
-    pairs = contacts([(0, 1), (1, 2)], status=np.array([SLIDING, STICKING]))
-    walls = contacts([(0, FLOOR), (1, FLOOR), (2, FLOOR)], status=np.array([SLIDING, SLIDING, OPEN]))
-    assert sliding_count(state(position, pairs, walls)) == 3
-    assert sliding_count(state(position, pairs, walls), walls=False) == 1
-
-
 def test_lattice_directions_do_not_depend_on_the_order_of_partners():
     h = np.sqrt(3.0)
     position = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, h], [-1.0, h]])
@@ -62,12 +46,6 @@ def test_lattice_directions_do_not_depend_on_the_order_of_partners():
     tilted = state(position + np.array([[0.0, 1e-17], [0.0, -1e-17], [0.1, 0.0], [0.1, 0.0]]), contacts(links))
     assert lattice_direction(tilted).tolist() == expected
     assert np.all((contact_angle(tilted) >= 0.0) & (contact_angle(tilted) < np.pi))
-
-
-def test_line_that_falls_slightly_is_horizontal():
-    s = state(np.array([[0.0, 0.1], [2.0, 0.0]]), contacts([(0, 1)]))
-    assert contact_angle(s)[0] > 3.0
-    assert lattice_direction(s).tolist() == [HORIZONTAL]
 
 
 def test_interior_contacts_by_their_centres():
@@ -86,17 +64,6 @@ def test_coordination_number_of_a_lattice_is_six_in_the_bulk():
     assert 0 < bulk.sum() < s.position.shape[0]
     assert coordination_number(s, bulk) == 6.0
     assert coordination_number(s, walls=False) == 2.0 * s.pairs.first.size / s.position.shape[0] < 6.0
-
-
-def test_bulk_disks_keep_all_four_margins():
-    position = np.array([[5.0, 5.0], [1.0, 5.0], [9.0, 5.0], [5.0, 1.0], [5.0, 9.0]])
-    assert bulk_disks(state(position, contacts([])), 10.0, 2.0, 2.0).tolist() == [
-        True,
-        False,
-        False,
-        False,
-        False,
-    ]
 
 
 def chain_with_loose_ends():
@@ -146,24 +113,6 @@ def test_contact_angle_histogram_of_a_lattice():
     np.testing.assert_allclose(density[[0, 6, 12]] * np.pi / 18, share)
 
 
-def test_contact_angle_histogram_counts_touching_contacts_only():
-    s = slab(4, 6)
-    horizontal = lattice_direction(s) == HORIZONTAL
-    _, density = contact_angle_histogram(opened(s, ~horizontal), 18)
-    assert np.flatnonzero(density).tolist() == [0]
-    assert not contact_angle_histogram(opened(s, np.ones_like(horizontal)), 18)[1].any()
-    _, chosen = contact_angle_histogram(s, 18, contacts=~horizontal)
-    assert np.flatnonzero(chosen).tolist() == [6, 12]
-    with pytest.raises(ValueError, match="bins"):
-        contact_angle_histogram(s, 0)
-
-
-def test_contact_angle_histogram_folds_angles_below_pi():
-    s = state(np.array([[0.0, 0.01], [2.0, 0.0], [4.0, 0.01]]), contacts([(0, 1), (1, 2)]))
-    _, density = contact_angle_histogram(s, 18)
-    assert np.flatnonzero(density).tolist() == [0]
-
-
 def test_mirror_of_a_slab():
     s = slab(2, 3)  # disks 0 1 2 below, 3 4 above
     assert mirror_disks(s.position, 3.0).tolist() == [2, 1, 0, 4, 3]
@@ -182,13 +131,3 @@ def test_network_asymmetry_counts_contacts_without_an_image():
     assert np.flatnonzero(unmatched_contacts(lopsided.pairs, mirror)).tolist() == [right]
     assert network_asymmetry(lopsided.pairs, mirror) == pytest.approx(1 / (s.pairs.first.size - 1))
     assert network_asymmetry(opened(s, np.array([left, right])).pairs, mirror) == 0.0
-
-
-def test_network_asymmetry_of_the_sliding_contacts():
-    s = slab(2, 3)
-    mirror = mirror_disks(s.position, 3.0)
-    left, middle = pair_index(s, 0, 3), pair_index(s, 3, 4)
-    sliding = with_pairs(s, np.array([left, middle]), status=SLIDING)
-    assert network_asymmetry(sliding.pairs, mirror) == 0.0
-    assert network_asymmetry(sliding.pairs, mirror, sliding=True) == 0.5
-    assert network_asymmetry(s.pairs, mirror, sliding=True) == 0.0

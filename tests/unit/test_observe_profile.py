@@ -1,4 +1,3 @@
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,27 +20,12 @@ def test_rows_and_the_contacts_between_them_are_told_apart():
     assert force_profile(REST, REST, TOP, 20.0)[0].size == 0
 
 
-def test_a_wide_band_takes_both():
-    x, f = force_profile(REST, REST, TOP, row_depth(1), half_band=0.9)
-    assert x.size == f.size == 3 + 8 + 8
-    assert np.all(np.diff(x) >= 0.0)
-    with pytest.raises(ValueError, match="half_band"):
-        force_profile(REST, REST, TOP, 1.0, half_band=0.0)
-
-
 def test_magnitude_of_the_vector_difference():
     k = pair_index(REST, 5, 6)  # second row, centre at x = -2
     loaded = with_pairs(REST, k, normal_force=4.0, tangential_force=-4.0)
     x, f = force_profile(REST, loaded, TOP, row_depth(1))
     np.testing.assert_allclose(f, [5.0, 0.0, 0.0], atol=1e-12)
     np.testing.assert_allclose(x, [-2.0, 0.0, 2.0], atol=1e-12)
-
-
-def test_positions_are_those_at_rest():
-    sunk = replace(REST, position=REST.position - np.array([0.2, 0.3]))
-    np.testing.assert_array_equal(
-        force_profile(REST, sunk, TOP, row_depth(1))[0], force_profile(REST, REST, TOP, row_depth(1))[0]
-    )
 
 
 def test_contacts_open_in_both_states_are_left_out():

@@ -90,10 +90,6 @@ def test_mistakes_name_the_line(build, tmp_path, text, rule):
     assert path.startswith("'") and path.endswith("'")
 
 
-def test_a_disk_may_be_as_wide_as_the_box(build):
-    assert build("x,z,radius\n5,5,5\n").n == 1
-
-
 def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(SceneError, match=r"^packing\.path = 'nowhere\.csv': no such file$"):
         FilePacking(path="nowhere.csv", width=1.0).build()

@@ -1,16 +1,11 @@
 """The public namespace, with ``import granular_response as gr`` alone."""
 
-import inspect
-import pydoc
-import re
 
-import numba as nb
 import numpy as np
 import pytest
 import xarray as xr
 
 import granular_response as gr
-from granular_response.api import compiling
 
 SMALL = {"packing": {"kind": "slab", "layers": 5, "disks_per_row": 21}, "loads": [{"disk": 93, "force": [0, -4]}]}
 
@@ -26,24 +21,6 @@ def test_a_result_has_states_certificates_and_response(result):
     assert result.certificate.force_residual < 1e-10
     assert float(result.floor_response.isel(load=1).sum()) == pytest.approx(1.0, abs=1e-9)
     assert result.scene == gr.Scene.from_dict(SMALL).updated({"protocol.load_factors": [0.5, 1.0]})
-
-
-def test_contacts_are_those_of_the_states(result):
-    contacts = result.contacts
-    assert set(contacts["contact_status"].dims) == {"state", "contact"}
-    touching = [int((contacts["contact_status"].isel(state=k) > 0).sum()) for k in range(3)]
-    assert touching == [int(state.pairs.touching.sum()) for state in (result.rest, *result.loaded)]
-
-
-def test_compilation_is_said_once(caplog):
-    told: list[str] = []
-    stages: list[tuple] = []
-    with caplog.at_level("INFO", "granular_response"), compiling.logged(lambda *one: stages.append(one), told.append):
-        for kind in (1, 1.0):
-            assert nb.njit(lambda x: x + x)(kind) == 2
-    assert stages == [(0.0, 1.0, compiling.STAGE)] * 2  # again: a bar that is silent at first shows the later ones
-    assert [record.name for record in caplog.records] == ["granular_response"]
-    assert caplog.messages == told and told[0].startswith("compiling kernels")
 
 
 def test_contacts_as_a_table(result, tmp_path):
@@ -101,15 +78,6 @@ def test_displacements_are_from_the_initial_equilibrium(result):
     assert gr.solve(gr.Scene(packing=gr.Slab(layers=2, disks_per_row=4), loads=[])).displacement.shape == (0, 7, 2)
 
 
-def test_results_are_subtracted_disk_by_disk_as_no_place_is_the_same(result):
-    """``x`` is where gravity has left a floor disk: as the index it would leave next to nothing of a difference."""
-    other = gr.solve(result.scene.updated({"contact.friction": 0.0}), load_factors=result.load_factors)
-    one, two = result.floor_response, other.floor_response
-    assert (one - two).shape == one.shape
-    placed = one.swap_dims(floor_disk="x") - two.swap_dims(floor_disk="x")
-    assert placed.sizes["x"] <= 1 < one.sizes["floor_disk"]
-
-
 def test_after_unloading_the_change_is_defined():
     unloaded = gr.solve(SMALL, load_factors=[1.0, 0.0])
     assert np.isnan(unloaded.floor_response.sel(load=0.0)).all()
@@ -126,21 +94,6 @@ def test_a_method_of_the_call(result):
         gr.solve(SMALL, method="dynamic")
 
 
-def test_progress_is_called_or_left_out():
-    seen = []
-    gr.solve(SMALL, load_factors=[0.1], progress=lambda done, total, what: seen.append(what))
-    assert {"gravity", "load"} <= set(seen)
-    gr.solve(SMALL, load_factors=[0.1], progress=False)
-
-
-def test_a_result_is_exported(result, tmp_path):
-    path = result.export(tmp_path / "all.contacts.csv", state=0)
-    assert path.read_text() == result.contacts_table(state=0).to_csv()
-    assert len(result.export(tmp_path / "disks.csv").read_text().splitlines()) == 105
-    with pytest.raises(gr.ExportError, match=r"format '.abc' is unknown"):
-        result.export(tmp_path / "a.abc")
-
-
 def test_a_scene_in_laboratory_units():
     units = gr.LaboratoryUnits(radius=0.01)
     loads = [{"disk": {"x": -0.1}, "force": [0.0, -15.0 * units.unit("force")], "torque": 0.1 * units.unit("torque")}]
@@ -151,15 +104,6 @@ def test_a_scene_in_laboratory_units():
     assert scene.protocol.ramp_time == pytest.approx(20.0) and scene.protocol.load_factors == (0.5, 1.0)
     with pytest.raises(OSError, match="no such file"):
         gr.Scene.from_yaml("nowhere.yaml")
-
-
-def test_help_shows_keys_and_nothing_of_pydantic():
-    shown = pydoc.plain(pydoc.render_doc(gr.Contact))
-    assert "normal_stiffness : default 3000.0 [mg / mean radius]" in shown
-    assert not {"model_dump", "validator", "Annotated"} & set(re.findall(r"\w+", shown)) and len(shown) < 4000
-    assert "friction" in dir(gr.Contact()) and "model_dump" not in dir(gr.Contact())
-    assert str(inspect.signature(gr.Contact)).startswith("(*, law='linear', normal_stiffness=3000.0")
-    assert "friction': 0.2" in repr(gr.Scene()) and set(dir(gr)) == set(gr.__all__)
 
 
 def test_stress_carries_the_load(result):
@@ -199,11 +143,6 @@ def test_mistakes_of_a_stress_are_one_line(result, arguments, error, said):
     assert "\n" not in str(caught.value)
 
 
-def test_the_state_of_an_influence_is_an_integer(result):
-    with pytest.raises(TypeError, match=r"^state = 1.0: must be an integer"):
-        result.influence(state=1.0)
-
-
 def test_a_stored_result_is_the_result(result, tmp_path):
     result.save(tmp_path / "result.nc")
     back = gr.open_result(tmp_path / "result.nc")
@@ -219,23 +158,6 @@ def test_scenes_come_from_files_and_mappings(tmp_path, result):
     path = tmp_path / "scene.yaml"
     path.write_text(gr.Scene.from_dict(SMALL).to_yaml())
     np.testing.assert_array_equal(gr.solve(path).rest.position, result.rest.position)
-
-
-def test_short_texts_for_people(result):
-    problem = result._solution.problem
-    for value in (result, result.scene, result.rest, result.rest.pairs, problem, problem.packing, result._solution):
-        assert 10 < len(repr(value)) < 2000
-    assert "initial equilibrium: stable" in repr(result) and "load factor 1: stable" in repr(result)
-    assert "103 disks" in repr(result.rest)
-    assert str(gr.Slab()) == "SlabPacking()" and str(result.scene) == repr(result.scene)
-    assert "<table>" in result._repr_html_() and "friction: 0.2" in result.scene._repr_html_()
-
-
-@pytest.mark.parametrize("changes", [{}, {"contact.friction": 0.0}, {"packing": {"kind": "pile", "layers": 3}}])
-def test_a_scene_is_made_again_from_its_text(changes):
-    scene = gr.Scene().updated(changes)
-    assert eval(repr(scene), {"Scene": gr.Scene}) == scene
-    assert "method" not in repr(scene)
 
 
 def test_periodic_sides_are_crossed_the_shortest_way():

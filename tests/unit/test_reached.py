@@ -2,23 +2,12 @@
 
 from dataclasses import replace
 
-import pytest
 from small_scenes import scene
 from test_events import shown
 
 from granular_response.solvers.solution import solve_scene
-from granular_response.state import Event, Reached
 from granular_response.store import files as store
 from granular_response.store.result import state_from, to_dataset
-
-
-def test_a_record_takes_from_an_earlier_one_what_it_does_not_know():
-    events = (Event(0.1, "jump", until=0.2, displacement=0.3, reason="unstable"),)
-    earlier = Reached(method="dynamics", steps=700, settled=True, events=events)
-    later = Reached(method="minimise", newton_iterations=0, settled=False)
-    assert later.after(earlier) == Reached(
-        method="minimise", steps=700, settled=False, newton_iterations=0, events=events
-    )
 
 
 def test_stability_that_nobody_looked_at_is_said_so(tmp_path):
@@ -38,9 +27,3 @@ def test_stability_that_nobody_looked_at_is_said_so(tmp_path):
         assert [line.split()[1:] for line in lines if line.startswith("stable")] == [said.split()]
         row = next(line for line in lines if line.startswith("negative modes"))
         assert row.split(maxsplit=2)[2].split(maxsplit=1) == ["0", "not determined" if modes is None else "1"]
-
-
-def test_a_state_without_a_certificate_says_so():
-    (state,) = solve_scene(scene()).loaded
-    with pytest.raises(ValueError, match="without a certificate"):
-        replace(state, reached=Reached()).certificate  # noqa: B018

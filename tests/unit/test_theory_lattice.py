@@ -40,12 +40,6 @@ def test_free_rotations_change_the_shear_modulus_only(springs: Springs) -> None:
         assert expected[2, 2] < suppressed[2, 2]
 
 
-def test_measured_moduli_do_not_depend_on_the_size_of_the_cell() -> None:
-    springs = Springs(0.7, 1.3, 0.2, 0.9)
-    one, many = (lattice.measured_moduli(springs, "free", cells=cells) for cells in ((1, 1), (5, 2)))
-    np.testing.assert_allclose(one, many, rtol=0, atol=1e-13)
-
-
 def test_shear_modulus_is_the_one_of_the_bond_energy() -> None:
     # Energy per area of eq. (5) for eps_xz = 1, summed by hand over the three bonds of length 2:
     # t.eps.r is 2 for the horizontal bond, n.eps.r is +-sqrt(3), t.eps.r is -1 for the oblique ones.
@@ -85,13 +79,6 @@ def test_criterion_r_is_a_ratio_of_the_shape(k1n: float, k2n: float, k1t: float,
     m = lattice.moduli(Springs(k1n, k2n, k1t, k2t))
     s, p = m.shape
     assert m.peak_criterion == pytest.approx(s / (2.0 * p), rel=1e-9, abs=1e-12)
-
-
-@given(k1=stiffness, k2=stiffness)
-def test_shape_of_the_lattice_of_normal_springs(k1: float, k2: float) -> None:
-    s, p = lattice.moduli(Springs(k1, k2)).shape
-    assert s == pytest.approx(6.0 * (4.0 * k1 - k2) / (8.0 * k1 + k2), rel=1e-9, abs=1e-12)
-    assert p == pytest.approx(9.0 * k2 / (8.0 * k1 + k2), rel=1e-9)
 
 
 def test_isotropic_constructor_inverts() -> None:

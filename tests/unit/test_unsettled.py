@@ -35,21 +35,6 @@ def test_a_ramp_that_is_cut_short_carries_the_load_it_has_reached():
 
 
 @pytest.mark.parametrize(
-    ("moving", "said"),
-    [
-        (cut_short(protocol__time_step=5e-4), "not at rest within protocol.maximum_steps = 1000: gravity, load factor"),
-        (
-            scene(contact__friction=0.0, loads=LOAD, protocol__friction_law="literal"),
-            "protocol.friction_law = 'literal' has no effect",
-        ),
-    ],
-)
-def test_remarks_are_warnings_in_python(moving, said):
-    with pytest.warns(UserWarning, match=said):
-        gr.solve(moving)
-
-
-@pytest.mark.parametrize(
     ("changes", "step", "reason"),
     [
         ({}, 5e-4, "the paper's"),

@@ -4,15 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import reduced
 from stress import closed_forms, random_scenes
 from stress.rounding import disturb
 
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.settle import NotSettled
-from granular_response_paper.groups.stability import draw as figures
-from granular_response_paper.groups.stability import simulate as stability
 from granular_response_paper.groups.stability.simulate import time_steps
 from granular_response_paper.groups.stability.simulate.time_steps import SETTLES, tried
 
@@ -65,13 +62,6 @@ def colliding(mu: float, damping: float, rule: str = "cut") -> Scene:
             "loads": [],
         }
     )
-
-
-def test_what_a_frictionless_bounce_gains_is_an_error_of_the_integration():
-    smooth = colliding(0.0, 0.0)
-    gains = [abs(closed_forms.collision(smooth, 60.0, 0.0, step, pair=False) - 1.0) for step in (4e-4, 1e-4)]
-    assert gains[1] < gains[0] / 4.0
-    assert gains[1] < 3e-5
 
 
 def test_the_papers_equation_for_the_spring_taken_literally_does_gain_energy():
@@ -197,27 +187,6 @@ def test_a_twin_that_answers_otherwise_is_caught(tmp_path, monkeypatch):
     assert trial.message.startswith("the response of the twin differs")
 
 
-def test_scenes_are_drawn_from_all_that_a_scene_may_say():
-    drawn = [random_scenes.draw(np.random.default_rng(seed), 1000)[0] for seed in range(400)]
-    protocols = [scene["protocol"] for scene in drawn]
-    assert {p["method"] for p in protocols} == set(random_scenes.METHODS)
-    assert {p["static_finish"] for p in protocols} == {True, False}
-    assert {scene["preparation"]["gravity"] for scene in drawn} == {"at-once", "slow", "frictionless"}
-    assert {scene["contact"]["law"] for scene in drawn} == {"linear", "hertz"}
-    assert {(scene["packing"]["kind"], "sides" in scene["packing"]) for scene in drawn} >= {
-        ("slab", True), ("file", True), ("slab", False), ("file", False), ("pile", False),
-    }  # fmt: skip
-    stiffness = [scene["contact"]["normal_stiffness"] for scene in drawn]
-    assert min(stiffness) < 10.0
-    assert max(stiffness) > 1e8
-    programmes = [p["load_factors"] for p in protocols]
-    assert any(f != sorted(f) and 0.0 in f and len(set(f)) < len(f) for f in programmes)
-    steps = [p["time_step"] for p in protocols]
-    assert None in steps
-    assert "auto" in steps
-    assert min(step for step in steps if isinstance(step, float)) < 1e-6
-
-
 def test_a_solver_that_gives_a_wrong_answer_is_caught(tmp_path, monkeypatch):
     solve = random_scenes.solve_scene
 
@@ -251,6 +220,9 @@ def test_errors_that_a_user_would_not_understand_count_as_wrong(tmp_path, monkey
     assert random_scenes.attempt(DESCRIPTION, str(tmp_path)).outcome == outcome
 
 
+# The study
+
+
 def test_a_rest_state_disturbed_in_its_last_digits_gives_the_same_response():
     scene = Scene.from_dict(SMALL).updated(
         {"loads": [{"disk": "top-centre", "force": [0.0, -3.0]}], "contact.friction": 0.0, "protocol.time_step": "auto"}
@@ -259,24 +231,3 @@ def test_a_rest_state_disturbed_in_its_last_digits_gives_the_same_response():
         assert found.rest_change < 1e-11
         assert found.response_change < 1e-8
         assert found.negative_modes == 0
-
-
-# The study
-
-
-def test_the_study_has_a_dataset_for_each_axis(tmp_path_factory):
-    datasets = reduced.datasets("stability", tmp_path_factory)
-    assert set(datasets) == {f"time_step_{name}" for name in stability.AXES}
-    assert datasets["time_step_friction"]["outcome"].dims == ("integrator", "friction", "ratio")
-    assert datasets["time_step_load"]["load"].values.tolist() == [0.0, 5.0]
-    assert figures.OUTCOMES == time_steps.OUTCOMES
-
-
-def test_a_random_scene_is_the_same_whenever_it_is_drawn():
-    for index in range(20):
-        generators = [np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=(index,))) for _ in range(2)]
-        (one, table), (other, again) = (random_scenes.draw(generator, 1000) for generator in generators)
-        assert one == other
-        assert (table is None) == (again is None)
-        if table is not None:
-            np.testing.assert_array_equal(table, again)
