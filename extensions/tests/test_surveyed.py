@@ -50,11 +50,6 @@ class More(Measured):
     single: float = column("another")
 
 
-@record
-class Later(Measured):
-    single: float = column("another", later=True)
-
-
 def measured(lines):
     return Measured(10.0 + lines, np.arange(float(lines)), np.linspace(0.0, 1.0, 3 * lines).reshape(lines, 3))
 
@@ -77,14 +72,6 @@ def test_packings_are_read_as_they_were_stored(tmp_path):
         surveyed.chosen(str(path), Measured, {"one": Slab(0.2, 20), "other": Slab(0.5, 20)})
     with pytest.raises(store.StoreError, match=r"is no file of packings of the survey, lacks single"):
         surveyed.read(path, Slab, More)
-
-
-def test_a_number_that_files_of_earlier_versions_lack_is_not_recorded(tmp_path):
-    path = tmp_path / "group.nc"
-    given = surveyed.dataset({Slab(0.2, 20): measured(4)})
-    store.write(path, labelled({surveyed.DATASET: given}))
-    (found,) = surveyed.read(path, Slab, Later).values()
-    assert np.isnan(found.single) and found.depth.size == 4
 
 
 #: The same case or series without and with a part left to the survey.

@@ -1,6 +1,5 @@
 """Collisions against closed forms, as the time step falls."""
 
-
 import numpy as np
 import pytest
 from small_scenes import free_disks

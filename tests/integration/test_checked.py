@@ -116,29 +116,19 @@ def spoil(data: xr.Dataset, name: str, value: float) -> xr.Dataset:
 
 DAMAGE = {
     "a missing variable": (lambda d: d.drop_vars("wall_index"), "variable wall_index is missing"),
-    "no radius": (lambda d: d.drop_vars("radius"), "variable radius is missing"),
-    "no force vectors": (lambda d: d.drop_vars("wall_force"), "variable wall_force is missing"),
     "an endless force": (lambda d: spoil(d, "contact_force", np.inf), "variable contact_force: must be finite"),
     "a partner that is not there": (lambda d: spoil(d, "contact_partner", 99), "contact_partner: holds 99, must"),
-    "a negative disk": (lambda d: spoil(d, "loaded_disk", -1), "loaded_disk: holds -1"),
     "no such wall": (lambda d: spoil(d, "wall_index", 3), "wall_index: holds 3, must be from 0 to 2"),
-    "no such status": (lambda d: spoil(d, "contact_status", 7), "contact_status: holds 7"),
     "no position": (lambda d: spoil(d, "position", np.nan), "variable position: must be finite"),
-    "an endless spring": (lambda d: spoil(d, "contact_spring", np.inf), "variable contact_spring: must be finite"),
-    "no mass": (lambda d: spoil(d, "mass", 0.0), "variable mass: must be greater than 0"),
     "other dimensions": (lambda d: d.assign(angle=d["angle"].T), "variable angle: has dimensions disk, state"),
     "words": (lambda d: d.assign(mass=d["mass"].astype(str)), "variable mass: has values of type"),
     "no states": (lambda d: d.isel(state=slice(0)), "must have a state"),
     "a load too many": (lambda d: d.isel(state=slice(3)), "dimension load: must have 2 entries"),
     "no scene": (lambda d: d.drop_attrs(deep=False), "attribute scene is missing"),
-    "no width": (lambda d: d.assign_attrs(width="wide"), "attribute width"),
-    "other sides": (lambda d: d.assign_attrs(sides="open"), "attribute sides: must be walls or periodic"),
     "no JSON": (lambda d: d.assign_attrs(method="{"), "attribute method: must be a mapping as JSON"),
     "deep JSON": (lambda d: d.assign_attrs(method="[" * 100_000 + "]" * 100_000), "attribute method: must be"),
-    "no applied force": (lambda d: d.drop_vars("total_force"), "variable total_force is missing"),
     "half a certificate": (lambda d: d.drop_vars("certificate_loose_disks"), "variable certificate_loose_disks is"),
     "far away": (lambda d: spoil(d, "position", 1e300), "variable position: must be at most 1e+09 mean radii away"),
-    "too wide": (lambda d: d.assign_attrs(width=1e300), "attribute width: must be a number greater than 0, at most"),
 }
 
 

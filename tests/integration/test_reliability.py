@@ -1,4 +1,4 @@
-"""Kills, damaged files, odd parameter files, and the wheel."""
+"""Kills, and the wheel."""
 
 import contextlib
 import io
@@ -15,16 +15,11 @@ from pathlib import Path
 import pytest
 import yaml
 from commands import PAPER, package_of
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from places import ROOT
 
 from granular_response.cli import main as cli
-from granular_response.scene import SceneError
 from granular_response.store import files as store
 from granular_response_paper import cli as paper
-from granular_response_paper.pipeline import simulation
-from granular_response_paper.registry import GroupError
 
 KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "8"))
 SCENE = {
@@ -119,32 +114,6 @@ def test_killed_studies_leave_whole_datasets_or_none(tmp_path, processes):
 
 
 # Damaged and foreign files
-
-
-# Parameter files
-
-SCALARS = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20)
-TREES = st.recursive(
-    SCALARS, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3)
-)
-SECTIONS = st.dictionaries(st.sampled_from(["common", "theory", "other"]), TREES)
-
-
-def loaded(path: Path) -> None:
-    try:
-        found = simulation.parameters("theory", path)
-    except (GroupError, SceneError) as error:
-        assert "\n" not in str(error)
-        assert str(error).startswith(str(path))
-    else:
-        assert isinstance(found, dict)
-
-
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(content=SECTIONS | TREES)
-def test_any_tree_as_parameters(tmp_path, content):
-    (tmp_path / "params.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
-    loaded(tmp_path / "params.yaml")
 
 
 # The wheel

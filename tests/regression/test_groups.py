@@ -95,7 +95,7 @@ def few(group: str, factor: float) -> dict[str, Any]:
 ODD = {
     "one of each": lambda group: shortened(reduced.parameters(group), 1),
     "weak forces": lambda group: few(group, 1e-3),
-    "strong forces": lambda group: few(group, 30.0),
+    "strong forces": lambda group: few(group, 8.0),
 }
 
 

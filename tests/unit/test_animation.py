@@ -1,6 +1,5 @@
 """Animations of a growing load: a frame for each load, on one scale, in a file that is whole or not there."""
 
-
 import numpy as np
 import pytest
 from matplotlib.figure import Figure

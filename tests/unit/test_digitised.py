@@ -89,22 +89,15 @@ def test_nothing_is_drawn_without_a_file(tmp_path):
     ("change", "rule"),
     [
         ({"source": None}, "source: missing, must be given as a line '# source: ...'"),
-        ({"error_x": None}, "error_x: missing, must be given as"),
-        ({"error_y": None}, "error_y: missing, must be given as"),
         ({"source": ""}, "line 1: source = '': must be one of source, error_x, error_y, panel, label, with a value"),
         ({"colour": "red"}, "line 4: colour = 'red': must be one of source, error_x, error_y, panel, label"),
         ({"error_x": "small"}, "error_x = 'small': must be a finite number"),
         ({"error_y": "-0.1"}, "error_y = -0.1: must be 0 or greater"),
-        ({"error_y": "inf"}, "error_y = 'inf': must be a finite number"),
         ({"panel": "3"}, "panel = '3': must be one of 1, 2"),
-        ({"panel": "a"}, "panel = 'a': must be one of 1, 2"),
         ({"header": "x,z"}, "header = 'x,z': must be x,y, with a line for each point below it"),
-        ({"points": ""}, "header = 'x,y': must be x,y, with a line for each point below it"),
         ({"points": "1,2\n3,a\n"}, "line 6: y = 'a': must be a finite number"),
-        ({"points": "1,nan\n"}, "line 5: y = 'nan': must be a finite number"),
         ({"points": "1,2,3\n"}, "line 5: has 3 values, must have x y"),
         ({"points": "0.2,0.3\n# source: B\nx,y\n"}, "line 6: source = 'B': is given twice, a second curve needs a"),
-        ({"points": "0.2,0.3\nx,y\n"}, "line 6: x = 'x': must be a finite number"),
     ],
 )
 def test_a_file_that_cannot_be_drawn_is_refused(tmp_path, change, rule):

@@ -68,19 +68,6 @@ def test_looking_changes_nothing():
         assert np.array_equal(getattr(unseen, name), getattr(seen, name)), name
 
 
-def test_state_carries_the_motion_to_another_run():
-    """Velocity Verlet started from a state in the middle: the same but for the velocity predicted for dashpots."""
-    first = falling("verlet")
-    second = Dynamics(first.problem, first.state(), "verlet", first.time_step)
-    assert np.array_equal(second.position, first.position)
-    assert np.array_equal(second.angle, first.angle)
-    assert np.array_equal(second.v, first.v)
-    assert np.array_equal(second.spring, first.spring)
-    first.advance(200)
-    second.advance(200)
-    assert second.position == pytest.approx(first.position, abs=1e-7)
-
-
 def test_blow_up_is_an_error():
     problem, state = free_disks([[10.0, 1.0], [11.0, 1.9]], velocity=[(0, 0), (0, 0)], contact__damping_ratio=1.0)
     dynamics = Dynamics(problem, state, "beeman", 0.1)

@@ -41,26 +41,6 @@ def test_one_disk_has_no_pairs():
 
 @given(
     pairs=st.sets(st.tuples(st.integers(0, 60), st.integers(1, 6)), max_size=150),
-    gap=st.integers(0, 6),
-    shortest=st.integers(1, 30),
-)
-def test_runs_hold_every_pair_once(pairs, gap, shortest):
-    listed = np.array(sorted((i, i + d) for i, d in pairs), np.int64).reshape(-1, 2)
-    runs, slot = make_runs(listed[:, 0], listed[:, 1], 70, gap, shortest)
-    first, second = run_pairs(runs)
-    assert np.array_equal(first[slot], listed[:, 0]) and np.array_equal(second[slot], listed[:, 1])
-    assert len(np.unique(slot)) == len(slot)
-    count = runs[:, 2]
-    # slots follow one another, single pairs are last, no pair stands in two slots
-    assert np.array_equal(runs[:, 3], np.cumsum(count) - count)
-    assert np.all(np.diff((count == 1).astype(int)) >= 0)
-    assert len({*zip(first.tolist(), second.tolist(), strict=True)}) == len(first)
-    # no more filling than asked for
-    assert len(first) <= len(listed) * (1 + gap)
-
-
-@given(
-    pairs=st.sets(st.tuples(st.integers(0, 60), st.integers(1, 6)), max_size=150),
     multiple=st.sampled_from([1, 2, 8]),
 )
 def test_lengthened_runs_hold_every_pair_in_a_slot_of_its_own(pairs, multiple):

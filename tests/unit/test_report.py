@@ -3,7 +3,6 @@
 import base64
 import json
 import re
-import shutil
 import zlib
 from html.parser import HTMLParser
 from pathlib import Path
@@ -22,7 +21,7 @@ from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.stored import ClaimsError
 from granular_response_paper.groups.sensitivity import simulate as sensitivity
 from granular_response_paper.registry import PAPER
-from granular_response_paper.report import against, benchmarks, explorer, readings
+from granular_response_paper.report import against, explorer, readings
 from granular_response_paper.report.typeset import typeset
 
 FORCES = (0.0, 1.0, 4.0, 90.0)
@@ -231,17 +230,6 @@ def test_claims_and_figures_lead_to_each_other(judged, page):
     assert found == expected != []
 
 
-def test_readings_stand_in_their_own_order_with_a_column_for_each_slab():
-    count = len(readings.READINGS)
-    small = readings_study(np.arange(1, count + 1) * 1e-3)
-    large = readings_study(np.arange(1, count + 1) * 1e-12).isel(variant=slice(0, -1))
-    found = readings.table({"mu_0.2": small, "mu_1": large, "another": Dataset()})
-    assert found.slabs == ("µ = 0.2", "µ = 1")
-    assert [reading for reading, _ in found.rows] == list(readings.READINGS.values())
-    assert found.rows[0][1] == (f"{count * 1e-3:.1e}".replace("e-0", "e-"), "")
-    assert found.rows[-1][1] == ("1.0e-3", "1.0e-12")
-
-
 def test_the_fragment_of_readings_is_the_same_every_time(tmp_path):
     count = len(readings.READINGS)
     study = readings_study(np.arange(1, count + 1) * 1e-3, response_sum=np.linspace(1.0, 0.9, count + 1))
@@ -300,14 +288,6 @@ def test_the_same_files_give_the_same_bytes(root, tmp_path):
     first = report.write(tmp_path / "a.html", root)
     second = report.write(tmp_path / "b.html", root)
     assert first.read_bytes() == second.read_bytes()
-
-
-def test_captions_that_are_none_are_one_line(root, tmp_path):
-    shutil.copytree(root, tmp_path / "copy")
-    (tmp_path / "copy" / "figures" / "theory" / "captions.json").write_text("[]")
-    with pytest.raises(report.ReportError, match=r"theory/captions.json: holds no captions") as caught:
-        report.page(tmp_path / "copy")
-    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -382,15 +362,6 @@ def test_explorer_data_are_those_of_the_states():
     assert data["range"][0]["force"] == [1.0, 4.0]  # Fig. 6 ends at 50
 
 
-def test_no_slider_without_states(root, tmp_path):
-    bare = tmp_path / "bare"
-    (bare / "figures").mkdir(parents=True)
-    shutil.copy(root / "figures" / "claims.json", bare / "figures")
-    text = report.page(bare)
-    assert 'id="explorer"' not in text and 'type="range"' not in text
-    assert text.count("not drawn yet") == 24 and text.count("Not measured yet") == 2
-
-
 @pytest.mark.parametrize(("content", "problem"), [(None, "No such file"), ("{", "Expecting"), ("[]", "is not a")])
 def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
     if content is not None:
@@ -399,31 +370,6 @@ def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
     with pytest.raises(ClaimsError, match=rf"claims\.json: {problem}") as caught:
         report.page(tmp_path)
     assert "\n" not in str(caught.value)
-
-
-def test_a_table_that_lacks_a_part_is_one_line(judged, tmp_path):
-    whole = judged
-    (tmp_path / "figures").mkdir()
-    row = whole["table"][0]
-    partial = [{**whole, "table": [{k: v for k, v in row.items() if k != key}]} for key in ("group", "id")]
-    partial += [{**whole, "table": 3}, {**whole, "verdicts": [{}]}, {**whole, "counts": {}}]
-    for found in partial:
-        (tmp_path / "figures" / "claims.json").write_text(json.dumps(found))
-        with pytest.raises((ClaimsError, report.ReportError), match="is not a whole table of claims") as caught:
-            report.page(tmp_path)
-        assert "\n" not in str(caught.value)
-
-
-def test_benchmarks_show_goals_and_pictures(root, tmp_path):
-    row = report.page(root).partition("<td>Speed of a step</td>")[2].partition("</tr>")[0]
-    assert re.findall(r">([^<>]+)</td>", row) == ["at least 4", "5", "yes"]
-    (tmp_path / "figures").mkdir()
-    Image.new("RGB", (400, 200), "white").save(tmp_path / "figures" / "kernel.png")
-    (kernel,) = benchmarks.collect(tmp_path, tmp_path)
-    assert (
-        kernel.title == "Kernel" and kernel.picture.width == 400 and kernel.picture.text == f"Kernel: {kernel.caption}"
-    )
-    assert benchmarks.goals(tmp_path) == []
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,5 @@
 """A packing of one material is settled once, and a kept rest state is exactly the computed one."""
 
-
 import os
 import time
 

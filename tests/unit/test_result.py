@@ -71,35 +71,6 @@ def test_floor_response_of_each_load(solution):
     assert data.attrs["stable"] == "yes" and data.attrs["settled"] == "yes"
 
 
-CHANGING = {
-    "packing.layers": 4,
-    "packing.disks_per_row": 7,
-    "packing.polydispersity": 0.3,
-    "packing.lattice_constant": "touching-largest",
-    "packing.realization": 4,
-    "contact.normal_stiffness": 1000.0,
-    "contact.friction": 0.1,
-    "protocol.time_step": "auto",
-    "loads.0.force": [10, -25],
-}
-
-
-@pytest.mark.parametrize("changes", [{}, {"contact.friction": 0.0}])
-def test_a_stored_result_goes_on_with_the_bits_of_a_run_that_was_not_cut(changes, tmp_path):
-    """Dynamics on the way lists other candidates: each stored state keeps its own list."""
-    scene = Scene().updated({**CHANGING, **changes})
-    whole = granular_response.solve(scene, load_factors=[1, 2, 0.2])
-    granular_response.solve(scene, load_factors=[1, 2]).save(tmp_path / "cut.nc")
-    cut = granular_response.open_result(tmp_path / "cut.nc")
-    assert {"contact_own_place", "wall_own_place"} <= set(cut.to_dataset().variables)
-    goes_on = cut.continued([0.2])
-    for name in ("position", "angle"):
-        np.testing.assert_array_equal(getattr(goes_on.loaded[-1], name), getattr(whole.loaded[-1], name))
-    for name in ("first", "second", "spring", "normal_force"):
-        np.testing.assert_array_equal(getattr(goes_on.loaded[0].pairs, name), getattr(whole.loaded[0].pairs, name))
-        np.testing.assert_array_equal(getattr(goes_on.rest.walls, name), getattr(whole.rest.walls, name))
-
-
 def test_a_box_that_has_changed_since_is_noticed(tmp_path):
     disks = [(x, 1.0) for x in (1.0, 3.0, 5.0, 7.0)] + [(x, 1.0 + 3**0.5) for x in (2.0, 4.0, 6.0)]
 

@@ -1,9 +1,7 @@
 """Stages of a figure group that is made up for it: simulated, drawn, interrupted; progress on a terminal."""
 
-import fcntl
 import io
 import json
-import os
 import time
 from pathlib import Path
 
@@ -131,17 +129,6 @@ def test_a_second_run_of_a_group_is_refused_while_the_first_one_lasts(group, mon
     assert said == ["data/squares.nc: another run is making it; wait for it, or give another --output"]
     assert sorted(path.name for path in Path("data").iterdir()) == ["other.nc", "squares.nc"]
     simulation.simulate(group, workers=1)
-
-
-def test_a_run_that_has_ended_leaves_no_lock(group):
-    """However it ended: the kernel closes what a killed process had open."""
-    Path("data/.squares.checkpoint").mkdir(parents=True)
-    other = os.open("data/.squares.checkpoint", os.O_RDONLY)
-    fcntl.flock(other, fcntl.LOCK_EX)
-    with pytest.raises(GroupError, match="another run is making it"):
-        simulation.simulate(group, workers=1)
-    os.close(other)
-    assert simulation.simulate(group, workers=1) == Path("data/squares.nc")
 
 
 def test_an_interruption_and_what_goes_on_from_it_are_said(group, monkeypatch, capsys):

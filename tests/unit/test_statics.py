@@ -1,6 +1,5 @@
 """Static forces against the dynamics' kernels, and tangents against finite differences."""
 
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -10,11 +9,8 @@ from small_scenes import free_disks, scene, shaken, started
 from granular_response.contact import LAWS
 from granular_response.kernels.statics import Response, _one_pair
 from granular_response.solvers.dynamics import Dynamics
-from granular_response.solvers.pattern import Pattern
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.solution import solve_scene
 from granular_response.solvers.stability import Spectrum
-from granular_response.solvers.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 FRICTION = {"none": (0.0, 0.0), "pairs": (0.3, 0.0), "both": (0.3, 0.4), "walls": (0.0, 0.4)}
@@ -221,21 +217,3 @@ def test_an_instability_is_found_beside_disks_that_roll_freely(rollers):
     lowest, found = system.deinterleave(vectors[:, np.argmin(every)].real), Spectrum(system, trial).direction
     lowest, found = (v[: 2 * problem.n] / v[1] for v in (lowest, found))  # along x of the disk on top
     np.testing.assert_allclose(found, lowest, atol=1e-6)
-
-
-def test_a_pattern_serves_the_next_system_of_the_same_contacts(monkeypatch):
-    """From one load to the next; the tangents are those of a system that found nothing to take over."""
-    monkeypatch.setattr(sys.modules[Pattern.__module__], "_last", [])
-    solved = solve_scene(scene(4, 9))
-    problem, loaded = solved.problem, solved.loaded[0]
-    first, second = StaticSystem(problem, solved.rest), StaticSystem(problem, loaded)
-    assert second.pattern is first.pattern
-    fewer = replace(loaded, pairs=replace(loaded.pairs, **{k: v[1:] for k, v in vars(loaded.pairs).items()}))
-    smooth = problem.without_friction()
-    others = [StaticSystem(problem, fewer), StaticSystem(smooth, loaded)]
-    assert len({id(system.pattern) for system in (first, *others)}) == 3
-    alone = StaticSystem(problem, loaded)
-    assert alone.pattern is not second.pattern
-    known = alone.start(loaded)
-    one, other = (system.tangent(system.trial(known, known.q)) for system in (second, alone))
-    assert one.toarray().tolist() == other.toarray().tolist()

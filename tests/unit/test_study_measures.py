@@ -1,6 +1,5 @@
 """What the studies of fields, piles and torques measure themselves, on hand-made input."""
 
-
 import numpy as np
 import pytest
 from observe_states import slab, with_pairs

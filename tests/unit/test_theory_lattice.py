@@ -94,16 +94,10 @@ def test_isotropic_constructor_inverts() -> None:
     ("call", "message"),
     [
         (lambda: Moduli(1.0, 1.0, 1.0, 1.0), r"modulus c = 1\.0"),
-        (lambda: Moduli(1.0, 1.0, 0.0, 0.0), r"modulus d = 0\.0"),
         (lambda: Moduli.isotropic(1.0), r"poisson_ratio = 1\.0"),
-        (lambda: Moduli.isotropic(0.3, -1.0), r"young_modulus = -1\.0"),
         (lambda: Springs(-1.0, 1.0), r"k1n = -1\.0"),
-        (lambda: Springs(1.0, 0.0), r"k2n = 0\.0"),
         (lambda: lattice.moduli(Springs(0.0, 1.0)), r"modulus c"),
         (lambda: lattice.moduli(Springs(1.0, 1.0), "some"), r"rotations = 'some'"),
-        (lambda: lattice.peak_criterion(-0.1), r"beta = -0\.1"),
-        (lambda: lattice.poisson_ratio(0.0, 1.0), r"0\.0"),
-        (lambda: lattice.measured_moduli(Springs(1.0, 1.0), cells=(0, 2)), r"cells = \(0, 2\)"),
     ],
 )
 def test_bad_input_is_named(call, message) -> None:

@@ -63,21 +63,6 @@ def test_an_equilibrium_that_is_left_slowly_is_not_called_stable():
         follow(problem, balanced, [0.0], record=record)
 
 
-@pytest.mark.parametrize("friction", [0.05, 0.2, 1.0])
-def test_responses_and_open_contacts_are_those_of_small_increments(friction):
-    load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
-    problem, rest = at_rest(scene(8, 21, contact__friction=friction, loads=load))
-    forces = [4.0] if friction < 0.1 else [4.0, 15.0, 50.0]  # increments are dear with little friction
-    states, fine = follow(problem, rest, forces), follow(problem, rest, forces, together=0.04)
-    bottom = np.arange(21)
-    for state, other in zip(states, fine, strict=True):
-        error = np.abs(floor_force(state, bottom) - floor_force(other, bottom)).max()
-        assert error <= 2e-5 * state.load_factor
-        assert np.array_equal(state.pairs.status == OPEN, other.pairs.status == OPEN)
-        assert state.certificate.stable and state.certificate.force_residual < 1e-10
-        assert not any(event.lost for event in (*state.reached.events, *other.reached.events))
-
-
 def _walls(state):
     return np.concatenate([state.walls.normal_force, state.walls.tangential_force])
 
