@@ -69,10 +69,10 @@ def test_processes_that_compile_a_kernel_at_once_for_different_types_keep_each_t
     for hits in "0", "1":
         running = [
             subprocess.Popen([sys.executable, "-c", KEEP, kind], env=environment, stdout=subprocess.PIPE, text=True)
-            for kind in ("i8", "f8", "c16")
+            for kind in ("i8", "f8")
         ]
         said = [process.communicate()[0].split() for process in running]
-        assert said == [["6", hits], ["6.0", hits], ["(6+0j)", hits]]
+        assert said == [["6", hits], ["6.0", hits]]
 
 
 def test_the_first_folder_that_can_be_written_is_taken(tmp_path, monkeypatch):

@@ -1,7 +1,6 @@
 """Figs. 23 and 24 on small slabs, from parameters through a file to figures."""
 
 import numpy as np
-import pytest
 import reduced
 
 from granular_response.scene import Scene
@@ -65,14 +64,3 @@ def test_paths_agree_with_the_protocol_of_the_paper(datasets) -> None:
     assert pair.by_motion.all()
     slow = datasets["responses"]["floor_response"].isel(realization=0, distance=1).sel(force=0.2).values
     np.testing.assert_allclose(pair.floor_response[0], slow, atol=0.01 * slow.max())
-
-
-@pytest.mark.parametrize(
-    ("both", "rms", "largest"), [([2.0, 4.0, 4.0], 0.0, 0.0), ([2.0, 4.0, 5.0], 1.0 / np.sqrt(45.0), 0.2)]
-)
-def test_the_size_of_an_error(both, rms, largest) -> None:
-    left, right = np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 0.0])
-    found = study.superposition_error(left, right, np.array(both))
-    np.testing.assert_allclose(found, (rms, largest), atol=1e-15)
-    as_vectors = study.superposition_error(*(np.stack([v, 0.0 * v], axis=1) for v in (left, right, np.array(both))))
-    np.testing.assert_allclose(as_vectors, (rms, largest), atol=1e-15)

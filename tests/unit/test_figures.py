@@ -7,7 +7,6 @@ import matplotlib.image
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib import font_manager
 from matplotlib.colors import to_hex, to_rgb
 from PIL import Image
 
@@ -75,13 +74,6 @@ def test_a_png_has_the_pixels_of_matplotlib_in_fewer_bytes() -> None:
             assert other.info["dpi"] == pytest.approx((200.0, 200.0), rel=1e-3)
 
 
-def test_fonts_are_those_that_matplotlib_ships() -> None:
-    with style.context():
-        for properties in ({}, {"style": "italic"}, {"weight": "bold"}):
-            font = font_manager.FontProperties(**properties)
-            assert font_manager.findfont(font, fallback_to_default=False).startswith(mpl.get_data_path())
-
-
 @pytest.mark.parametrize("of", style.RAMPS)
 def test_ordered_colours_darken_to_one_side_and_are_seen_on_white(of: str) -> None:
     colours = np.array([to_rgb(colour) for colour in style.ordered_colours(9, of=of)])
@@ -98,12 +90,6 @@ def test_settings_that_are_none_are_named() -> None:
         style.ordered_colours(0)
     with pytest.raises(ValueError, match="file_format = 'bmp'"):
         style.render(_drawn(), "bmp")
-
-
-def test_a_symbol_with_its_value_is_set_with_unit_and_power() -> None:
-    assert style.equals(style.FRICTION, 0.2) == r"$\mu = 0.2$"
-    assert style.equals("k_N", 1e5, style.STIFFNESS_UNIT) == r"$k_N = 10^{5}\,\bar m g/\bar R$"
-    assert style.equals("k_N", 3000.0) == "$k_N = 3000$"
 
 
 def test_names_beside_curves_do_not_cover_each_other():

@@ -1,6 +1,5 @@
 """Any valid scene survives YAML; any other input is a SceneError of one line."""
 
-import contextlib
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -168,10 +167,3 @@ def leaves(data, path=()):
 @given(st.text() | st.lists(words | st.sampled_from(list(":-{}[],\n &*!#'\"|>%@0.1e")), max_size=40).map("".join))
 def test_any_text(text):
     scene_or_error(Scene.from_text, text)
-
-
-@MANY
-@given(st.text(alphabet=st.sampled_from("packingcontfrk.[]0123 é²"), max_size=20), anything)
-def test_any_update(key, value):
-    with contextlib.suppress(SceneError):
-        assert isinstance(Scene().updated({key: value}), Scene)
