@@ -2,10 +2,8 @@
 
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
-from granular_response.plot import style
 from granular_response.scene import PilePacking, Scene
 from granular_response.store import files as store
 from granular_response_paper import captions
@@ -38,11 +36,6 @@ def test_other_packings_have_their_own_words():
     assert of_scene(periodic)["packing"] == "15 layers of 60 disks"
 
 
-def test_of_many_values_the_ends_are_said():
-    assert captions.values(np.arange(1.0, 13.0)) == "1 to 12 (12 values)"
-    assert captions.values([0.5]) == "0.5" and captions.values((1.0, 2.0)) == "1 and 2"
-
-
 def test_an_unknown_parameter_is_refused():
     with pytest.raises(ValueError, match="parameters: unknown frction, must be among force"):
         Caption("", "", {"frction": 0.2})
@@ -58,13 +51,6 @@ def test_a_picture_without_caption_is_refused():
 )
 def test_the_figure_of_a_picture(stem, number):
     assert captions.number(stem) == number
-
-
-def test_letters_of_a_picture_are_those_that_are_drawn():
-    figure, axes = style.figure(1, 3)
-    for panel, name in zip(axes[0], captions.letters("fig05b_stiffness"), strict=False):
-        style.letter(panel, name, place="above" if name == "f" else "inside", text="text")
-    assert style.drawn_letters(figure) == ["e", "f", "g"]
 
 
 def test_fields_of_a_template_are_filled_in_and_lists_put_in_words():

@@ -12,23 +12,6 @@ from granular_response.theory.slab import Slab
 from granular_response_paper.groups.friction_fields.simulate.stress import axis_measures, harmonic_lattice
 
 
-def test_harmonic_lattice_is_in_balance() -> None:
-    packing = SlabPacking(layers=5, disks_per_row=11).build()
-    disk = packing.n - 6
-    found = harmonic_lattice(packing, disk, 1.0, 2.0)
-    pairs = packing.neighbour_pairs()
-    net = np.zeros((packing.n, 2))
-    m = len(pairs)
-    np.add.at(net, pairs[:, 0], found.force[:m])
-    np.add.at(net, pairs[:, 1], -found.force[:m])
-    wall_disk = np.argmin(np.linalg.norm(packing.position[:, None] - found.point[None, m:], axis=2), axis=0)
-    np.add.at(net, wall_disk, found.force[m:])
-    net[disk, 1] -= 1.0
-    np.testing.assert_allclose(net, 0.0, atol=1e-12)
-    np.testing.assert_allclose(np.linalg.norm(found.branch[:m], axis=1), 2.0)
-    np.testing.assert_allclose(np.linalg.norm(found.branch[m:], axis=1), 1.0)
-
-
 def test_harmonic_lattice_is_isotropic_where_it_is_fine() -> None:
     """Against the isotropic slab of the same Poisson ratio, a few disks away from the load."""
     packing = SlabPacking(layers=15, disks_per_row=61).build()
