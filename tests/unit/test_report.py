@@ -83,17 +83,6 @@ def sensitivity_study():
     )
 
 
-def readings_study(differences, **more):
-    """A sensitivity study with a step for each reading, in another order than the table's."""
-    names = ["reference", *reversed(list(readings.READINGS))]
-    columns = {"largest_difference": np.array([0.0, *differences]), **more}
-    return Dataset(
-        {name: variable(("variant",), values, name) for name, values in columns.items()}
-        | {"text": variable(("variant",), [f"words of {name}" for name in names], "what is changed")},
-        {"variant": variable(("variant",), names, "name")},
-    )
-
-
 @pytest.fixture(scope="module")
 def root(tmp_path_factory):
     """A folder as the pipeline leaves it, with some of the figures."""
@@ -168,18 +157,6 @@ def test_one_row_for_every_claim_with_its_verdict(judged, page):
     assert "time step &lt;halved&gt;" in page and "<halved>" not in page  # texts from data cannot become markup
 
 
-def test_a_row_has_its_quote_and_what_was_found(judged, page):
-    """With whose sentence it is, the star of a threshold and the second column."""
-    for row in judged["table"]:
-        part = page.partition(f'<tr id="claim-{row["id"]}"')[2].partition("</tr>")[0]
-        assert ("not the paper; " in part) == (row["source"] != "paper")
-        assert ("is halved or doubled" in part) == bool(row["star"])
-        assert ('class="elsewhere"' in part) == (row["elsewhere"] != "not tried")
-        listed = report.telling(row["tests"])
-        assert part.count("<li>") == len(listed) == min(len(row["tests"]), report.LISTED)
-        assert ("more in <code>" in part) == (len(listed) < len(row["tests"]))
-
-
 def test_a_self_contained_page_needs_no_network_and_no_other_file(root):
     page = report.page(root, embedded=True)
     elements = Elements(page)
@@ -230,22 +207,6 @@ def test_claims_and_figures_lead_to_each_other(judged, page):
     assert found == expected != []
 
 
-def test_the_fragment_of_readings_is_the_same_every_time(tmp_path):
-    count = len(readings.READINGS)
-    study = readings_study(np.arange(1, count + 1) * 1e-3, response_sum=np.linspace(1.0, 0.9, count + 1))
-    store.write(tmp_path / "data" / "sensitivity.nc", {"mu_0.2": study})
-    text = report.fragments(tmp_path)["readings.md"]()
-    assert text.startswith("| interpretation | choice |")
-    rows = [line for line in text.splitlines() if line.startswith("|")]
-    assert len(rows) == count + 2 and {row.count("|") for row in rows} == {5}
-    largest = f"{count * 1e-3:.1e}".replace("e-0", "e-")
-    assert f"| gravity | instantaneous | grows over 100 sqrt(R/g) | {largest} |" in rows
-    place = 1 + list(reversed(list(readings.READINGS))).index("stop_1e-9")
-    assert f"stopped at 1e-9 per disk: {study['response_sum'].values[place]:.4f} (µ = 0.2)" in text
-    assert "as printed:" not in text  # its kinetic energy is not stored here
-    assert report.fragments(tmp_path)["readings.md"]() == text
-
-
 @pytest.mark.parametrize(
     ("paper", "remark", "said"),
     [
@@ -269,15 +230,6 @@ def test_another_parameter_without_a_reason_is_an_error(tmp_path, monkeypatch):
     store.write(tmp_path / "data" / "sensitivity.nc", {})
     with pytest.raises(report.ReportError, match=r"figure 3, F_ext: 1, 4, 90 where the paper has 5, and nothing says"):
         report.write_fragments(tmp_path / "documents", tmp_path)
-
-
-def test_parameters_are_read_from_variables_scenes_and_attributes():
-    data = {"one": friction_study()["response"].assign_attrs(width=3.0)}
-    found = [
-        against.Row(1, "", "", (), f"theory/one{source}").stored(data).tolist()
-        for source in (":friction", "@contact.stiffness_ratio", "@wall.friction", "#width")
-    ]
-    assert found == [[0.0, 0.2, 1.0], [0.8], [0.0], [3.0]]
 
 
 def test_every_reading_of_the_table_is_a_variant_of_the_study():
