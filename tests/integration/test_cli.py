@@ -147,14 +147,6 @@ def test_datasets_of_another_group_are_not_drawn(solved):
     assert "must be those of pile_dip" in refused("draw", "pile_dip", "--data", "result.nc", folder=solved)
 
 
-def test_damaged_parameters_are_one_line(tmp_path):
-    text = (ROOT / "params.yaml").read_text()
-    (tmp_path / "params.yaml").write_text(text.replace("stress_spacing:", "stress_spacng:"))
-    said = refused("simulate", "pile_dip", "--workers", 1, folder=tmp_path)
-    assert "params.yaml: pile_dip.stress_spacng = 0.25: unknown key, did you mean" in said
-    assert not (tmp_path / "data").exists()
-
-
 def test_a_result_is_continued_and_nothing_else(solved):
     to = ["continue", "result.nc", "--to"]
     assert "load factors 1, 1.5, 3" in succeeded(*to, "1.5", "--to", 3, "-o", "more.nc", folder=solved)

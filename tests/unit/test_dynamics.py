@@ -81,6 +81,16 @@ def test_a_disk_too_fast_for_any_list_is_an_error():
         Dynamics(problem, state).advance(100)
 
 
+def test_envelope_is_stricter_than_the_instant():
+    problem = Problem.from_scene(scene(contact__friction=0.0))
+    steps = {}
+    for rule in ("instantaneous", "envelope"):
+        state = relax(Dynamics(problem, problem.bare_state()), Stop(1e-10, rule))
+        assert state.reached.settled
+        steps[rule] = state.reached.relaxation_steps
+    assert steps["envelope"] >= steps["instantaneous"] + 20.0 / 5e-4 * 0.9
+
+
 def test_motion_that_a_small_load_begins_has_fallen_to_a_part_of_its_largest_energy():
     """So little is out of balance that the energy is never above the limit: without ``fallen`` no motion is seen."""
     problem, rest = at_rest(scene(contact__friction=0.2, loads=[{"disk": "top-centre", "force": [0.0, -1.0]}]))

@@ -8,6 +8,7 @@ from small_scenes import free_disks, scene
 
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.kernels.integrators.stepping import Integrator
+from granular_response.solvers import choice
 from granular_response.solvers.dynamics import Dynamics, Relaxation, Stop, relax
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import _statics
@@ -81,3 +82,17 @@ def test_a_disk_that_slides_is_seen_and_nothing_changes_by_it(friction, slides):
     assert motion.slides() is slides
     for name, value in kept.items():
         assert np.array_equal(getattr(motion, name), value), name
+
+
+def test_where_it_does_not_count():
+    """Disordered packings change some contact nearly always; with ``method: dynamics`` the protocol is the paper's."""
+    for stop, quiet in ((1e-15, choice.QUIET * 1e-15), (1e-13, 1e-9), (1e-12, choice.LARGEST_QUIET)):
+        assert rough(protocol__stop_kinetic_energy=stop).plan.quiet_energy == pytest.approx(quiet)
+    for other in (
+        {"packing__polydispersity": 0.1},
+        {"protocol__method": "dynamics"},
+        {"protocol__stop_rule": "envelope"},
+        {"protocol__static_finish": False},
+        {"contact__friction": 0.0, "wall__friction": 0.0},
+    ):
+        assert rough(**other).plan.quiet_energy == 0.0
