@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from observe_states import contacts, opened, pair_index, slab, state
+from observe_states import contacts, opened, pair_index, slab, state, with_pairs
 
 from granular_response.observe.network import (
     FALLING,
@@ -19,6 +19,7 @@ from granular_response.observe.network import (
     mirror_disks,
     network_asymmetry,
     rattlers,
+    sliding_count,
     unmatched_contacts,
 )
 from granular_response.state import FLOOR, OPEN, SLIDING, STICKING
@@ -33,6 +34,14 @@ def test_contact_changes_between_all_statuses():
     assert np.flatnonzero(changes.closed).tolist() == [1, 2]
     assert np.flatnonzero(changes.started_sliding).tolist() == [2, 5]
     assert np.flatnonzero(changes.stopped_sliding).tolist() == [6, 7]
+
+
+def test_sliding_count_with_and_without_walls():
+    position = np.array([[1.0, 1.0], [3.0, 1.0], [5.0, 1.0]])
+    pairs = contacts([(0, 1), (1, 2)], status=np.array([SLIDING, STICKING]))
+    walls = contacts([(0, FLOOR), (1, FLOOR), (2, FLOOR)], status=np.array([SLIDING, SLIDING, OPEN]))
+    assert sliding_count(state(position, pairs, walls)) == 3
+    assert sliding_count(state(position, pairs, walls), walls=False) == 1
 
 
 def test_lattice_directions_do_not_depend_on_the_order_of_partners():
@@ -64,6 +73,17 @@ def test_coordination_number_of_a_lattice_is_six_in_the_bulk():
     assert 0 < bulk.sum() < s.position.shape[0]
     assert coordination_number(s, bulk) == 6.0
     assert coordination_number(s, walls=False) == 2.0 * s.pairs.first.size / s.position.shape[0] < 6.0
+
+
+def test_bulk_disks_keep_all_four_margins():
+    position = np.array([[5.0, 5.0], [1.0, 5.0], [9.0, 5.0], [5.0, 1.0], [5.0, 9.0]])
+    assert bulk_disks(state(position, contacts([])), 10.0, 2.0, 2.0).tolist() == [
+        True,
+        False,
+        False,
+        False,
+        False,
+    ]
 
 
 def chain_with_loose_ends():
@@ -113,6 +133,18 @@ def test_contact_angle_histogram_of_a_lattice():
     np.testing.assert_allclose(density[[0, 6, 12]] * np.pi / 18, share)
 
 
+def test_contact_angle_histogram_counts_touching_contacts_only():
+    s = slab(4, 6)
+    horizontal = lattice_direction(s) == HORIZONTAL
+    _, density = contact_angle_histogram(opened(s, ~horizontal), 18)
+    assert np.flatnonzero(density).tolist() == [0]
+    assert not contact_angle_histogram(opened(s, np.ones_like(horizontal)), 18)[1].any()
+    _, chosen = contact_angle_histogram(s, 18, contacts=~horizontal)
+    assert np.flatnonzero(chosen).tolist() == [6, 12]
+    with pytest.raises(ValueError, match="bins"):
+        contact_angle_histogram(s, 0)
+
+
 def test_mirror_of_a_slab():
     s = slab(2, 3)  # disks 0 1 2 below, 3 4 above
     assert mirror_disks(s.position, 3.0).tolist() == [2, 1, 0, 4, 3]
@@ -131,3 +163,13 @@ def test_network_asymmetry_counts_contacts_without_an_image():
     assert np.flatnonzero(unmatched_contacts(lopsided.pairs, mirror)).tolist() == [right]
     assert network_asymmetry(lopsided.pairs, mirror) == pytest.approx(1 / (s.pairs.first.size - 1))
     assert network_asymmetry(opened(s, np.array([left, right])).pairs, mirror) == 0.0
+
+
+def test_network_asymmetry_of_the_sliding_contacts():
+    s = slab(2, 3)
+    mirror = mirror_disks(s.position, 3.0)
+    left, middle = pair_index(s, 0, 3), pair_index(s, 3, 4)
+    sliding = with_pairs(s, np.array([left, middle]), status=SLIDING)
+    assert network_asymmetry(sliding.pairs, mirror) == 0.0
+    assert network_asymmetry(sliding.pairs, mirror, sliding=True) == 0.5
+    assert network_asymmetry(s.pairs, mirror, sliding=True) == 0.0

@@ -124,6 +124,17 @@ def test_double_peak_needs_both_sides_higher_than_the_centre():
     assert not is_double_peaked(X, lower)
 
 
+def test_double_peak_needs_the_stated_dip():
+    assert is_double_peaked(X, profile(0.998, 1.0, 0.5), relative_prominence=1e-3)
+    assert not is_double_peaked(X, profile(0.9995, 1.0, 0.5), relative_prominence=1e-3)
+
+
+def test_double_peak_on_samples_that_avoid_the_axis():
+    x = np.arange(-5.0, 6.0, 2.0)
+    assert is_double_peaked(x, [0.0, 1.0, 0.5, 0.5, 1.0, 0.0])
+    assert not is_double_peaked(x, [0.0, 0.5, 1.0, 1.0, 0.5, 0.0])
+
+
 def test_third_peak_is_one_between_two():
     assert third_peak(X, THREE) > 0.0
     assert is_double_peaked(X, THREE)

@@ -7,12 +7,14 @@ from scipy.integrate import quad
 
 from granular_response.observe.stress import (
     ContactForces,
+    antisymmetric_part,
     coarse_grained_stress,
     contact_forces,
     grid_points,
     line_forces,
     line_stress,
     load_forces,
+    pressure,
 )
 from granular_response.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, STICKING
 
@@ -46,6 +48,15 @@ def test_compression_is_positive_and_swapping_the_partners_changes_nothing():
     assert np.all(stress[:, :, 1] == 0.0)
 
 
+def test_cutoff_leaves_out_what_is_far_and_hardly_changes_the_rest():
+    contact = one_contact([1.0, 0.0], [2.0, 0.0], [1.0, 0.0])
+    points = np.array([[0.0, 0.0], [8.9, 0.0], [9.1, 0.0], [0.0, 5.0]])  # reach: 4 w and half the branch
+    cut, full = (coarse_grained_stress(contact, points, cutoff=c)[:, 0, 0] for c in (4.0, 30.0))
+    assert cut[2] == 0.0 < full[2]
+    assert cut[1] > 0.0
+    np.testing.assert_allclose(cut, full, atol=1e-7 * full[0])
+
+
 def test_contacts_of_a_state_with_its_walls():
     position = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 2.7]])
     pairs = contacts([(0, 1), (2, 0)], np.array([0.0, 2.0]), 0.0, np.array([OPEN, STICKING]))
@@ -69,6 +80,12 @@ def test_added_forces_sit_in_the_loaded_geometry():
     i = rest.pairs.first[k]
     np.testing.assert_allclose(found.point[carries], loaded.position[[i]])
     np.testing.assert_allclose(np.abs(found.force[carries]), [[2.0, 0.0]])
+
+
+def test_pressure_and_antisymmetric_part():
+    stress = np.array([[[3.0, 0.5], [0.3, 1.0]], [[0.0, 1.0], [-1.0, 0.0]], [[-1.0, 0.0], [0.2, -1.0]]])
+    np.testing.assert_allclose(pressure(stress), [2.0, 0.0, -1.0])
+    np.testing.assert_allclose(antisymmetric_part(stress), [0.1, 1.0, -0.1])
 
 
 def test_what_crosses_a_line_does_so_where_the_branch_crosses_it():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from observe_states import ROW, opened, pair_index, slab
 
+from granular_response.observe.network import interior_contacts
 from granular_response.observe.teardrop import teardrop
 
 LAYERS, LONG = 7, 21
@@ -77,6 +78,17 @@ def test_contacts_far_from_the_load_are_not_a_teardrop():
     assert teardrop(REST, both_sides, TOP, start_distance=6.0).count == 2
     assert teardrop(REST, opened(REST, row_pairs(4, -5.0)), TOP, start_distance=3.0).count == 0  # 6.08 away
     assert teardrop(REST, opened(REST, row_pairs(5, -4.0)), TOP, start_distance=3.0).count == 1  # 4.36
+
+
+def test_start_narrows_where_the_region_begins():
+    at_wall, near = row_pairs(6, -19.0), row_pairs(3, 0.0)
+    start = interior_contacts(REST, WIDTH, 10.0)
+    wide = {"start_distance": 20.0}
+    assert teardrop(REST, opened(REST, at_wall), TOP, **wide).count == 1
+    assert teardrop(REST, opened(REST, at_wall), TOP, start=start, **wide).count == 0
+    off_axis = np.abs(0.5 * (REST.position[REST.pairs.first] + REST.position[REST.pairs.second])[:, 0] - LONG) > 0.5
+    region = teardrop(REST, opened(REST, near + row_pairs(2, 5.0)), TOP, start=off_axis, **wide)
+    assert np.flatnonzero(region.contacts).tolist() == row_pairs(2, 5.0)
 
 
 def test_contacts_open_at_rest_do_not_count():
