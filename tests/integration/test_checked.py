@@ -65,6 +65,18 @@ def test_each_load_has_its_branch(factors, branches):
     assert load_coordinates(factors)["branch"].values.tolist() == branches.split()
 
 
+def test_codes_say_what_they_mean(path):
+    with xr.open_dataset(path) as plain:
+        for name, meanings in (
+            ("contact_status", "open sticking sliding"),
+            ("wall_status", "open sticking sliding"),
+            ("wall_index", "floor left_wall right_wall"),
+        ):
+            attributes = plain[name].attrs
+            assert attributes["flag_meanings"] == meanings and attributes["flag_values"].tolist() == [0, 1, 2]
+            assert attributes["flag_values"].dtype == plain[name].dtype
+
+
 def test_force_vectors_carry_weight_and_load(path):
     with xr.open_dataset(path) as data:
         for k, factor in enumerate(data["state_load_factor"].values):

@@ -33,6 +33,13 @@ def test_taps_are_written_only_where_there_are_some():
     assert units.reduced_scene(data)["preparation"]["taps"] == {"amplitude": 1.5, "duration": pytest.approx(3.0)}
 
 
+def test_a_start_without_friction_is_tapped_with_friction_only():
+    smooth = TAPPED.updated({"preparation.gravity": "frictionless", "preparation.taps.number": 1})
+    problem = Problem.from_scene(smooth.updated({"preparation.taps": None}))
+    expected = tapped(problem, rest_state(problem), 1, 0.5, 3.0)
+    np.testing.assert_array_equal(rest_state(Problem.from_scene(smooth)).position, expected.position)
+
+
 def test_the_band_is_that_of_the_responses():
     ways = {
         "at once": {},

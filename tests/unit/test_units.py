@@ -62,3 +62,11 @@ def test_impossible_disks(values, message):
     with pytest.raises(SceneError) as caught:
         LaboratoryUnits(**values)
     assert str(caught.value) == message
+
+
+def test_the_box_of_poured_disks_has_a_width_in_metres():
+    units = LaboratoryUnits()
+    poured = units.reduced_scene({"packing": {"kind": "poured", "disks": 20, "width": 0.0375}})
+    assert poured["packing"]["width"] == pytest.approx(10.0)
+    own = {"packing": {"kind": "file", "path": "disks.csv", "width": 0.0375}}
+    assert units.reduced_scene(own) == own
