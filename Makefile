@@ -68,7 +68,7 @@ survey: setup ## Run the large ensembles of disordered slabs and larger packings
 	"$(BIN)/dvc" repro survey/dvc.yaml
 	"$(BIN)/python" survey/document.py
 
-test: setup ## Run all tests, the linters and the type checker (JOBS=2 for two processes)
+test: setup ## Run all tests and the linters (JOBS=2 for two processes)
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/python" -m pytest -n $(JOBS) --dist worksteal
 
@@ -78,7 +78,7 @@ fuzz: setup ## Try every property on new random examples (EXAMPLES=5000 of each;
 broken: setup ## Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (ten minutes)
 	PYTHONPATH=tests "$(BIN)/python" tests/integration/broken_files.py $(BROKEN) --output tests/data/broken_files.json
 
-scenes: setup ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (hours)
+scenes: setup ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (half an hour; goes on where it was interrupted)
 	"$(BIN)/python" -W ignore tests/unlike_scenes.py $(SCENES) --output tests/data/random_scenes.json
 
 coverage: setup ## What the unit tests reach but for compiled kernels; fails below the floor in pyproject.toml

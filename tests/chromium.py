@@ -1,6 +1,5 @@
 """A headless Chromium that tests steer over its debugging pipe: real input events, and every message that it logs."""
 
-import base64
 import json
 import os
 import shutil
@@ -100,18 +99,14 @@ class Chromium:
             assert time.monotonic() < until, f"never true: {script}"
             time.sleep(0.05)
 
-    def open(self, path, width, *, height=900, scheme="light", scripts=True):
+    def open(self, path, width, *, height=900, scheme="light"):
         """Show a file on a screen of some width; a narrow one is a telephone."""
         phone = width < 600
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=phone)
         self.call("Emulation.setTouchEmulationEnabled", enabled=phone)
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
-        self.call("Emulation.setScriptExecutionDisabled", value=not scripts)
         self.call("Page.navigate", url=path.as_uri())
-        if scripts:
-            self.wait("document.readyState === 'complete' && location.protocol === 'file:'")
-        else:
-            time.sleep(2.0)
+        self.wait("document.readyState === 'complete' && location.protocol === 'file:'")
 
     def centre(self, selector):
         """Where the middle of an element is on the screen, after it has been scrolled there."""
@@ -126,29 +121,12 @@ class Chromium:
         for kind in ("mousePressed", "mouseReleased"):
             self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
-    def hover(self, x, y):
-        self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
-
     def drag(self, x, y, to):
         """With the mouse, along x."""
         self.call("Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, button="left", clickCount=1)
         self.call("Input.dispatchMouseEvent", type="mouseMoved", x=to, y=y, button="left", buttons=1)
         self.call("Input.dispatchMouseEvent", type="mouseReleased", x=to, y=y, button="left", clickCount=1)
 
-    def touch(self, x, y):
-        self.call("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
-        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
-
     def key(self, name, code):
         for kind in ("rawKeyDown", "keyUp"):
             self.call("Input.dispatchKeyEvent", type=kind, key=name, code=name, windowsVirtualKeyCode=code)
-
-    def picture(self, file, *, whole=False):
-        """What is on the screen, or all of the page, as a PNG file."""
-        shot = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)
-        file.write_bytes(base64.b64decode(shot["data"]))
-
-    def pdf(self):
-        """The page as it is printed."""
-        printed = self.call("Page.printToPDF", printBackground=False, paperWidth=8.27, paperHeight=11.69)
-        return base64.b64decode(printed["data"])

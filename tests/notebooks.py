@@ -11,7 +11,6 @@ import tempfile
 from pathlib import Path
 
 import nbformat
-from nbclient import NotebookClient
 from nbformat import NotebookNode
 from places import ROOT, SOURCE
 
@@ -28,6 +27,8 @@ LONGEST = 600
 
 def executed(path: Path) -> NotebookNode:
     """A notebook with the outputs that its cells have now. Raises CellExecutionError."""
+    from nbclient import NotebookClient  # a second, which every process that collects tests would pay
+
     notebook = nbformat.read(path, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
         environment = {**os.environ, "IPYTHONDIR": f"{folder}/.ipython"}

@@ -6,12 +6,8 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response_extensions.crossover_scaling import tables
-from granular_response_extensions.crossover_scaling.claims import CLAIMS
 from granular_response_extensions.crossover_scaling.parameters import Parameters
 from granular_response_extensions.crossover_scaling.simulate import series as study
-from granular_response_paper.claims.claim import Data
-from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.frictionless_crossover import simulate as frictionless
 
 
@@ -123,24 +119,3 @@ def test_powers_of_the_continuum_are_known_where_there_is_one_scale(parameters):
     known = {name: study.continuum(one) for name, one in series.items() if one.varied == "layers"}
     assert known == {"constant confinement": 1.0, "walls": 1.0, "friction": 2.0}
     assert study.continuum(series["friction"].model_copy(update={"confined": "constant"})) is None
-
-
-def test_the_document_gets_a_line_for_each_series_of_layers(datasets):
-    head, _, first, *others = tables.markdown(datasets).splitlines()
-    assert head.endswith("| two peaks at 100 layers, extrapolated |") and len(others) == 2
-    exponent = datasets["powers"]["exponent"].sel(series="constant confinement", event="crossover").values
-    assert first.startswith("| 0, constant | 5 to 9 | {:.2f} ({:.2f} to {:.2f}) |".format(*exponent))
-    surveyed = datasets["slabs"].assign_coords(surveyed=("slab", (datasets["slabs"]["layers"].values == 9).astype(int)))
-    assert "| 5 to 9, from 9 on survey data |" in tables.markdown({**datasets, "slabs": surveyed}).splitlines()[2]
-
-
-def test_claims_are_judged(datasets):
-    data = Data({"crossover_scaling": datasets})
-    allowed = {"supported", "in part", "cannot tell", "not supported"}
-    assert {judge(claim, data).verdict for claim in CLAIMS} <= allowed
-    grown = datasets["powers"].copy(deep=True)
-    grown["exponent"][:] = 2.0
-    assert [judge(claim, Data({"crossover_scaling": {"powers": grown}})).verdict for claim in CLAIMS] == [
-        "supported",
-        "supported",
-    ]

@@ -6,12 +6,8 @@ import reduced
 from small_scenes import at_rest
 
 from granular_response.solvers.solution import loaded_states
-from granular_response_extensions.hysteresis import simulate, tables
-from granular_response_extensions.hysteresis.claims import CLAIMS
 from granular_response_extensions.hysteresis.parameters import Parameters
 from granular_response_extensions.hysteresis.simulate.loops import keep_books
-from granular_response_paper.claims.claim import Data
-from granular_response_paper.claims.verdict import judge
 
 PARAMETERS = reduced.parameters("hysteresis")
 #: Cases of the reduced parameters.
@@ -77,26 +73,3 @@ def test_the_reversible_range_is_where_a_loop_begins_to_leave_something(datasets
                 assert (left[force >= float(one["high"])][:1] > PARAMETERS["left"]).all()
     without = events.sel(event="reversible_range").isel(case=SMOOTH, realization=0)
     assert np.isnan(without["high"]) and without["low"] == PARAMETERS["cases"][SMOOTH]["forces"][-1]
-
-
-def test_the_document_gets_a_line_for_each_packing_and_how_the_books_close(datasets):
-    _, _, smooth, rough, disordered, _, count, lattices, disorder = tables.markdown(datasets).splitlines()
-    opening = datasets["events"].isel(case=ROUGH, realization=0).sel(event="first_opening")
-    assert float(opening["high"]) == pytest.approx(float(opening["low"]), rel=1e-6)
-    assert smooth.startswith("| lattice, µ = 0 |") and smooth.endswith("| above 2 | 2 | nothing | nothing | nothing |")
-    assert rough.startswith(f"| lattice, µ = 0.2 | {float(opening['high']):.3g} |")
-    loops = datasets["loops"].isel(case=DISORDERED, turn=1)
-    left = 100.0 * loops["floor_left"].values
-    assert f"| 1 | {np.median(left):.2g} ({left.min():.2g} to {left.max():.2g}) % |" in disordered
-    assert "median of 3 realizations" in count and "lattices" in lattices and "disorder" in disorder
-
-
-def test_loads_of_all_ways_are_the_same():
-    assert simulate.grid([1.0, 4.0], 2) == [0.0, 0.5, 1.0, 2.5, 4.0]
-
-
-def test_the_claims_are_measured(datasets):
-    found = [judge(claim, Data({"hysteresis": datasets})) for claim in CLAIMS]
-    assert all(entry.tests for entry in found)
-    without = found[0].tests[0]
-    assert without.outcome == "no" and without.found.low > 1.0

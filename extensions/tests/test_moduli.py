@@ -9,13 +9,10 @@ from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import response_of_layers
-from granular_response_extensions.moduli.claims import CLAIMS
 from granular_response_extensions.moduli.parameters import Parameters
 from granular_response_extensions.moduli.simulate import response
 from granular_response_extensions.moduli.simulate.loaded import loads, respond
 from granular_response_extensions.moduli.simulate.solid import Solid, fitted, triangles
-from granular_response_paper.claims.claim import Data
-from granular_response_paper.claims.verdict import judge
 from granular_response_paper.parameters import UNIT_LOAD
 from granular_response_paper.slab_response import LoadPath, Measures
 
@@ -47,13 +44,6 @@ def test_the_nearest_isotropic_solid_is_isotropic_and_leaves_one_that_is():
     assert response.nearest_isotropic(given) == pytest.approx(given)
     a, b, c, d = response.nearest_isotropic(np.array([1.0, 2.0, 0.3, 0.8]))
     assert a == b and d == pytest.approx(a - c)
-
-
-def test_claims_of_packings_are_judged(datasets):
-    for claim in (one for one in CLAIMS if one.id in ("B4", "B5")):
-        entry = judge(claim, Data({"moduli": datasets}))
-        assert len(entry.tests) == 2  # of the case with friction and the one without
-        assert ["friction 0," in test.case for test in entry.tests].count(True) == 1
 
 
 def loaded(friction: float, force: float) -> tuple[LoadPath, Solid, np.ndarray]:

@@ -60,12 +60,3 @@ def test_coordination_is_that_of_a_count_by_hand(datasets, paths):
                         near[other].remove(disk)
         contacts = sum(2.0 if other == "wall" else 1.0 for others in near.values() for other in others)
         assert contacts / len(near) == pytest.approx(expected, abs=1e-12)
-
-
-def test_a_statistic_of_known_forces():
-    height = np.array([0.0, 1.0, 5.0, 6.0])
-    assert simulate.relative(np.array([1.0, 3.0, 2.0, 2.0]), height, 4.0) == pytest.approx([0.5, 1.5, 1.0, 1.0])
-    values = np.random.default_rng(0).exponential(size=100_000)
-    excess = values[values > 1.0] - 1.0
-    assert excess.std() / excess.mean() == pytest.approx(1.0, abs=0.02)
-    assert simulate.density(np.array([0.5, 0.5, 1.5, 9.0]), np.array([0.0, 1.0, 2.0])) == pytest.approx([0.5, 0.25])

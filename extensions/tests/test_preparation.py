@@ -9,13 +9,9 @@ from granular_response.solvers.solution import rest_state
 from granular_response.solvers.taps import tapped as after_taps
 from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import State
-from granular_response_extensions.preparation import draw as figures
-from granular_response_extensions.preparation import simulate as study
 from granular_response_extensions.preparation.parameters import Parameters
-from granular_response_paper.slab_response import LoadPath, Measures
 
 PARAMETERS = reduced.parameters("preparation")
-WAYS = PARAMETERS["ways"]
 
 
 def test_every_slab_carries_every_force(datasets):
@@ -30,17 +26,6 @@ def test_every_slab_carries_every_force(datasets):
     np.testing.assert_allclose(total[:5][known[:5]], 1.0, atol=1e-8)
     assert (total[5] < 1.0 - 1e-4).all()  # rough side walls carry a part
     assert float(np.nanmax(response["certificate_coulomb_excess"])) < 1e-9
-
-
-def test_slabs_of_one_friction_differ_by_their_preparation_alone(datasets):
-    response = datasets["response"]
-    centre, level = response["response_at_centre"].values, response["level_force"].values
-    assert len({f"{value:.9f}" for value in centre[1:5, -1]}) == 4
-    assert len({f"{value:.6f}" for value in level[1:5]}) == 4
-    # without friction the slab sinks by its springs alone; the one below stands between the same walls
-    assert level[3] == pytest.approx(level[5], rel=1e-12)
-    mobilised = response["rest_mobilised"].sel(margin=0.01).values
-    assert mobilised[3] == 0 < mobilised[2]
 
 
 def test_an_event_is_between_the_forces_that_show_it(datasets):
@@ -76,14 +61,6 @@ def test_mobilized_contacts_of_every_slab_stand_beside_its_events(datasets):
     assert (disordered["force"].sel(name="linear_range") > 0.0).all()
 
 
-def test_a_case_is_what_its_scene_says():
-    task = next(t for t in study.tasks(Parameters(**PARAMETERS)).values() if t.args[0] == "slow")
-    _, scene, _, forces, _ = task.args
-    path = LoadPath.of(scene)
-    assert (scene.contact.friction, scene.wall.friction, scene.preparation.ramp_time) == (0.2, 0.0, 10.0)
-    assert task().measured["response_at_centre"][0] == Measures(path).centre(path.at(forces[0]))
-
-
 def tapped(friction: float, amplitude: float, parts: int = 1) -> tuple[State, State]:
     """The small slab at rest and after a tap, with the usual time step divided by ``parts``."""
     scene = Parameters(**PARAMETERS).base.updated({"contact.friction": friction, "wall.friction": 0.0})
@@ -105,17 +82,3 @@ def test_a_tapped_slab_with_friction_is_the_same_with_half_the_time_step():
     force = after.walls.normal_force
     assert np.abs(force - rest.walls.normal_force).max() > 0.1
     np.testing.assert_allclose(tapped(0.2, 0.5, parts=2)[1].walls.normal_force, force, atol=1e-3)
-
-
-def test_the_figure_shows_what_is_stored(datasets):
-    drawn = figures.draw(datasets)
-    figure, against = drawn["preparation"], drawn["preparation_mobilized"]
-    shown = sum(len(line.get_xdata()) for line in against.axes[1].lines)
-    assert shown == datasets["mobilized"].sizes["case"]
-    panel = figure.axes[0]
-    found = datasets["events"]
-    opening = found.isel(event=found["name"].values == "first_opening")
-    marks = sum(line.get_linestyle() == "None" and line.get_marker() != ">" for line in panel.lines)
-    assert marks == int(np.isfinite(opening["high"]).sum()) == 6
-    (legend,) = figure.legends
-    assert len(legend.get_texts()) == len(WAYS)

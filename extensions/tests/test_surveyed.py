@@ -12,9 +12,8 @@ from granular_response.store import files as store
 from granular_response.sweeps.keys import sources
 from granular_response.sweeps.resources import using
 from granular_response_extensions import surveyed
-from granular_response_paper.datasets import labelled
 from granular_response_paper.pipeline import simulation
-from granular_response_paper.records import column, columns, record
+from granular_response_paper.records import columns
 from granular_response_paper.registry import group_member
 from granular_response_paper.survey import simulate as survey
 
@@ -26,62 +25,6 @@ OF_GROUPS = {group: simulation.parameters(group, PARAMETERS)[1] for group in GRO
 #: Largest difference that other sources or another machine may make, per largest value: a rearrangement a little
 #: earlier or later.
 SAME = 0.02
-
-
-def test_the_pipeline_of_the_survey_names_a_stage_and_the_sources_of_every_group():
-    stage = yaml.safe_load((FOLDER / "dvc.yaml").read_text())["stages"]["packings"]
-    named = ("../src/", "../extensions/src/", "granular_response/")
-    declared = stage["do"]["deps"]
-    for start in named:
-        declared = [path.removeprefix(start) for path in declared]
-    assert {*surveyed.sources_of("${item}"), "granular_response_paper/survey"} <= set(declared)
-    assert stage["foreach"] == GROUPS
-
-
-@record
-class Slab:
-    """What tells a packing from others."""
-
-    friction: float = column("coefficient of friction")
-    layers: int = column("number of rows")
-
-
-@record
-class Measured:
-    """What a group might measure on a packing."""
-
-    height: float = column("height")
-    depth: np.ndarray = column("depth", "line")
-    profile: np.ndarray = column("profile", "line", "t")
-
-
-@record
-class More(Measured):
-    single: float = column("another")
-
-
-def measured(lines):
-    return Measured(10.0 + lines, np.arange(float(lines)), np.linspace(0.0, 1.0, 3 * lines).reshape(lines, 3))
-
-
-def test_packings_are_read_as_they_were_stored(tmp_path):
-    """With different numbers of lines, in single precision; what filled them up is gone."""
-    given = {Slab(0.2, 20): measured(4), Slab(0.2, 40): measured(6)}
-    path = tmp_path / "group.nc"
-    store.write(path, labelled({surveyed.DATASET: surveyed.dataset(given)}))
-    found = surveyed.read(path, Slab, Measured)
-    assert list(found) == list(given)
-    for key, one in given.items():
-        assert found[key].height == one.height
-        np.testing.assert_allclose(found[key].depth, one.depth, rtol=1e-7)
-        np.testing.assert_allclose(found[key].profile, one.profile, rtol=1e-7)
-    (found,) = surveyed.chosen(str(path), Measured, {"deep": Slab(0.2, 40)}).items()
-    assert found[0] == "deep" and found[1].depth.size == 6
-    assert surveyed.chosen(None, Measured, {}) == {}
-    with pytest.raises(store.StoreError, match=r"has no packing of friction 0\.5, layers 20; make survey"):
-        surveyed.chosen(str(path), Measured, {"one": Slab(0.2, 20), "other": Slab(0.5, 20)})
-    with pytest.raises(store.StoreError, match=r"is no file of packings of the survey, lacks single"):
-        surveyed.read(path, Slab, More)
 
 
 #: The same case or series without and with a part left to the survey.

@@ -5,7 +5,6 @@ import pytest
 from scipy.optimize import brentq
 
 from granular_response.theory import half_plane, rays
-from granular_response.theory.lattice import Springs, moduli
 from granular_response.theory.moduli import Moduli
 from granular_response_extensions.experiments.simulate.widths import DEFINITIONS, FITS, lengths, powers
 
@@ -30,13 +29,6 @@ def test_an_elastic_half_plane_is_as_wide_as_it_is_deep():
     assert power[:2] == pytest.approx(np.ones((2, len(FITS))), abs=1e-9)
 
 
-def test_two_elastic_peaks_and_their_widths_grow_as_the_depth():
-    solid = moduli(Springs(0.1, 1.0))
-    found, power = grown(lambda x, z: half_plane.pressure(x, z, solid))
-    assert found[:, 2] == pytest.approx(DEPTHS * np.sqrt(-solid.peak_criterion), rel=1e-3)
-    assert power == pytest.approx(np.ones_like(power), abs=1e-9)
-
-
 def test_rays_go_apart_as_the_depth_and_widen_as_its_root():
     _, power = grown(lambda x, z: rays.pressure(x, z, angle=np.pi / 6, diffusion_length=0.1))
     by = dict(zip(DEFINITIONS, power[:, 0], strict=True))
@@ -48,13 +40,6 @@ def test_force_that_diffuses_is_as_wide_as_the_root_of_the_depth():
     found, power = grown(lambda x, z: rays.pressure(x, z, angle=0.0, diffusion_length=0.5))
     assert found[:, 0] == pytest.approx(np.sqrt(2.0 * np.log(2.0) * 0.5 * DEPTHS), rel=1e-4)
     assert power[:2] == pytest.approx(np.full((2, len(FITS)), 0.5), abs=1e-3)
-
-
-def test_no_length_where_there_is_none():
-    flat = np.ones_like(T)
-    assert np.isnan(lengths(T, flat)[0]) and np.isnan(lengths(T, -flat)).all()
-    assert np.isnan(lengths(T, 0.01 * flat)[1])  # never half of the force
-    assert np.isnan(powers(DEPTHS[:1], DEPTHS[:1])).all()
 
 
 def test_fits_leave_out_the_ends():

@@ -85,15 +85,6 @@ def checkout(project, tmp_path) -> Path:
     return folder
 
 
-def test_hashes_are_those_of_dvc(project):
-    (stage,) = lock.stages(project)
-    assert [item.path for item in stage.read if item.folder] == ["source"]
-    for item in (*stage.read, *stage.written):
-        assert lock.md5(project, item.path) == item.md5
-    assert lock.files(project, "source") == ["source/make-2.py", "source/make.py", "source/make/part.py"]
-    assert stage.parameters == {"params.yaml": {"group": {"force": 1e-3, "steps": [1, 2]}}}
-
-
 def test_the_archive_is_a_crate_that_says_how_everything_was_made(archived):
     rocrate = pytest.importorskip("rocrate.rocrate")
     found = rocrate.ROCrate(archived)
@@ -129,12 +120,9 @@ def test_the_same_files_give_the_same_bytes(project, archived, tmp_path):
         ("source/make.py", "pass", r"source: is not what stage simulate had"),
         ("params.yaml", "group: {force: 2.0, steps: [1, 2]}", r"params\.yaml: group is not what stage simulate had"),
         ("figures/a/one.png", None, r"figures/a: is not what stage simulate had"),
-        ("data/a.nc", None, r"data/a\.nc: is missing"),
         ("CITATION.cff", None, r"CITATION\.cff: is missing"),
-        ("codemeta.json", "{}", r"codemeta\.json: is not a description of software"),
         ("dvc.lock", "stages: {}", r"dvc\.lock: stage simulate has not been run"),
         ("dvc.lock", "stages: {simulate: {cmd: x, outs: [{path: a}]}}", r"dvc\.lock: is not a lock file of DVC 3"),
-        ("dvc.lock", "- 1", r"dvc\.lock: is not a file of DVC with stages"),
     ],
 )
 def test_only_what_the_lock_says_is_archived(project, tmp_path, path, content, said):
@@ -205,13 +193,6 @@ def test_members_that_the_lock_does_not_name_are_left_where_they_are(archived, c
     assert restore(planted(archived, tmp_path / "bad.zip", *further), checkout) == ["data/a.nc"]
     made = {tmp_path / "bad.zip", checkout / "data", checkout / "data" / "a.nc"}
     assert set(tmp_path.rglob("*")) - before == made and (checkout / "data" / "a.nc").is_file()
-
-
-def test_a_member_that_is_there_twice_is_checked_too(archived, checkout, tmp_path):
-    with pytest.warns(UserWarning, match="Duplicate name"):
-        bad = planted(archived, tmp_path / "bad.zip", ("data/a.nc", b"", FILE))
-    with pytest.raises(ArchiveError, match="is not the one of"):
-        restore(bad, checkout)
 
 
 @pytest.mark.parametrize("damage", ["cut", "bytes", "text"])

@@ -9,10 +9,10 @@ from commands import refused, succeeded
 from small_scenes import scene
 
 import granular_response as gr
-from granular_response.solvers.solution import continue_solution, solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
-from granular_response.store.result import ResultError, indexed, load_coordinates, state_from, to_dataset
+from granular_response.store.result import ResultError, load_coordinates, state_from, to_dataset
 
 
 @pytest.fixture(scope="module")
@@ -50,12 +50,6 @@ def test_load_is_a_dimension_for_any_number_of_loads(solution, factors):
         assert data[name].dims == ("load", "floor_disk") and data.sizes["load"] == len(factors)
     assert data["load_factor"].values.tolist() == factors
     assert checked(data).identical(data)
-
-
-def test_factors_may_repeat():
-    made = indexed(xr.Dataset({"a": ("load", [1, 2, 3])}, load_coordinates([0.5, 1.0, 0.5])))
-    assert made["a"].sel(load=0.5).values.tolist() == [1, 3]
-    assert made["a"].sel(step=3) == 3 and made["load_factor"].values.tolist() == [0.5, 1.0, 0.5]
 
 
 @pytest.mark.parametrize(
@@ -134,29 +128,19 @@ def spoil(data: xr.Dataset, name: str, value: float) -> xr.Dataset:
 
 DAMAGE = {
     "a missing variable": (lambda d: d.drop_vars("wall_index"), "variable wall_index is missing"),
-    "no radius": (lambda d: d.drop_vars("radius"), "variable radius is missing"),
-    "no force vectors": (lambda d: d.drop_vars("wall_force"), "variable wall_force is missing"),
     "an endless force": (lambda d: spoil(d, "contact_force", np.inf), "variable contact_force: must be finite"),
     "a partner that is not there": (lambda d: spoil(d, "contact_partner", 99), "contact_partner: holds 99, must"),
-    "a negative disk": (lambda d: spoil(d, "loaded_disk", -1), "loaded_disk: holds -1"),
     "no such wall": (lambda d: spoil(d, "wall_index", 3), "wall_index: holds 3, must be from 0 to 2"),
-    "no such status": (lambda d: spoil(d, "contact_status", 7), "contact_status: holds 7"),
     "no position": (lambda d: spoil(d, "position", np.nan), "variable position: must be finite"),
-    "an endless spring": (lambda d: spoil(d, "contact_spring", np.inf), "variable contact_spring: must be finite"),
-    "no mass": (lambda d: spoil(d, "mass", 0.0), "variable mass: must be greater than 0"),
     "other dimensions": (lambda d: d.assign(angle=d["angle"].T), "variable angle: has dimensions disk, state"),
     "words": (lambda d: d.assign(mass=d["mass"].astype(str)), "variable mass: has values of type"),
     "no states": (lambda d: d.isel(state=slice(0)), "must have a state"),
     "a load too many": (lambda d: d.isel(state=slice(3)), "dimension load: must have 2 entries"),
     "no scene": (lambda d: d.drop_attrs(deep=False), "attribute scene is missing"),
-    "no width": (lambda d: d.assign_attrs(width="wide"), "attribute width"),
-    "other sides": (lambda d: d.assign_attrs(sides="open"), "attribute sides: must be walls or periodic"),
     "no JSON": (lambda d: d.assign_attrs(method="{"), "attribute method: must be a mapping as JSON"),
     "deep JSON": (lambda d: d.assign_attrs(method="[" * 100_000 + "]" * 100_000), "attribute method: must be"),
-    "no applied force": (lambda d: d.drop_vars("total_force"), "variable total_force is missing"),
     "half a certificate": (lambda d: d.drop_vars("certificate_loose_disks"), "variable certificate_loose_disks is"),
     "far away": (lambda d: spoil(d, "position", 1e300), "variable position: must be at most 1e+09 mean radii away"),
-    "too wide": (lambda d: d.assign_attrs(width=1e300), "attribute width: must be a number greater than 0, at most"),
 }
 
 
@@ -169,19 +153,6 @@ def test_a_sealed_file_that_is_no_result(solution, tmp_path, damage):
     assert said in str(caught.value)
     with pytest.raises(ResultError):
         gr.open_result(tmp_path / "bad.nc")
-
-
-def test_commands_say_so_in_one_line(solution, tmp_path):
-    store.write(tmp_path / "bad.nc", spoil(to_dataset(solution), "position", np.nan))
-    for command, *more in (["show"], ["continue", "--to", "3", "-o", "a.nc"], ["export", "-o", "a.xyz"]):
-        said = refused(command, "bad.nc", *more, folder=tmp_path)
-        assert "bad.nc: is not a whole result: variable position: must be finite" in said
-
-
-def test_every_result_that_is_written_is_whole(solution):
-    checked(to_dataset(solution))
-    checked(to_dataset(continue_solution(solution, [3.0])))
-    checked(to_dataset(solve_scene(scene(loads=[]))))
 
 
 def test_what_a_file_says_is_shown_as_it_is(solution, tmp_path):

@@ -3,7 +3,6 @@
 How a process begins is tried by new ones (``process``), what commands say and do by forked ones (``call``).
 """
 
-import gc
 import json
 import os
 import pty
@@ -14,24 +13,19 @@ import shutil
 import signal
 import subprocess
 import sys
-import tomllib
 
 import numpy as np
 import pytest
 import xarray as xr
-import yaml
 from claims_data import pile_study
-from commands import LIBRARY, OF_THE_PAPER, PAPER, SCENE, call, process, refused, succeeded
+from commands import LIBRARY, PAPER, SCENE, call, process, refused, succeeded
 from places import DATA, ROOT
 
 from granular_response import __version__
-from granular_response.cli import main as cli
 from granular_response.machine import floating_point
 from granular_response.store import files as store
-from granular_response_paper import cli as paper
 from granular_response_paper.registry import collections
 
-COMMANDS = ["example", "run", "continue", "show", "plot", "keys", "export", "cite", "version"]
 PROGRAMS = {LIBRARY: "granular-response", PAPER: "granular-response-paper"}
 
 
@@ -63,59 +57,10 @@ def test_help_answers_within_half_a_second(package):
     assert min(durations) < 0.5
 
 
-@pytest.mark.parametrize(
-    ("package", "command"),
-    [(LIBRARY, name) for name in (None, *COMMANDS)] + [(PAPER, name) for name in (None, *sorted(OF_THE_PAPER))],
-)
-def test_every_help_has_examples(package, command):
-    finished = call(*([command] if command else []), "--help", package=package)
-    program = PROGRAMS[package]
-    assert finished.returncode == 0
-    examples = finished.stdout.partition("Examples:")[2].strip().splitlines()
-    assert examples
-    assert all(re.match(rf"\s*{program} [a-z]+", line) for line in examples)
-    if command:
-        assert f"{program} {command}" in examples[0]
-
-
-@pytest.mark.parametrize("package", PROGRAMS)
-def test_no_command_shows_the_help(package):
-    shown = process(package=package)
-    assert "Commands:" in shown.stdout + shown.stderr
-
-
 def test_version():
     assert process("version").stdout == f"granular-response {__version__}\n"
     for package, program in PROGRAMS.items():
         assert call("--version", package=package).stdout == f"{program} {__version__}\n"
-
-
-def test_cite_agrees_with_the_citation_file():
-    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
-    assert citation["version"] == __version__
-    reference = citation["references"][0]
-    identifier = reference["identifiers"][0]["value"]
-    for options in ([], ["--bibtex"]):
-        text = " ".join(call("cite", *options).stdout.split())
-        assert reference["title"] in text
-        assert identifier.removeprefix("arXiv:") in text
-        assert all(author["family-names"] in text for author in reference["authors"])
-        assert citation["title"] in text
-        assert __version__ in text
-
-
-def test_codemeta_says_what_the_package_and_its_citation_say():
-    described = json.loads((ROOT / "codemeta.json").read_text())
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
-    assert described["version"] == __version__
-    assert described["license"].endswith(project["license"]) and citation["license"] == project["license"]
-    for name in ("name", "description", "keywords"):
-        assert described[name] == project[name]
-    publication, reference = described["referencePublication"], citation["references"][0]
-    assert (publication["name"], publication["url"]) == (reference["title"], reference["url"])
-    names = [(one["givenName"], one["familyName"]) for one in publication["author"]]
-    assert names == [(one["given-names"], one["family-names"]) for one in reference["authors"]]
 
 
 def test_run_and_show(folder):
@@ -135,20 +80,6 @@ def test_run_and_show(folder):
     assert re.search(r"1\.0000000\d\d|0\.999999999", shown)
     for part in ("certificate", "force residual", "layers: 3", "minimise"):
         assert part in shown
-
-
-@pytest.mark.parametrize(
-    ("home", "name"), [("granular_response.cli.main", ""), ("granular_response_paper.cli", "-paper")]
-)
-def test_a_shell_completes_commands(home, name):
-    program = f"granular-response{name}"
-    begun = {f"_{program.upper().replace('-', '_')}_COMPLETE": "complete_bash"}
-    script = f"import sys; sys.argv = [{program!r}]; from {home} import main; main()"
-    words = {"COMP_WORDS": f"{program} {'sim' if name else 'sh'}", "COMP_CWORD": "1"}
-    run = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, env={**os.environ, **begun, **words}
-    )
-    assert run.stdout.split() == ["simulate" if name else "show"], run.stderr
 
 
 def test_show_as_json(solved):
@@ -212,26 +143,8 @@ def test_claims_without_datasets_leave_the_table_alone(tmp_path):
     assert "none.json: No such file or directory" in said
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [("claims", "--data", ROOT / "data", "-o", "folder"), ("report", "--root", ROOT, "-o", "folder")],
-    ids=["claims", "report"],
-)
-def test_an_output_that_is_a_folder_is_one_line(tmp_path, arguments):
-    (tmp_path / "folder").mkdir()
-    refused(*arguments, folder=tmp_path)
-
-
 def test_datasets_of_another_group_are_not_drawn(solved):
     assert "must be those of pile_dip" in refused("draw", "pile_dip", "--data", "result.nc", folder=solved)
-
-
-def test_damaged_parameters_are_one_line(tmp_path):
-    text = (ROOT / "params.yaml").read_text()
-    (tmp_path / "params.yaml").write_text(text.replace("stress_spacing:", "stress_spacng:"))
-    said = refused("simulate", "pile_dip", "--workers", 1, folder=tmp_path)
-    assert "params.yaml: pile_dip.stress_spacng = 0.25: unknown key, did you mean" in said
-    assert not (tmp_path / "data").exists()
 
 
 def test_a_result_is_continued_and_nothing_else(solved):
@@ -267,15 +180,12 @@ def test_run_by_another_method(folder):
         (["run", "wrong.yaml", "-o", "result.nc"], ["wrong.yaml", "layers", "-3"]),
         (["run", "scene.yaml", "-o", "scene.yaml/result.nc"], ["cannot be written"]),
         (["show", "absent.nc"], ["absent.nc: no such file"]),
-        (["show", "scene.yaml"], ["scene.yaml: is not a netCDF-4 file"]),
         (["simulate", "nonsense"], ["nonsense: no such figure group, groups of the paper: ", "the extensions: "]),
         (["simulate", "theory"], ["params.yaml: cannot be read"]),
-        (["draw", "nonsense"], ["nonsense: no such figure group, groups of the paper: ", "the extensions: "]),
         (["draw", "theory"], ["data/theory.nc: no such file"]),
         (["groups", "--collection", "extras"], ["extras: no such collection, must be one of paper, extensions"]),
         (["keys", "magic"], ["no key of a scene begins with magic", "protocol"]),
         (["keys", "--page", "scene.yaml"], ["scene.yaml: the tables are Markdown, the name must end in .md"]),
-        (["keys", "--page", "scene.yaml/keys.md"], ["scene.yaml/keys.md", "Not a directory"]),
     ],
 )
 def test_expected_errors_are_one_line_and_code_2(folder, arguments, parts):
@@ -309,16 +219,6 @@ def test_disks_of_another_program_are_solved_and_handed_back(tmp_path):
     assert "format '.abc' is unknown" in refused(*command, "result.abc", folder=tmp_path)
 
 
-def test_devices_and_pipes_are_not_read(tmp_path):
-    """A device has no end, and a pipe nobody writes to waits for ever."""
-    (tmp_path / "zero").symlink_to("/dev/zero")
-    os.mkfifo(tmp_path / "pipe")
-    for name in ("zero", "pipe"):
-        for arguments in (["run", "-o", "a.nc"], ["show"]):
-            said = refused(*arguments, name, folder=tmp_path)
-            assert said.endswith(": cannot be read: is not a regular file\n")
-
-
 def test_a_state_that_moves_is_said_and_fails_unless_allowed(tmp_path):
     moving = SCENE + "protocol: {method: dynamics, static_finish: false, maximum_steps: 1000, time_step: 5.0e-4}\n"
     (tmp_path / "scene.yaml").write_text(moving)
@@ -330,29 +230,6 @@ def test_a_state_that_moves_is_said_and_fails_unless_allowed(tmp_path):
         finished = call(*run, *options, folder=tmp_path)
         assert (finished.returncode, finished.stderr) == (code, said)
         assert store.read_attributes(tmp_path / "result.nc")["settled"] == "no"  # nothing is lost
-
-
-def test_a_setting_without_effect_is_said(tmp_path):
-    (tmp_path / "scene.yaml").write_text(SCENE + "protocol: {friction_law: literal}\n")
-    finished = call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path)
-    line = "protocol.friction_law = 'literal' has no effect (no friction)"
-    assert (finished.returncode, finished.stderr) == (0, f"granular-response: result.nc: {line}\n")
-
-
-def test_a_terminal_of_no_columns_has_the_usual_width(tmp_path, monkeypatch):
-    """Some say 0 where they do not know; nothing was printed."""
-    store.write(tmp_path / "a.nc", xr.Dataset())
-    shown = {}
-    for width in ("80", "0", "00"):
-        monkeypatch.setenv("COLUMNS", width)
-        shown[width] = call("show", "a.nc", folder=tmp_path).stdout
-    assert shown["0"] == shown["00"] == shown["80"] and "a.nc" in shown["80"]
-
-
-def test_an_error_of_a_load_names_the_file(tmp_path):
-    (tmp_path / "y.yaml").write_text("loads: [{disk: top-centre, force: [0, -1e300]}]\n")
-    said = refused("run", "y.yaml", "-o", "a.nc", folder=tmp_path)
-    assert said.startswith("granular-response: y.yaml: loads[0].force: 1e+300 mg")
 
 
 def test_an_interrupted_command_ends_quietly(tmp_path):
@@ -385,21 +262,6 @@ def test_an_interrupted_command_ends_quietly(tmp_path):
     assert b"Traceback" not in output and b"Aborted" not in output
     assert output.count(b"granular-response: ") == output.count(b"granular-response: interrupted\r\n") == 1
     assert not (tmp_path / "result.nc").exists()
-
-
-def test_a_command_leaves_garbage_collection_on(monkeypatch, capsys):
-    """For those who call it from Python: it is off only while a command loads what it needs."""
-    monkeypatch.setattr(sys, "argv", ["granular-response", "version"])
-    with pytest.raises(SystemExit):
-        cli.main()
-    gc.unfreeze()
-    assert gc.isenabled() and "granular-response" in capsys.readouterr().out
-
-
-def test_every_command_is_listed():
-    for names, module in ((COMMANDS, cli), (OF_THE_PAPER, paper)):
-        registered = module.commands.app.registered_commands
-        assert sorted(names) == sorted(command.name or command.callback.__name__ for command in registered)
 
 
 def test_a_shell_takes_the_floating_point_choices():

@@ -1,14 +1,11 @@
 """Every example of the gallery runs, at a reduced size, and draws what it promises."""
 
 import ast
-import re
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pytest
 from places import ROOT
-
-import granular_response as gr
 
 SCRIPTS = sorted((ROOT / "examples" / "gallery").glob("*.py"))
 
@@ -62,10 +59,6 @@ def figures():
     plt.close("all")
 
 
-def test_every_example_is_tried():
-    assert {script.stem for script in SCRIPTS} == set(REDUCED)
-
-
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
 def test_an_example_runs_and_draws(script, figures, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -78,30 +71,3 @@ def test_an_example_runs_and_draws(script, figures, tmp_path, monkeypatch):
     if "result" in names:
         assert names["result"].certificate.force_residual < 1e-8
     assert not list(tmp_path.glob("*.nc"))  # what an example writes goes to a folder of its own
-
-
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
-def test_an_example_is_short_and_has_a_title(script):
-    text = script.read_text(encoding="utf-8")
-    title = re.match(r'"""\n(.+)\n(=+)\n\n', text)
-    assert title and len(title[1]) == len(title[2])
-    assert len(text.splitlines()) <= 70
-
-
-@pytest.mark.parametrize("page", ["README.md", "docs/index.md"])
-def test_the_python_of_the_pages_runs(page, figures, tmp_path, monkeypatch):
-    """Smaller than it stands there; what is drawn with xarray from a file of the page's commands is left out."""
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)
-    (block,) = [text for text in blocks if "import granular_response as gr" in text]
-    small = {"packing": {"kind": "slab", "layers": 3, "disks_per_row": 7}, "loads": [{"disk": 16, "force": [0, -1]}]}
-    whole = gr.solve
-
-    def solve(scene, **options):
-        assert isinstance(scene, gr.Scene)
-        return whole(small, **options)
-
-    monkeypatch.setattr(gr, "solve", solve)
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "examples").symlink_to(ROOT / "examples")
-    exec(compile(block, page, "exec"), {})
-    assert figures() and list(tmp_path.glob("*.p*"))

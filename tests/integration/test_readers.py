@@ -34,12 +34,6 @@ XARRAY = "import xarray as xr"
 AGAIN = "assert xr.open_dataset(path, group=group, decode_timedelta=False{how}).load().identical(whole)"
 READERS = {
     "xarray": (XARRAY, AGAIN.format(how="")),
-    "chunks of xarray's choice": (XARRAY, AGAIN.format(how=', chunks="auto"')),
-    "chunks of the file": (XARRAY, AGAIN.format(how=", chunks={}")),
-    "small chunks": (
-        f"import warnings\n{XARRAY}\nwarnings.simplefilter('ignore')",
-        AGAIN.format(how=", chunks={dimension: 3 for dimension in whole.dims}"),
-    ),
     "netCDF4": (
         f"import netCDF4\n{XARRAY}",
         "file = netCDF4.Dataset(path); file = file[group] if group else file; "
@@ -104,7 +98,7 @@ def test_files_of_ours_are_read_repeatedly(reader, files):
     read(reader, files)
 
 
-@pytest.mark.parametrize("reader", [name for name in READERS if name != "chunks of xarray's choice"])
+@pytest.mark.parametrize("reader", READERS)
 def test_what_xarray_stores_of_ours_is_read_repeatedly(reader, by_xarray):
     read(reader, by_xarray)
 

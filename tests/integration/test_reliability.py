@@ -1,4 +1,4 @@
-"""Kills, damaged files, odd parameter files, and the wheel."""
+"""Kills, and the wheel."""
 
 import contextlib
 import io
@@ -14,21 +14,14 @@ from pathlib import Path
 
 import pytest
 import yaml
-from commands import PAPER, package_of, refused
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from commands import PAPER, package_of
 from places import ROOT
 
 from granular_response.cli import main as cli
-from granular_response.scene import Scene, SceneError
-from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
-from granular_response.store.result import to_dataset
 from granular_response_paper import cli as paper
-from granular_response_paper.pipeline import simulation
-from granular_response_paper.registry import GroupError
 
-KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "20"))
+KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "8"))
 SCENE = {
     "packing": {"kind": "slab", "layers": 5, "disks_per_row": 11},
     "contact": {"friction": 0.3},
@@ -101,7 +94,7 @@ def test_a_run_that_is_told_to_end_leaves_the_old_result(tmp_path, processes, nu
     (tmp_path / "result.nc").write_bytes(b"old")
     run = processes.Process(target=command, args=(str(tmp_path), ["run", "scene.yaml", "-o", "result.nc"]))
     run.start()
-    time.sleep(2.0)
+    time.sleep(1.0)
     assert run.is_alive()
     os.kill(run.pid, number)
     run.join(60.0)
@@ -117,59 +110,10 @@ def test_killed_studies_leave_whole_datasets_or_none(tmp_path, processes):
     parameters["theory"].update(points=11, half_width=1.0, depths=[10.0])
     (tmp_path / "params.yaml").write_text(yaml.safe_dump(parameters))
     arguments = ["simulate", "theory", "--workers", "1"]
-    killed_at_random(processes, tmp_path, arguments, tmp_path / "data" / "theory.nc", max(KILLS // 4, 3))
+    killed_at_random(processes, tmp_path, arguments, tmp_path / "data" / "theory.nc", max(KILLS // 4, 2))
 
 
 # Damaged and foreign files
-
-
-@pytest.fixture(scope="module")
-def solution():
-    return solve_scene(Scene.from_dict(SCENE))
-
-
-def test_truncated_and_foreign_files_are_one_line(tmp_path, solution):
-    store.write(tmp_path / "whole.nc", to_dataset(solution))
-    whole = (tmp_path / "whole.nc").read_bytes()
-    (tmp_path / "truncated.nc").write_bytes(whole[: len(whole) // 2])
-    for arguments in (["show", "truncated.nc"], ["export", "truncated.nc", "-o", "a.vtu"]):
-        assert "truncated.nc: is truncated or damaged" in refused(*arguments, folder=tmp_path)
-    to_dataset(solution).to_netcdf(tmp_path / "foreign.nc")
-    arguments = ["continue", "foreign.nc", "--to", "2", "-o", "more.nc"]
-    assert "foreign.nc: was not written by granular_response" in refused(*arguments, folder=tmp_path)
-
-
-# Parameter files
-
-SCALARS = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20)
-TREES = st.recursive(
-    SCALARS, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3)
-)
-SECTIONS = st.dictionaries(st.sampled_from(["common", "theory", "other"]), TREES)
-
-
-def loaded(path: Path) -> None:
-    try:
-        found = simulation.parameters("theory", path)
-    except (GroupError, SceneError) as error:
-        assert "\n" not in str(error)
-        assert str(error).startswith(str(path))
-    else:
-        assert isinstance(found, dict)
-
-
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(content=st.binary(max_size=200))
-def test_any_bytes_as_parameters(tmp_path, content):
-    (tmp_path / "params.yaml").write_bytes(content)
-    loaded(tmp_path / "params.yaml")
-
-
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(content=SECTIONS | TREES)
-def test_any_tree_as_parameters(tmp_path, content):
-    (tmp_path / "params.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
-    loaded(tmp_path / "params.yaml")
 
 
 # The wheel

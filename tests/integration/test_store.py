@@ -23,7 +23,7 @@ from granular_response.store import files as store
 from granular_response.store.files import StoreError
 
 LABEL = {"long_name": "a quantity", "units": "1"}
-KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "20"))
+KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "8"))
 
 
 def dataset(seed: int = 0, size: int = 500) -> xr.Dataset:
@@ -75,13 +75,6 @@ def test_a_study_comes_back_by_group(path):
     assert store.read_attributes(path)["group"] == "test"
 
 
-def test_plain_xarray_reads_it(path):
-    store.write(path, {"mu_1": dataset(2)})
-    with xr.open_dataset(path, group="mu_1", decode_timedelta=False) as plain:
-        words = plain["name"].astype(str)  # of plain xarray they are bytes
-        xr.testing.assert_equal(plain.load().assign(name=words), dataset(2))
-
-
 def test_bytes_depend_on_the_data_alone(path, tmp_path):
     store.write(path, {"a": dataset(1), "b": dataset(2)})
     script = (
@@ -96,20 +89,6 @@ def test_bytes_depend_on_the_data_alone(path, tmp_path):
     assert other.read_bytes() != path.read_bytes()
 
 
-def test_written_again_after_reading_gives_the_same_bytes(path, tmp_path):
-    store.write(path, {"a": dataset()})
-    store.write(tmp_path / "first.nc", store.read(path))
-    store.write(tmp_path / "second.nc", store.read(tmp_path / "first.nc"))
-    assert (tmp_path / "first.nc").read_bytes() == (tmp_path / "second.nc").read_bytes()
-
-
-def test_it_is_compressed(path):
-    store.write(path, xr.Dataset({"zero": ("n", np.zeros(100_000), LABEL)}))
-    assert path.stat().st_size < 50_000
-    with netCDF4.Dataset(path) as file:
-        assert file["zero"].filters()["zlib"]
-
-
 @pytest.mark.parametrize("label", ["long_name", "units"])
 @pytest.mark.parametrize("name", ["floor_force", "x"])
 def test_every_variable_needs_its_labels(path, label, name):
@@ -120,23 +99,11 @@ def test_every_variable_needs_its_labels(path, label, name):
     assert not path.exists()
 
 
-def test_truth_values_are_stored_as_numbers(path):
-    store.write(path, dataset().assign_attrs(stable=True, moved=np.bool_(False)))
-    attributes = store.read_attributes(path)
-    assert (attributes["stable"], attributes["moved"]) == (1, 0)
-
-
 @pytest.mark.parametrize("value", [None, {"a": 1}, object()])
 def test_an_attribute_that_no_file_can_hold_is_named(path, value):
     with pytest.raises(StoreError, match="tricky"):
         store.write(path, dataset().assign_attrs(tricky=value))
     assert not path.exists()
-
-
-@pytest.mark.parametrize("name", ["/", "a//b", "a/", "../up", "two words"])
-def test_group_names_are_plain(path, name):
-    with pytest.raises(StoreError, match="group name"):
-        store.write(path, {name: dataset()})
 
 
 def test_missing_and_foreign_files(path, tmp_path):
@@ -234,42 +201,6 @@ def test_no_space_left_for_temporary_files_is_an_error_that_names_their_folder(p
                 assert not os.readlink(link).startswith(str(temporary)) or link.stat().st_size == 0
     store.write(path, dataset(1, size=20_000))
     xr.testing.assert_equal(store.read(path)[""], dataset(1, size=20_000))
-
-
-def test_a_folder_that_cannot_be_made_or_written(tmp_path):
-    (tmp_path / "file").touch()
-    with pytest.raises(StoreError, match="cannot be written"):
-        store.write(tmp_path / "file" / "result.nc", dataset())
-    (tmp_path / "folder.nc").mkdir()
-    with pytest.raises(StoreError, match=r"folder.nc: cannot be written: Is a directory"):
-        store.write(tmp_path / "folder.nc", dataset())
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "folder.nc"]
-
-
-@pytest.mark.skipif(os.geteuid() == 0, reason="the permissions of a folder do not bind root")
-def test_a_read_only_folder(path):
-    store.write(path, dataset())
-    before = path.read_bytes()
-    path.parent.chmod(0o555)
-    try:
-        with pytest.raises(StoreError, match="cannot be written: Permission denied"):
-            store.write(path, dataset(1))
-    finally:
-        path.parent.chmod(0o755)
-    assert path.read_bytes() == before
-
-
-def test_a_failed_check_keeps_the_old_file(tmp_path):
-    target = tmp_path / "file"
-    atomic.write_bytes(target, b"old")
-
-    def refuse(data: bytes) -> None:
-        raise ValueError(f"{len(data)} bytes")
-
-    with pytest.raises(ValueError, match="3 bytes"):
-        atomic.write_bytes(target, b"new", check=refuse)
-    assert target.read_bytes() == b"old"
-    assert list(tmp_path.iterdir()) == [target]
 
 
 def test_a_leftover_is_taken_by_the_next_write(tmp_path):

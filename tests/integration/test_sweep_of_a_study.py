@@ -5,8 +5,6 @@ Everything through the command line's own path, on a reduced ensemble, with a re
 
 import contextlib
 import io
-import os
-import signal
 import subprocess
 import sys
 import time
@@ -85,32 +83,12 @@ def command(monkeypatch, *arguments: str) -> bytes:
     return Path("here.nc").read_bytes()
 
 
-def test_two_local_workers_write_the_same_bytes(folder, expected, monkeypatch) -> None:
-    assert command(monkeypatch, "--workers", "2") == expected
-
-
 @pytest.mark.parametrize("by", ["command line", "environment"])
 def test_a_named_cluster_writes_the_same_bytes(folder, expected, cluster, only_dask, monkeypatch, by) -> None:
     named = ["--scheduler", cluster.scheduler_address] if by == "command line" else []
     if not named:
         monkeypatch.setenv(tasks.SCHEDULER_VARIABLE, cluster.scheduler_address)
     assert command(monkeypatch, *named) == expected
-
-
-def test_a_dask_worker_killed_in_mid_sweep_changes_nothing(folder, expected, cluster, only_dask) -> None:
-    from distributed import Client
-
-    def kill_one(done, total, what="") -> None:
-        if what == "pairs of loads" and done == 2 and not killed:
-            with Client(cluster.scheduler_address, set_as_default=False) as client:
-                pids = client.run(os.getpid)
-            killed.append(next(iter(pids.values())))
-            os.kill(killed[0], signal.SIGKILL)
-
-    killed: list[int] = []
-    path = simulation.simulate(GROUP, folder / "here.nc", scheduler=cluster.scheduler_address, progress=kill_one)
-    assert killed
-    assert path.read_bytes() == expected
 
 
 def test_a_killed_run_continues_from_its_checkpoint(folder, expected) -> None:

@@ -1,16 +1,15 @@
 """Figs. 3 to 5 on small slabs, from parameters through a file to figures."""
 
+from dataclasses import replace
+
 import numpy as np
+import reduced
 
-from granular_response_paper.groups.frictionless_crossover import draw as figures
+from granular_response.solvers.problem import Problem
+from granular_response_paper.groups.frictionless_crossover import simulate as study
+from granular_response_paper.groups.frictionless_crossover.simulate.slab import Slab, new_neighbours, settle
 
-STEMS = [
-    "fig03_frictionless_response",
-    "fig04_frictionless_contacts",
-    "fig05_teardrop",
-    "fig05b_stiffness",
-    "fig05c_depth",
-]
+BASE = study.Parameters(**reduced.parameters("frictionless_crossover")).base
 
 
 def test_events(datasets) -> None:
@@ -61,20 +60,6 @@ def test_stored_states_give_the_stored_measurements(datasets) -> None:
         assert bool(region.any()) == (float(response["teardrop_depth"].sel(force=force)) > 0.0)
 
 
-def test_one_slab_has_one_result(datasets) -> None:
-    """The same slab in two tables was solved once."""
-    forces = [0.5, 1.0]
-    tables = [
-        datasets["response"].sel(force=forces),
-        datasets["sizes"].isel(slab=0).sel(force=forces),
-        datasets["widths"].isel(slab=0).sel(force=forces),
-        datasets["stiffness"].sel(normal_stiffness=3000.0, force=forces),
-    ]
-    for data in tables[1:]:
-        places = tables[0].sizes["floor_disk"]
-        np.testing.assert_array_equal(data["floor_response"][:, :places], tables[0]["floor_response"])
-
-
 def test_soft_slabs_open_later(datasets) -> None:
     """Sec. IV.C: the region of opened contacts is smaller in softer slabs, its opening is at larger forces."""
     stiffness = datasets["stiffness"]
@@ -83,17 +68,30 @@ def test_soft_slabs_open_later(datasets) -> None:
     assert np.all(np.diff(stiffness["teardrop_depth"].sel(force=1.0).values) >= -0.01)
 
 
-def test_figures(datasets) -> None:
-    drawn = figures.draw(datasets)
-    assert list(drawn) == STEMS
-    profiles, _ = drawn["fig03_frictionless_response"].axes
-    response = datasets["response"]
-    inside = response["interior"].values > 0
-    np.testing.assert_array_equal(
-        profiles.lines[0].get_ydata(), response["floor_response"].sel(force=0.25).values[inside]
-    )
-    networks = [axes for axes in drawn["fig04_frictionless_contacts"].axes if axes.get_title(loc="left")]
-    assert len(networks) == len(figures.nearest(response["force"].values, figures.NETWORK_FORCES))
-    curve = drawn["fig05_teardrop"].axes[0].lines[0]
-    depth = datasets["sizes"]["teardrop_depth"][0].values
-    np.testing.assert_array_equal(curve.get_ydata(), depth[: len(curve.get_ydata())])
+def test_new_neighbours_are_touching_pairs_that_were_apart() -> None:
+    problem = Problem.from_scene(Slab(3, 7, 3000.0).scene(BASE))
+    packing = problem.packing
+    pushed = packing.position.copy()
+    pushed[:, 0] *= 0.999
+    state = problem.relisted(replace(problem.bare_state(), position=pushed))
+    assert new_neighbours(packing.position, state) == 0
+    # the first disk of the bottom row goes on top of the third
+    pushed[0] = pushed[2] + (0.0, 1.9)
+    moved = problem.relisted(replace(problem.bare_state(), position=pushed))
+    touching = moved.pairs.touching & ((moved.pairs.first == 0) | (moved.pairs.second == 0))
+    others = np.where(moved.pairs.first == 0, moved.pairs.second, moved.pairs.first)[touching]
+    apart = np.linalg.norm(packing.position[others] - packing.position[0], axis=1) > 3.0
+    assert apart.any()
+    assert new_neighbours(packing.position, moved) == int(apart.sum())
+
+
+def test_soft_disks_are_settled_by_dynamics() -> None:
+    """Where the lattice does not hold, the rest state comes from the fall; elsewhere from the minimum."""
+    soft, stiff = Slab(8, 24, 20.0), Slab(8, 24, 3000.0)
+    packing = Problem.from_scene(soft.scene(BASE)).packing
+    fallen, held = settle(soft.scene(BASE)), settle(stiff.scene(BASE))
+    assert fallen.certificate.stable
+    assert fallen.certificate.force_residual < 1e-9
+    assert new_neighbours(packing.position, fallen) > 0
+    assert held.reached.method == "minimise"
+    assert new_neighbours(packing.position, held) == 0

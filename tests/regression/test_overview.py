@@ -16,13 +16,6 @@ def test_the_response_to_the_smallest_force_is_the_elastic_one(datasets):
         assert np.abs(response[0] - elastic).max() < np.abs(response[-1] - elastic).max()
 
 
-def test_packings_are_those_of_the_experiment(datasets):
-    lattice, disordered = (datasets[f"photoelastic_{k}"] for k in range(2))
-    assert [float(one["polydispersity"]) for one in (lattice, disordered)] == [0.0, 0.01]
-    assert all(float(one["friction"]) == 0.94 and one["total_force"].item() == 5.0 for one in (lattice, disordered))
-    assert np.ptp(lattice["radius"].values) == 0.0 < np.ptp(disordered["radius"].values)
-
-
 def test_the_animation_stands_beside_its_picture(tmp_path, tmp_path_factory):
     paths = drawing.draw("overview", reduced.stored("overview", tmp_path_factory), tmp_path)
     assert tmp_path / "growing_force.gif" in paths and (tmp_path / "growing_force.png").exists()

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from granular_response_paper.groups.pile_dip import draw as figures
-
 
 def test_the_frictionless_pile_has_two_minima(datasets) -> None:
     """Floor forces of a minimum known from an independent code: 8.34 in the middle, 9.15 and 9.08 beside it."""
@@ -44,12 +42,3 @@ def test_every_pile_bears_its_weight(datasets) -> None:
     step = float(stress["x"][1] - stress["x"][0])
     line = stress["profile_zz"].sum("x") * step
     assert np.all((line > 0.6 * disks) & (line < disks))
-
-
-def test_figures(datasets) -> None:
-    drawn = figures.draw(datasets)
-    assert list(drawn) == ["fig17_pile", "fig17_pile_profiles"]
-    letters = [axes.get_title(loc="left")[:3] for axes in drawn["fig17_pile"].axes[:6]]
-    assert sorted(letters) == ["(a)", "(b)", "(c)", "(d)", "(e)", "(f)"]
-    line = drawn["fig17_pile_profiles"].axes[0].lines[2]
-    np.testing.assert_array_equal(line.get_ydata(), datasets["stress"]["profile_zz"].sel(case="frictional"))

@@ -46,15 +46,6 @@ def test_states_are_certified_and_balance_the_load(datasets) -> None:
     np.testing.assert_allclose(response[at_rest[smooth]], 1.0, atol=1e-6)
 
 
-def test_packings_differ_and_are_the_same_for_every_friction(datasets) -> None:
-    packings = datasets["packings"]
-    numbers = packings["coordination_number"].values[1]
-    assert len(set(numbers[:3].tolist())) > 1
-    spacing = float(packings["angle"][1] - packings["angle"][0])
-    density = packings["contact_angle_density"].values[1, 0]
-    np.testing.assert_allclose(density.sum() * spacing, 1.0)
-
-
 def test_two_workers_give_the_same_bits(datasets, tmp_path) -> None:
     path = tmp_path / "again.nc"
     with using(workers=2):

@@ -19,13 +19,3 @@ def test_the_force_is_small(datasets) -> None:
     assert float(slabs["certificate_force_residual"].max()) < 1e-10
     smooth = slabs["floor"].values == "smooth"
     np.testing.assert_allclose(slabs["response_sum"].values[smooth], 1.0, atol=1e-8)
-
-
-def test_profiles_are_padded_to_the_longest_row(datasets) -> None:
-    slabs = datasets["slabs"]
-    disks = np.isfinite(slabs["x"].values).sum(axis=1)
-    assert disks.tolist() == [24, 48, 96, 24, 43, 24, 43]
-    for k, count in enumerate(disks):
-        x = slabs["x"].values[k, :count]
-        np.testing.assert_allclose(x, -x[::-1], atol=1e-12)
-        np.testing.assert_allclose(slabs["elastic"].values[k, :count].sum(), 1.0, atol=2e-3)

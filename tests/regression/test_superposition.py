@@ -1,7 +1,6 @@
 """Figs. 23 and 24 on small slabs, from parameters through a file to figures."""
 
 import numpy as np
-import pytest
 import reduced
 
 from granular_response.scene import Scene
@@ -41,14 +40,6 @@ def test_superposition_holds_for_small_loads_and_fails_for_large_ones(datasets) 
         assert float(errors[name].isel(force=2).mean()) > 1e-2
 
 
-def test_loads_stand_where_they_should(datasets) -> None:
-    x = datasets["responses"]["load_x"]
-    expected = 2.0 * np.array(PARAMETERS["offsets"], dtype=float)
-    np.testing.assert_allclose(x.sel(side="right").mean("realization"), expected, atol=0.1)
-    np.testing.assert_allclose(x.sel(side="left").mean("realization"), -expected, atol=0.1)
-    np.testing.assert_array_equal(datasets["errors"]["distance"], [2.0, 8.0])
-
-
 def test_the_end_of_the_linear_range_is_bracketed(datasets) -> None:
     linear = datasets["linear_range"]
     assert linear.sizes["realization"] == 3
@@ -73,18 +64,3 @@ def test_paths_agree_with_the_protocol_of_the_paper(datasets) -> None:
     assert pair.by_motion.all()
     slow = datasets["responses"]["floor_response"].isel(realization=0, distance=1).sel(force=0.2).values
     np.testing.assert_allclose(pair.floor_response[0], slow, atol=0.01 * slow.max())
-
-
-@pytest.mark.parametrize(
-    ("both", "rms", "largest"), [([2.0, 4.0, 4.0], 0.0, 0.0), ([2.0, 4.0, 5.0], 1.0 / np.sqrt(45.0), 0.2)]
-)
-def test_the_size_of_an_error(both, rms, largest) -> None:
-    left, right = np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 0.0])
-    found = study.superposition_error(left, right, np.array(both))
-    np.testing.assert_allclose(found, (rms, largest), atol=1e-15)
-    as_vectors = study.superposition_error(*(np.stack([v, 0.0 * v], axis=1) for v in (left, right, np.array(both))))
-    np.testing.assert_allclose(as_vectors, (rms, largest), atol=1e-15)
-
-
-def test_no_force_has_no_relative_error() -> None:
-    assert np.isnan(study.superposition_error(np.ones(2), np.ones(2), np.zeros(2))).all()

@@ -3,9 +3,6 @@
 import numpy as np
 import pytest
 
-from granular_response_paper.groups.stiffness_ratio_crossover import spring_model
-from granular_response_paper.groups.theory import draw as figures
-
 
 def test_predictions_are_symmetric_and_carry_the_force(datasets) -> None:
     data = datasets["predictions"]
@@ -27,14 +24,3 @@ def test_claims_can_be_read_off(datasets) -> None:
     r = criterion["criterion"].sel(rotations="suppressed")
     assert float(r.interp(beta=root)) == pytest.approx(0.0, abs=1e-4)
     assert float(datasets["moduli"]["error"].max()) < 1e-13
-
-
-def test_figures(datasets) -> None:
-    drawn = figures.draw(datasets)
-    assert list(drawn) == ["fig01_predictions"]
-    elliptic, hyperbolic, *_ = drawn["fig01_predictions"].axes
-    np.testing.assert_array_equal(elliptic.lines[0].get_ydata(), datasets["predictions"]["slab_rough"])
-    assert len(hyperbolic.get_legend().get_texts()) == 2
-    springs = spring_model.draw_spring_model()["fig11_spring_model"]
-    labels = sorted(text.get_text() for text in springs.axes[0].texts)
-    assert labels == ["$k_1^n$", "$k_1^t$", "$k_2^n$", "$k_2^n$", "$k_2^t$", "$k_2^t$"]

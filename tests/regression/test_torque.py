@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from granular_response_paper.groups.torque import draw as figures
-
 CHANGES = ("force_change", "stress_change", "antisymmetric_change")
 
 
@@ -28,10 +26,3 @@ def test_loads_are_balanced(datasets) -> None:
         force = added[first == disk].sum(axis=0) - added[second == disk].sum(axis=0)
         np.testing.assert_allclose(force, -data["applied_force"], atol=1e-8)
     assert np.all(np.diff(data["rotation"]) < 0.0)
-
-
-def test_figures(datasets) -> None:
-    drawn = figures.draw(datasets)
-    assert list(drawn) == ["fig18_torque"]
-    arcs = [len(axes.patches) for axes in drawn["fig18_torque"].axes]
-    assert arcs == [0, 1, 1]

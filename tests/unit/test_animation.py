@@ -1,7 +1,5 @@
 """Animations of a growing load: a frame for each load, on one scale, in a file that is whole or not there."""
 
-import io
-
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -97,9 +95,3 @@ def test_what_cannot_be_animated_is_said(result, tmp_path) -> None:
     with pytest.raises(PictureError, match="cannot be written: No such file"):
         gr.plot.animate(result, output=tmp_path / "none" / "growing.gif", figure=Figure())
     assert not any(tmp_path.iterdir())
-
-
-def test_white_stays_white(result) -> None:
-    made = animation.rendered(gr.plot.animate(result, figure=Figure()), dpi=40)
-    with Image.open(io.BytesIO(made)) as image:
-        assert image.convert("RGB").getpixel((0, 0)) == (255, 255, 255)

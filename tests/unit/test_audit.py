@@ -10,14 +10,11 @@ from stress.random_scenes import (
     anachronism,
     check,
     contradiction,
-    draw,
     rounding_of,
     write_table,
 )
-from unlike_scenes import MASS_RATIO, RADIUS_RATIO, unlike_heap
 
 from granular_response.scene import Scene
-from granular_response.solvers.path import PathError
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import Solution, solve_scene
 from granular_response.state import OPEN, SLIDING, STICKING, Contacts, Reached
@@ -146,15 +143,6 @@ def test_the_three_halves_law_and_periodic_sides_pass(other):
     assert (across & pairs.touching).any()  # or the nearest image would not have been tried
 
 
-@pytest.mark.parametrize(
-    ("key", "value"),
-    [("contact.law", "linear"), ("contact.normal_stiffness", 3001.0), ("wall.normal_stiffness", 6001.0)],
-)
-def test_another_law_than_the_scenes_is_found(other, key, value):
-    tampered = replace(other, scene=other.scene.updated({key: value}))
-    assert "force_residual is" in complaint(tampered, other.rest)
-
-
 def test_sides_that_are_not_the_scenes_are_found(other):
     packing = replace(other.problem.packing, periodic=False)
     tampered = replace(other, problem=replace(other.problem, packing=packing))
@@ -205,20 +193,6 @@ def test_another_load_factor_than_was_asked_for_is_found(solution, state):
     assert anachronism(solution, moving, found, 2.0) == ""
 
 
-def test_steps_that_run_out_within_a_ramp_give_no_state_at_its_end():
-    """A path that dynamics crosses: it had brought a part of the load only, and was taken for the whole."""
-    packing = {"kind": "slab", "layers": 1, "disks_per_row": 3, "polydispersity": 0.25}
-    packing |= {"lattice_constant": "touching-largest", "seed": 431}
-    row = {
-        "packing": packing,
-        "contact": {"normal_stiffness": 4e8, "friction": 0.0},
-        "loads": [{"disk": "top-centre", "force": [-0.07, -0.28]}],
-        "protocol": {"method": "path", "time_step": "auto", "ramp_time": 5.0, "maximum_steps": 8000},
-    }
-    with pytest.raises(PathError, match="did not come to rest under load factor"):
-        solve_scene(Scene.from_dict(row))
-
-
 def test_a_disk_that_bears_next_to_nothing_is_judged_by_what_it_bears(tmp_path):
     """In mid-air, out of balance by its whole weight, which was less than any bound in units of the mean one."""
     table = np.array([(2.0, 0.98, 1.0, 1.0), (6.0, 0.98, 1.0, 1.0), (4.0, 5.0, 1.0, 1e-12)])
@@ -235,16 +209,6 @@ def test_a_disk_that_bears_next_to_nothing_is_judged_by_what_it_bears(tmp_path):
     assert found.relative_residual == pytest.approx(1.0)
     whole = audit(state, problem.packing.radius, problem.weight, 8.0, *rule, np.zeros((3, 3)), rounding=1e-11)
     assert whole.relative_residual == 0.0  # a weight that no digit of a position shows
-
-
-def test_heaps_of_unlike_disks_are_as_unlike_as_they_are_said_to_be():
-    ratios = []
-    for seed in range(60):
-        description, table = draw(np.random.default_rng(seed), 1000, heap=unlike_heap)
-        assert description["packing"]["kind"] == "file" and table is not None and table.shape[1] == 4
-        ratios.append(table[:, 2:].max(axis=0) / table[:, 2:].min(axis=0))
-    radius, mass = np.array(ratios).max(axis=0)
-    assert 30.0 < radius <= RADIUS_RATIO and 1e6 < mass <= MASS_RATIO
 
 
 def test_a_disk_out_of_balance_by_a_part_of_what_it_bears_is_found(solution, state):

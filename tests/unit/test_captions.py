@@ -1,25 +1,15 @@
 """Captions: what they say of parameters, and letters that run on through a figure of several pictures."""
 
-import json
-import re
-from collections import defaultdict
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
-from places import ROOT
 
-from granular_response.plot import style
 from granular_response.scene import PilePacking, Scene
-from granular_response.scene import text as yaml
 from granular_response.store import files as store
 from granular_response_paper import captions
 from granular_response_paper.captions import Caption, of_scene
 from granular_response_paper.pipeline import drawing
-from granular_response_paper.registry import GroupError, collection_of, collections, group_member, group_path
-
-GROUPS = [name for one in collections() for name in one.groups]
-STORED = {group: ROOT / collection_of(group).folder / "figures" / group / captions.FILE for group in GROUPS}
+from granular_response_paper.registry import GroupError
 
 
 def test_parameters_end_the_caption_in_the_papers_symbols():
@@ -46,11 +36,6 @@ def test_other_packings_have_their_own_words():
     assert of_scene(periodic)["packing"] == "15 layers of 60 disks"
 
 
-def test_of_many_values_the_ends_are_said():
-    assert captions.values(np.arange(1.0, 13.0)) == "1 to 12 (12 values)"
-    assert captions.values([0.5]) == "0.5" and captions.values((1.0, 2.0)) == "1 and 2"
-
-
 def test_an_unknown_parameter_is_refused():
     with pytest.raises(ValueError, match="parameters: unknown frction, must be among force"):
         Caption("", "", {"frction": 0.2})
@@ -68,13 +53,6 @@ def test_the_figure_of_a_picture(stem, number):
     assert captions.number(stem) == number
 
 
-def test_letters_of_a_picture_are_those_that_are_drawn():
-    figure, axes = style.figure(1, 3)
-    for panel, name in zip(axes[0], captions.letters("fig05b_stiffness"), strict=False):
-        style.letter(panel, name, place="above" if name == "f" else "inside", text="text")
-    assert style.drawn_letters(figure) == ["e", "f", "g"]
-
-
 def test_fields_of_a_template_are_filled_in_and_lists_put_in_words():
     given = {"numerics": {"friction": 0.2}}
     parameters = SimpleNamespace(
@@ -87,64 +65,8 @@ def test_fields_of_a_template_are_filled_in_and_lists_put_in_words():
         captions.of_group("numerics", given)
 
 
-@pytest.mark.parametrize("group", GROUPS)
-def test_stored_captions_cite_the_panels_that_are_drawn(group):
-    said = stored(group)
-    for stem, entry in said.items():
-        cited = set(re.findall(r"\(([a-z])\)", entry["caption"]))
-        for first, last in re.findall(r"\(([a-z])\) to \(([a-z])\)", entry["caption"]):
-            cited |= {chr(code) for code in range(ord(first), ord(last) + 1)}
-        assert cited >= set(entry["panels"]), f"{stem}: {set(entry['panels']) - cited} not cited"
-        assert entry["alternative"].strip() and entry["caption"].strip()
-
-
-def test_letters_of_stored_pictures_run_on_and_alternatives_differ():
-    panels, alternatives = defaultdict(list), []
-    for group in GROUPS:
-        for stem, entry in stored(group).items():
-            alternatives.append(entry["alternative"])
-            if entry["figure"]:
-                panels[entry["figure"]].append((stem, entry["panels"]))
-    for pictures in panels.values():
-        found = [letter for _, letters in sorted(pictures) for letter in letters]
-        assert found == [chr(ord("a") + k) for k in range(len(found))], pictures
-    assert len(set(alternatives)) == len(alternatives)
-
-
-def stored(group):
-    if not STORED[group].exists():
-        pytest.skip(f"figures/{group}/captions.json is not there yet: dvc repro draw@{group}")
-    return json.loads(STORED[group].read_text())
-
-
 def test_captions_are_made_from_the_parameters_that_the_file_stores(tmp_path):
     """Other parameters than those that the code has now are refused by name."""
     store.write(tmp_path / "theory.nc", {}, {"group": "theory", "parameters": "stifness_ratio: 0.8"})
     with pytest.raises(GroupError, match=r"was made with parameters that theory does not have now: .*stifness_ratio"):
         drawing.draw("theory", tmp_path / "theory.nc", tmp_path)
-
-
-@pytest.mark.parametrize("group", GROUPS)
-def test_captions_begin_with_their_message(group):
-    """A sentence of its own stands before the panels and the mark of a picture that the paper does not have."""
-    assert callable(group_member(group, "draw", "captions"))
-    templates = yaml.read((group_path(group) / captions.TEMPLATES).read_text("utf-8"))
-    assert templates.pop("question").endswith("?")
-    assert set(templates) == {path.stem for path in STORED[group].parent.glob("*.png")}
-    for stem, one in templates.items():
-        assert list(one) == ["text", "alternative"], stem
-        message = one["text"].split(". ")[0]
-        assert not re.search(r"^Not in the paper|\([a-z]\) ", message), f"{stem}: {message}"
-        assert one["text"].endswith("Not in the paper.") or "Not in the paper" not in one["text"], stem
-        assert one["alternative"].strip(), stem
-
-
-@pytest.mark.parametrize("group", GROUPS)
-def test_filled_captions_have_no_empty_field(group):
-    try:
-        path, datasets = drawing.stored_datasets(group, ROOT / collection_of(group).folder / "data" / f"{group}.nc")
-        filled = group_member(group, "draw", "captions")(datasets, drawing._parameters(group, path))
-    except (GroupError, store.StoreError) as error:
-        pytest.skip(f"no datasets of {group} as it is now: {error}")
-    for stem, caption in filled.items():
-        assert not re.search(r"[{}]|\bnan\b|None|  |\(\)|= ?,", caption.whole), f"{stem}: {caption.whole}"

@@ -78,52 +78,26 @@ def test_several_files_of_a_picture_find_their_panels(tmp_path):
     assert said[NAMES["lettered"]].endswith(": (b) Another 2001; (b) Somebody 1999, Fig. 3.")
 
 
-def test_the_name_goes_into_the_legend_of_the_picture_where_panels_have_none(tmp_path):
-    written(tmp_path, "fig17_pile.csv")
-    figure = pictures()[NAMES["lettered"]]
-    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center")
-    before = style.render(figure)
-    digitised.add({NAMES["lettered"]: figure}, "pile_dip", tmp_path)
-    (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == ["here", GOOD["source"]]
-    assert style.render(figure) != before and not any(axes.get_legend() for axes in figure.axes)
-
-
-def test_points_are_drawn_over_a_map(tmp_path):
-    written(tmp_path, "fig17_pile.csv")
-    figure = pictures()[NAMES["lettered"]]
-    mesh = figure.axes[0].pcolormesh(np.eye(3))
-    digitised.add({NAMES["lettered"]: figure}, "pile_dip", tmp_path)
-    assert mesh.get_zorder() < figure.axes[0].containers[0][0].get_zorder()
-
-
 def test_nothing_is_drawn_without_a_file(tmp_path):
     for folder in (tmp_path / "absent", *(ROOT / one.folder / digitised.FOLDER for one in collections())):
         figures = pictures()
         assert digitised.add(figures, "pile_dip", folder) == {}
-        assert [style.render(one) for one in figures.values()] == [style.render(one) for one in pictures().values()]
+        assert not any(axes.containers for figure in figures.values() for axes in figure.axes)
 
 
 @pytest.mark.parametrize(
     ("change", "rule"),
     [
         ({"source": None}, "source: missing, must be given as a line '# source: ...'"),
-        ({"error_x": None}, "error_x: missing, must be given as"),
-        ({"error_y": None}, "error_y: missing, must be given as"),
         ({"source": ""}, "line 1: source = '': must be one of source, error_x, error_y, panel, label, with a value"),
         ({"colour": "red"}, "line 4: colour = 'red': must be one of source, error_x, error_y, panel, label"),
         ({"error_x": "small"}, "error_x = 'small': must be a finite number"),
         ({"error_y": "-0.1"}, "error_y = -0.1: must be 0 or greater"),
-        ({"error_y": "inf"}, "error_y = 'inf': must be a finite number"),
         ({"panel": "3"}, "panel = '3': must be one of 1, 2"),
-        ({"panel": "a"}, "panel = 'a': must be one of 1, 2"),
         ({"header": "x,z"}, "header = 'x,z': must be x,y, with a line for each point below it"),
-        ({"points": ""}, "header = 'x,y': must be x,y, with a line for each point below it"),
         ({"points": "1,2\n3,a\n"}, "line 6: y = 'a': must be a finite number"),
-        ({"points": "1,nan\n"}, "line 5: y = 'nan': must be a finite number"),
         ({"points": "1,2,3\n"}, "line 5: has 3 values, must have x y"),
         ({"points": "0.2,0.3\n# source: B\nx,y\n"}, "line 6: source = 'B': is given twice, a second curve needs a"),
-        ({"points": "0.2,0.3\nx,y\n"}, "line 6: x = 'x': must be a finite number"),
     ],
 )
 def test_a_file_that_cannot_be_drawn_is_refused(tmp_path, change, rule):
@@ -184,10 +158,6 @@ def test_nothing_is_written_if_a_file_is_refused(tmp_path, monkeypatch):
     path.unlink()
     drawing.draw("pile_dip")
     assert {path: path.read_bytes() for path in files} == files
-
-
-def test_templates_name_the_pictures_of_a_group():
-    assert captions.stems("pile_dip") == ["fig17_pile", "fig17_pile_profiles"]
 
 
 def test_examples_run(tmp_path, monkeypatch):

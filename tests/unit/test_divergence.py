@@ -7,14 +7,12 @@ import pytest
 from small_scenes import at_rest, free_disks, scene, started
 
 from granular_response.solvers import stability
-from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.equilibrium import external_force, newton
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.solution import rest_state
 from granular_response.solvers.stability import Clustered, Spectrum, divergence, diverging
 from granular_response.solvers.system import StaticSystem
-from granular_response.state import OPEN, SLIDING, STICKING
+from granular_response.state import SLIDING
 
 
 def balanced(places, radius, mass, **changes):
@@ -109,83 +107,3 @@ def sliding(layers, across, force):
     assert state.certificate.stable and not any(event.lost for event in state.reached.events)
     system = StaticSystem(problem, state)
     return state, system, system.at(state)
-
-
-def dashpots(system, trial) -> np.ndarray:
-    """The matrix of the dashpots in the order of the tangent: those of sliding contacts act through the limit."""
-    q, n = trial.configuration.q, system.problem.n
-    i, j = system.first, system.second
-    d = np.stack([system.dx0 + q[i] - q[j], system.dz0 + q[n + i] - q[n + j]], axis=1)
-    normal = np.concatenate([d / np.hypot(*d.T)[:, None], system.wall_normals])
-    local = np.zeros((len(normal), 3, 3))
-    for c in np.flatnonzero(trial.status != OPEN):
-        law = system.problem.pair_law if c < len(i) else system.problem.wall_law
-        along = np.array([-normal[c, 1], normal[c, 0]])
-        by_n = -law.normal_damping * np.array([*normal[c], 0.0])
-        by_t = -law.tangential_damping * np.array([*along, -1.0])
-        if trial.status[c] == SLIDING:
-            by_t = np.sign(trial.tangential[c]) * law.friction * by_n
-        local[c, :2] = np.outer(normal[c], by_n) + np.outer(along, by_t)
-        local[c, 2] = by_t
-    return system.tangent(replace(trial, local=lambda: local)).toarray()
-
-
-def fastest(system, trial, part: float) -> float:
-    """Largest rate of growth of ``M x'' + C x' + K x = 0`` with a ``part`` of the dashpots."""
-    mass = system.interleave(1.0 / system.problem.inverse_mass)[:, None]
-    size = system.dof
-    whole = np.zeros((2 * size, 2 * size))
-    whole[:size, size:] = np.eye(size)
-    whole[size:, :size] = -system.tangent(trial).toarray() / mass
-    whole[size:, size:] = -part * dashpots(system, trial) / mass
-    return float(np.linalg.eigvals(whole).real.max())
-
-
-def complex_pairs(system, trial) -> int:
-    values = np.linalg.eigvals(
-        system.tangent(trial).toarray() / system.interleave(1.0 / system.problem.inverse_mass)[:, None]
-    )
-    return int((values.imag > 1e-6 * np.abs(values).max()).sum())
-
-
-def test_dashpots_are_what_dynamics_has():
-    """Accelerations by velocities, by differences, of a packing that sticks."""
-    problem = Problem.from_scene(scene(3, 6, contact__friction=50.0, wall__friction=50.0, loads=[]))
-    rest = rest_state(problem)
-    system = StaticSystem(problem, rest)
-    trial = system.at(rest)
-    assert set(trial.status) <= {OPEN, STICKING}
-    rng, n, step = np.random.default_rng(0), problem.n, 1e-7
-    v = rng.normal(size=system.dof)
-
-    def force(sign):
-        moving = replace(
-            rest, velocity=sign * step * v[: 2 * n].reshape(2, n).T, angular_velocity=sign * step * v[2 * n :]
-        )
-        return Dynamics(problem, moving).memory[0] / problem.inverse_mass
-
-    expected = -dashpots(system, trial) @ system.interleave(v)
-    assert system.interleave(force(1.0) - force(-1.0)) / (2.0 * step) == pytest.approx(expected, abs=1e-3)
-
-
-@pytest.mark.parametrize(("across", "layers", "force", "decays"), [(10, 5, 5.0, True), (9, 4, 15.0, False)])
-def test_complex_pairs_of_a_packing_that_slides(across, layers, force, decays):
-    """They exist, and grow with a twentieth of the dashpots; with all of them some packings' decay and some do not.
-
-    This is the motion in which contacts slide to and fro. At rest those that slide back stick: a packing that is shaken
-    a little comes to rest beside where it was, whatever the linearised motion does.
-    """
-    state, system, trial = sliding(layers, across, force)
-    assert system.problem.n <= 60 and (trial.status == SLIDING).sum() > 10
-    assert complex_pairs(system, trial) > 15
-    assert (fastest(system, trial, 1.0) < -1.0) is decays
-    assert fastest(system, trial, 0.05) > 1.0
-    sticks = system.trial(trial.configuration, trial.configuration.q, fixed=np.minimum(trial.status, STICKING))
-    assert complex_pairs(system, sticks) == 0
-
-    kicked = replace(state, position=state.position + np.random.default_rng(0).normal(0.0, 1e-6, state.position.shape))
-    dynamics = Dynamics(system.problem, kicked, time_step=4e-4)
-    dynamics.set_ramps(load=(1.0, 1.0, 0.0))
-    dynamics.advance(20_000)
-    assert dynamics.kinetic_energy() < 1e-28
-    assert np.abs(dynamics.position - state.position).max() < 5e-6

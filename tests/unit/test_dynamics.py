@@ -40,17 +40,6 @@ def test_listing_again_keeps_the_motion(integrator):
     assert often.state().walls.spring == pytest.approx(plain.state().walls.spring, abs=1e-12)
 
 
-def test_searched_list_and_lattice_list_give_the_same_motion():
-    problem = Problem.from_scene(scene())
-    lattice = Dynamics(problem, problem.bare_state(), "beeman", 2e-4)
-    blind = replace(problem, packing=replace(problem.packing, left=None, lattice_constant=None))
-    searched = Dynamics(blind, blind.bare_state(), "beeman", 2e-4)
-    assert len(searched.candidates.first) >= len(problem.lattice_pairs)
-    for dynamics in (lattice, searched):
-        dynamics.advance(2000)
-    assert searched.position == pytest.approx(lattice.position, abs=1e-12)
-
-
 def test_a_disk_thrown_far_is_followed():
     """It flies over a neighbour's neighbours and lands elsewhere; nothing passes through anything."""
     places = [[5.0 + 2.0 * k, 1.0] for k in range(8)]
@@ -79,51 +68,11 @@ def test_looking_changes_nothing():
         assert np.array_equal(getattr(unseen, name), getattr(seen, name)), name
 
 
-@pytest.mark.parametrize("disks", [1, 2])
-def test_a_state_never_changes_afterwards(disks):
-    problem, start = free_disks([[10.0 + 5.0 * k, 5.0] for k in range(disks)], spin=[1.0] * disks)
-    dynamics = Dynamics(problem, start)
-    dynamics.advance(10)
-    state = dynamics.state()
-    before = {name: getattr(state, name).copy() for name in ("position", "velocity", "angle", "angular_velocity")}
-    dynamics.advance(10)
-    for name, value in before.items():
-        assert np.array_equal(getattr(state, name), value), name
-
-
-def test_state_carries_the_motion_to_another_run():
-    """Velocity Verlet started from a state in the middle: the same but for the velocity predicted for dashpots."""
-    first = falling("verlet")
-    second = Dynamics(first.problem, first.state(), "verlet", first.time_step)
-    assert np.array_equal(second.position, first.position)
-    assert np.array_equal(second.angle, first.angle)
-    assert np.array_equal(second.v, first.v)
-    assert np.array_equal(second.spring, first.spring)
-    first.advance(200)
-    second.advance(200)
-    assert second.position == pytest.approx(first.position, abs=1e-7)
-
-
 def test_blow_up_is_an_error():
     problem, state = free_disks([[10.0, 1.0], [11.0, 1.9]], velocity=[(0, 0), (0, 0)], contact__damping_ratio=1.0)
     dynamics = Dynamics(problem, state, "beeman", 0.1)
     with pytest.raises(DynamicsError, match=r"time_step 0\.1; take a smaller"):
         relax(dynamics, Stop(1e-13, maximum_steps=20_000))
-
-
-@pytest.mark.parametrize("time_step", [0.0035, 0.004, 0.0045, 0.005, 0.0055])
-def test_steps_too_long_for_gear_go_on_or_are_that_error(time_step):
-    """Its corrector moves disks after forces: contacts that have just opened still have springs when lists are made."""
-    problem = Problem.from_scene(scene(2, 3, contact__friction=0.5))
-    rng = np.random.default_rng(0)
-    for _ in range(5):
-        dynamics = Dynamics(problem, problem.bare_state(), "gear", time_step)
-        dynamics.v[:] = 0.3 * rng.normal(size=dynamics.v.size)
-        dynamics.set_ramps()
-        try:
-            dynamics.advance(160)
-        except DynamicsError as error:
-            assert "take a smaller protocol.time_step" in str(error)
 
 
 def test_a_disk_too_fast_for_any_list_is_an_error():
@@ -170,16 +119,6 @@ def test_loose_disk_does_not_keep_a_packing_from_rest():
     assert settled.reached.kinetic_energy > 1e-13
 
 
-def test_what_rolls_need_not_fall_to_a_part_of_the_largest_energy():
-    """Beside a disk that falls on the floor and comes to rest there. It kept motions between equilibria going."""
-    problem, state = free_disks(
-        [[10.0, 1.0], [50.0, 1.0 - 1 / 6000]], velocity=[(0, 0), (2e-4, 0)], contact__friction=0.2
-    )
-    settled = relax(Dynamics(problem, state), Stop(1e-6, fallen=1e-4, maximum_steps=20_000))
-    assert settled.reached.settled
-    assert settled.reached.kinetic_energy > 5e-9
-
-
 def test_a_result_says_that_rolling_toes_were_stopped_by_hand(tmp_path):
     """A pile on a flat floor without rolling resistance: its core holds, and the two disks of its toe roll away."""
     packing = gr.Pile(layers=5).build()
@@ -224,18 +163,3 @@ def test_ramps_of_gravity_and_load():
     velocity = dynamics.state().velocity[0]
     assert velocity == pytest.approx([2.0 * (2.0 + 3.0), -(0.5 + 1.0)], abs=2e-3)
     assert dynamics.load[1] == dynamics.state().load_factor == 3.0
-
-
-def test_closed_contacts_are_the_overlapping_ones():
-    problem = Problem.from_scene(scene(packing__polydispersity=0.3))
-    dynamics = Dynamics(problem, problem.bare_state(), "verlet", 2e-4)
-    seen = set()
-    for _ in range(10):
-        dynamics.advance(300)
-        c, x, radius = dynamics.candidates, dynamics.position, problem.packing.radius
-        distance = np.hypot(*(x[c.first] - x[c.second]).T)
-        gap = np.choose(c.wall, [x[c.wall_disk, 1], x[c.wall_disk, 0], problem.packing.width - x[c.wall_disk, 0]])
-        closed = np.concatenate([distance < radius[c.first] + radius[c.second], gap < radius[c.wall_disk]])
-        assert np.array_equal(dynamics.touching(), closed)
-        seen.add(int(closed.sum()))
-    assert len(seen) > 1  # contacts open and close meanwhile

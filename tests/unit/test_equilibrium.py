@@ -1,30 +1,26 @@
-"""Static finish and certificates."""
+"""Static finish, certificates, increments of a path, and frictionless equilibria as minima of the energy."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_scenes import free_disks, scene, shaken
+from small_scenes import at_rest, free_disks, scene, shaken, started
 
 from granular_response.errors import EquilibriumError
+from granular_response.solvers import increment as module
+from granular_response.solvers.dynamics import Dynamics, Stop, relax
+from granular_response.solvers.energy import energy, minimise
 from granular_response.solvers.equilibrium import certify, external_force, finish, newton
+from granular_response.solvers.increment import Work, solve_increment
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state
 from granular_response.solvers.system import StaticSystem
-from granular_response.state import SLIDING
 
 
 @pytest.fixture(scope="module")
 def settled():
     problem = Problem.from_scene(scene(wall__friction=0.2))
     return problem, rest_state(problem)
-
-
-def test_finish_of_a_finished_state_changes_nothing(settled):
-    problem, rest = settled
-    again = finish(problem, rest)
-    assert again.position == pytest.approx(rest.position, abs=1e-13)
-    assert again.pairs.spring == pytest.approx(rest.pairs.spring, abs=1e-13)
 
 
 def test_finish_brings_a_displaced_state_back_to_balance(settled):
@@ -41,20 +37,6 @@ def test_finish_far_from_rest_is_an_error():
     problem = Problem.from_scene(scene())
     with pytest.raises(EquilibriumError, match="relax it further first"):
         finish(problem, shaken(problem, size=0.2))
-
-
-def test_a_disk_of_which_all_contacts_slide_turns_by_no_more_than_a_contact_would_allow(settled):
-    problem, rest = settled
-    system = StaticSystem(problem, rest)
-    known, disk = system.start(rest), int(np.argmax(rest.position[:, 1]))
-    touches = ((system.first == disk) | (system.second == disk)) & (rest.pairs.overlap > 0.0)
-    turned = known.q.copy()
-    turned[2 * problem.n + disk] += 2.0 * problem.pair_law.friction / problem.pair_law.tangential_stiffness
-    trial = system.trial(known, turned)
-    assert (np.abs(trial.sense[: len(touches)][touches]) == SLIDING).all()
-    left = trial.contact_force + external_force(problem, 0.0)
-    step = system.step(trial, left)
-    assert 0.0 < np.abs(step[2 * problem.n + disk]) < 10.0 * np.abs(left).max() / problem.stiffness
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.5])
@@ -89,14 +71,6 @@ def test_certificate_measures_what_it_says(settled):
     assert moving.kinetic_energy == pytest.approx((0.5 * 0.25 + 0.5 * 0.5 * 4.0) / problem.n)
 
 
-def test_loads_count_in_the_balance():
-    loads = [{"disk": 0, "force": [0.0, -1.0]}]
-    problem, state = free_disks([[500.0, 1.0 - 3.0 / 6000.0]], contact__friction=0.0, loads=loads)
-    problem = problem.with_loads(state.position)
-    assert certify(problem, replace(state, load_factor=2.0)).force_residual < 1e-9
-    assert certify(problem, replace(state, load_factor=1.0)).force_residual == pytest.approx(1.0)
-
-
 def test_torques_count_in_the_balance():
     problem = Problem.from_scene(scene(loads=[{"disk": "top-centre", "force": [0.0, 0.0], "torque": 1.0}]))
     rest = rest_state(problem)
@@ -107,6 +81,95 @@ def test_torques_count_in_the_balance():
     assert not turned.balanced and turned.stable is False
 
 
-def test_loose_disks_are_counted():
-    problem, state = free_disks([[500.0, 1.0 - 1 / 6000.0], [510.0, 1.0 - 1 / 6000.0]])
-    assert certify(problem, state).loose_disks == 2
+@pytest.fixture(scope="module")
+def start():
+    problem, rest = at_rest(scene(6, 13, loads=[{"disk": "top-centre", "force": [0.0, -1.0]}]))
+    system = StaticSystem(problem, rest)
+    return problem, system, system.start(rest)
+
+
+def test_increment_is_in_balance(start):
+    problem, system, known = start
+    work = Work()
+    external = external_force(problem, 0.5)
+    trial = solve_increment(system, known, external, known.q, work)
+    assert np.abs(trial.contact_force + external).max() < 1e-10
+    assert work.increments == 1
+    assert 1 < work.factorisations <= 8
+
+
+def test_fixed_limits_lead_to_the_same_equilibrium(start, monkeypatch):
+    """With no try on the true law at first, rounds of fixed limits must find what Newton's method finds."""
+    problem, system, known = start
+    external = external_force(problem, 0.5)
+    direct = solve_increment(system, known, external, known.q, Work())
+    solve = module.newton
+    calls = []
+
+    def refusing(*args, **options):
+        calls.append(1)
+        trial, report = solve(*args, **options)
+        if len(calls) == 1:
+            report = type(report)(False, report.iterations, report.residual)
+        return trial, report
+
+    monkeypatch.setattr(module, "newton", refusing)
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, direct=10))
+    work = Work()
+    around = solve_increment(system, known, external, known.q, work)
+    assert len(calls) == 2  # again after rounds of fixed limits
+    assert around.configuration.q == pytest.approx(direct.configuration.q, abs=1e-11)
+    assert np.array_equal(around.status, direct.status)
+    calls.clear()
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, tries=0))
+    assert solve_increment(system, known, external, known.q, Work()) is None
+
+
+def test_hopeless_increment_returns_none():
+    """A sideways pull far beyond what a frictionless-walled free surface holds."""
+    problem, rest = at_rest(scene(2, 4, loads=[{"disk": "top-centre", "force": [0.0, 50.0]}]))
+    system, known = started(problem, rest)
+    assert solve_increment(system, known, external_force(problem, 1.0), known.q, Work()) is None
+
+
+def test_one_disk_on_the_floor_by_hand():
+    problem, state = free_disks([[500.0, 1.0]], contact__friction=0.0)
+    assert minimise(problem, state).position[0, 1] == pytest.approx(1.0 - 1.0 / 6000.0, abs=1e-14)
+
+
+def test_column_between_walls_by_hand():
+    """Two disks on each other: 2 weights on the floor spring, 1 on the spring between them."""
+    problem, state = free_disks([[1.0, 1.0], [1.0, 3.0]], width=2.0, contact__friction=0.0)
+    z = minimise(problem, state).position[:, 1]
+    assert z == pytest.approx([1.0 - 2.0 / 6000.0, 3.0 - 2.0 / 6000.0 - 1.0 / 3000.0], abs=1e-13)
+
+
+def test_minimum_is_where_dynamics_ends():
+    problem = Problem.from_scene(scene(contact__friction=0.0))
+    found = minimise(problem, problem.bare_state())
+    settled = finish(problem, relax(Dynamics(problem, problem.bare_state()), Stop(1e-14)))
+    assert found.position == pytest.approx(settled.position, abs=1e-11)
+
+
+def test_energy_is_lowest_there():
+    problem = Problem.from_scene(scene(contact__friction=0.0))
+    state = minimise(problem, problem.bare_state())
+    system, known = started(problem, state)
+    external = external_force(problem, 0.0)
+    lowest = energy(system, system.trial(known, known.q), external)
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        q = known.q + rng.normal(0, 1e-3, system.dof)
+        assert energy(system, system.trial(known, q), external) > lowest
+
+
+def test_friction_has_no_energy_to_minimise():
+    problem = Problem.from_scene(scene())
+    with pytest.raises(ValueError, match="without friction"):
+        minimise(problem, problem.bare_state())
+
+
+def test_a_disk_that_falls_for_ever_is_an_error():
+    problem, state = free_disks([[500.0, 1.0], [500.5, 1e5]], contact__friction=0.0)
+    with pytest.raises(EquilibriumError):
+        minimise(problem, state)

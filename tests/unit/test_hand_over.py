@@ -8,7 +8,7 @@ from small_scenes import free_disks, scene
 
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.kernels.integrators.stepping import Integrator
-from granular_response.solvers import choice, dynamics
+from granular_response.solvers import choice
 from granular_response.solvers.dynamics import Dynamics, Relaxation, Stop, relax
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import _statics
@@ -96,20 +96,3 @@ def test_where_it_does_not_count():
         {"contact__friction": 0.0, "wall__friction": 0.0},
     ):
         assert rough(**other).plan.quiet_energy == 0.0
-
-
-def steps(problem: Problem, stop: Stop) -> int:
-    return relax(Dynamics(problem, problem.bare_state()), stop).reached.relaxation_steps
-
-
-def test_its_numbers_are_noticed(monkeypatch):
-    problem = rough()
-    stop = Stop(1e-20, quiet_energy=1e-9)
-    usual = steps(problem, stop)
-    assert steps(problem, replace(stop, quiet_energy=1e-13)) > usual
-    for name, value in {"watched": 1.0, "sliding": 0.5}.items():
-        monkeypatch.setattr(dynamics, "OPTIONS", replace(dynamics.RelaxationOptions(), **{name: value}))
-        assert steps(problem, stop) > usual
-    monkeypatch.setattr(dynamics, "OPTIONS", dynamics.RelaxationOptions())
-    monkeypatch.setattr(Problem, "swing_time", 3.0 * problem.swing_time)
-    assert steps(problem, stop) > usual

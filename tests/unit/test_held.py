@@ -11,7 +11,7 @@ from test_events import shown
 
 import granular_response as gr
 from granular_response.kernels.integrators import INTEGRATORS
-from granular_response.scene import Load, Scene, SceneError
+from granular_response.scene import Scene, SceneError
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.equilibrium import certify, reaction
 from granular_response.solvers.path import PathRecord, follow
@@ -30,15 +30,6 @@ def travel(solution, state) -> np.ndarray:
     """Displacement of the first loaded disk since rest."""
     disk = int(solution.problem.load_disk[0])
     return state.position[disk] - solution.rest.position[disk]
-
-
-@pytest.mark.parametrize("friction", [0.0, 0.2])
-def test_a_disk_may_be_lifted_away_from_all_others(friction):
-    table = {"kind": "arrays", "x": [5.0, 12.0], "z": [1.0, 1.0], "radius": [1.0, 1.0], "width": 20.0}
-    loads = [{"disk": disk, "displacement": [0.0, height]} for disk, height in ((0, 1.0), (1, 2.0))]
-    solution = solve_scene(Scene.from_dict({"packing": table, "contact": {"friction": friction}, "loads": loads}))
-    assert solution.reaction(solution.loaded[0]) == pytest.approx(np.array([[0.0, 1.0], [0.0, 1.0]]), abs=1e-9)
-    assert not solution.loaded[0].walls.touching.any()
 
 
 def check_audit(solution) -> None:
@@ -164,14 +155,6 @@ def test_dynamics_moves_a_held_disk_at_a_constant_rate_and_stops_it(integrator):
     assert dynamics.state().load_factor == 2.0 and np.isfinite(dynamics.kinetic_energy())
 
 
-def test_a_mirrored_scene_has_the_mirrored_reaction():
-    right, left = (
-        solve_scene(pushed([sign * 4e-4, -6e-4], packing__layers=5, contact__friction=0.2)) for sign in (1.0, -1.0)
-    )
-    a, b = (one.reaction(one.loaded[0])[0] for one in (right, left))
-    assert b == pytest.approx([-a[0], a[1]], abs=1e-8) and abs(a[0]) > 0.1
-
-
 def test_a_displaced_disk_and_a_force_act_together():
     """A disk that is held where it is carries what a force on another one brings to it."""
     loads = [{"disk": "top-centre", "displacement": [0.0, 0.0]}, {"disk": {"row": 1}, "force": [0.3, -3.0]}]
@@ -181,16 +164,6 @@ def test_a_displaced_disk_and_a_force_act_together():
     assert not free.any() and held.any()
     assert travel(solution, solution.loaded[0]) == pytest.approx([0.0, 0.0], abs=1e-14)
     assert solution.applied_force(solution.loaded[0]) == pytest.approx(np.hypot(0.3, 3.0) + np.hypot(*held))
-
-
-def test_the_influence_of_small_loads_is_that_of_the_held_packing():
-    loads = [{"disk": "top-centre", "displacement": [0.0, 0.0]}, {"disk": 20, "force": [2e-5, -1e-4], "torque": 3e-5}]
-    result = gr.solve(scene(4, 9, contact__friction=0.2, preparation__gravity="frictionless", loads=loads))
-    found = result.influence(state=0)
-    added = (result.to_dataset()["floor_force"] - result.to_dataset()["floor_force_rest"]).values[-1]
-    assert found.isel(disk=20).values @ [2e-5, -1e-4, 3e-5] == pytest.approx(added, abs=1e-11)
-    held = int(result.to_dataset()["loaded_disk"][0])
-    assert not found.isel(disk=held).sel(component=["x", "z"]).values.any()
 
 
 def test_a_file_has_the_reaction(tmp_path):
@@ -211,23 +184,6 @@ def test_a_file_has_the_reaction(tmp_path):
         what(stored)
     with pytest.raises(ValueError, match="reaction: there is none, no load of this scene has a displacement"):
         _ = gr.solve(scene(3, 7)).reaction
-
-
-def test_a_response_to_no_reaction_is_none():
-    result = gr.solve(pushed([None, -1e-3], contact__friction=0.0), load_factors=[0.0, 1.0])
-    assert np.isnan(result.floor_response.isel(load=0)).all()
-    assert float(result.floor_response.isel(load=1).sum()) == pytest.approx(1.0, abs=1e-8)
-
-
-def test_scenes_with_displacements_survive_yaml_and_updates():
-    base = pushed([None, -0.01])
-    assert Scene.from_text(base.to_yaml()) == base
-    assert base.loads == (Load(disk="top-centre", displacement=(None, -0.01)),)
-    assert base.to_dict()["loads"] == [
-        {"disk": "top-centre", "force": [0.0, 0.0], "displacement": [None, -0.01], "torque": 0.0}
-    ]
-    assert base.updated({"loads.0.displacement": [0.0, -0.02]}).loads[0].displacement == (0.0, -0.02)
-    assert "displacement" not in Scene().to_yaml()  # scenes stored so far keep their bytes
 
 
 @pytest.mark.parametrize(

@@ -1,20 +1,25 @@
-"""What integrators say of themselves."""
+"""Integrators where they are exact, and the contact law by hand (Sec. III.A)."""
+
+import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from reference_loop import Material, contact_force
 from small_scenes import free_disks
 
+from granular_response.contact import Linear
+from granular_response.contact.coulomb import (
+    RULES,
+    tangential,
+    tangential_cut,
+    tangential_literal,
+    tangential_unloading,
+)
+from granular_response.contact.law import normal_force
 from granular_response.kernels.integrators import INTEGRATORS
-from granular_response.kernels.integrators.stepping import moved_beyond, ramp
 from granular_response.solvers.dynamics import Dynamics
-
-
-@pytest.mark.parametrize("name", INTEGRATORS)
-def test_record_describes_the_integrator(name):
-    record = INTEGRATORS[name]
-    assert record.name == name
-    assert record.title and record.reference
-    assert record.order >= 1 and record.scheme.rows >= 1
 
 
 @pytest.mark.parametrize("name", INTEGRATORS)
@@ -50,17 +55,44 @@ def test_same_bits_in_one_part_or_many(name):
     assert np.array_equal(runs[0], runs[2])
 
 
-def test_ramp():
-    assert [ramp(t, 1.0, 3.0, 2.0) for t in (0.0, 1.0, 2.0, 5.0)] == [1.0, 2.0, 3.0, 3.0]
-    assert ramp(0.0, 1.0, 3.0, 0.0) == 3.0
+# round numbers: k_N 1000, nu_N 10, k_T 800, nu_T 5, mu 0.5
+LAW = Linear(1000.0, 10.0, 800.0, 5.0, 0.5, -math.inf)
 
 
-def test_moved_beyond_counts_where_a_disk_will_be():
-    q, v = np.array([0.0, 0.3, 0.0, 0.4]), np.array([0.0, 0.0, 0.0, 1.0])
-    assert moved_beyond(q, v, 2, 0.49, 0.0)
-    assert not moved_beyond(q, v, 2, 0.51, 0.0)
-    assert moved_beyond(q, v, 2, 0.51, 0.02)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_sliding_is_cut_with_the_dashpot_and_the_spring_follows(sign):
+    """The limit is 0.5 * 4 = 2; the spring that gives it beside the dashpot's 1 is (2 - 1) / 800."""
+    force, spring = tangential_cut(sign * 3e-3, sign * 0.2, 4.0, LAW, 5e-3)
+    assert force == pytest.approx(-sign * 2.0)
+    assert spring == pytest.approx(sign * 1.0 / 800.0)
+    again, kept = tangential_cut(spring, sign * 0.2, 4.0, LAW, 0.0)
+    assert (again, kept) == (pytest.approx(force), pytest.approx(spring))
 
 
-def test_a_scene_may_name_these():
-    assert list(INTEGRATORS) == ["beeman", "verlet", "leapfrog", "gear"]
+def test_unloading_rule_freezes_the_spring_against_further_stretch_alone():
+    force, frozen = tangential_unloading(1e-2, 0.2, 10.0, LAW, 5e-3)
+    assert (force, frozen) == (pytest.approx(-8.0 - 1.0), 1e-2)
+    force, back = tangential_unloading(1e-2, -0.2, 10.0, LAW, 5e-3)
+    assert (force, back) == (pytest.approx(-7.2 + 1.0), pytest.approx(9e-3))
+    within = (1e-3, 0.2, 10.0, LAW, 5e-3)
+    assert tangential_unloading(*within) == tangential_literal(*within)
+
+
+finite = st.floats(-5.0, 5.0, allow_nan=False)
+
+
+@given(overlap=st.floats(1e-6, 0.1), normal=finite, slip=finite, spring=st.floats(-0.02, 0.02), dt=st.floats(0.0, 1e-2))
+def test_agrees_with_the_plain_law(overlap, normal, slip, spring, dt):
+    material = Material(1000.0, 10.0, 800.0, 5.0, 0.5)
+    fn = normal_force(overlap, None, normal, LAW)
+    for name, rule in RULES.items():
+        expected = contact_force(material, overlap, normal, slip, spring, dt, name)
+        assert (fn, *tangential(spring, slip, fn, LAW, rule, dt)) == pytest.approx(expected, rel=1e-12, abs=1e-13)
+
+
+@given(slip=finite, spring=st.floats(-0.02, 0.02), fn=st.floats(-20.0, 100.0), dt=st.floats(0.0, 1e-2))
+def test_cut_never_exceeds_the_limit_and_is_odd(slip, spring, fn, dt):
+    force, new = tangential_cut(spring, slip, fn, LAW, dt)
+    assert abs(force) <= 0.5 * abs(fn)
+    assert -800.0 * new - 5.0 * slip == pytest.approx(force, abs=1e-9)
+    assert tangential_cut(-spring, -slip, fn, LAW, dt) == (-force, -new)

@@ -12,14 +12,13 @@ import granular_response as gr
 from granular_response.errors import EquilibriumError
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers import solution as solving
-from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop
+from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.equilibrium import check_overlaps, finish
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.settle import CROSSING, PROTOCOL, NotSettled, settle
-from granular_response.solvers.solution import rest_state, solve_scene
-from granular_response.solvers.stability import Clustered, Spectrum
+from granular_response.solvers.settle import NotSettled
+from granular_response.solvers.solution import solve_scene
+from granular_response.solvers.stability import Spectrum
 from granular_response.solvers.system import StaticSystem
-from granular_response.solvers.timestep import resolve_time_step
 
 DOWN = [{"disk": "top-centre", "force": [0.0, -1.0]}]
 
@@ -52,34 +51,12 @@ def test_a_disk_that_slides_alone_has_no_unstable_direction():
     assert np.abs(Spectrum(system, trial).direction).max() == 1.0
 
 
-def test_fast_disks_in_long_steps_are_followed_and_not_taken_for_a_blow_up():
-    """Soft disks without damping on a wide lattice bounce for ever: true, and what it says."""
-    soft = {"contact__normal_stiffness": 30.0, "contact__damping_ratio": 0.0, "contact__friction": 0.0, "loads": []}
-    pile = {"kind": "pile", "layers": 2, "lattice_constant": 2.5}
-    protocol = {"time_step": "auto", "method": "dynamics", "maximum_steps": 5000}
-    problem = Problem.from_scene(scene(packing=pile, protocol=protocol, **soft))
-    dynamics = Dynamics(problem, problem.bare_state(), "verlet", solving.resolve_time_step(problem))
-    dynamics.advance(5000)
-    height = 2.0 + 1.25 * np.sqrt(3.0)
-    assert dynamics.position[:, 1].max() < 1.2 * height  # energy is kept: nothing rises far above where it began
-    with pytest.raises(NotSettled, match="did not come to rest under gravity"):
-        rest_state(problem)
-
-
 def test_a_load_that_no_contact_bears_is_refused_before_anything_settles(monkeypatch):
     monkeypatch.setattr(solving, "rest_state", lambda *_, **__: pytest.fail("settled first"))
     with pytest.raises(SceneError, match=r"^loads\[0\].force: 1e\+300 mg .* must be at most 2.4e\+04"):
         solve_scene(scene(loads=[{"disk": "top-centre", "force": [0.0, -1e300]}]))
     with pytest.raises(SceneError, match=r"^loads\[0\].force: 3e\+04 mg"):
         solve_scene(scene(loads=DOWN), load_factors=[0.1, -3e4, 0.0])
-
-
-def test_motion_that_a_load_drives_apart_does_not_ask_for_a_smaller_step():
-    problem, state = free_disks([[500.0, 500.0]], loads=[{"disk": 0, "force": [1e300, 0.0]}])
-    dynamics = Dynamics(problem.with_loads(state.position), state)
-    dynamics.set_ramps(load=(1.0, 1.0, 0.0))
-    with pytest.raises(DynamicsError, match=r"the largest load, 1e\+300 mg, is more than the contacts bear"):
-        dynamics.advance(100)
 
 
 def test_a_disk_that_a_table_does_not_have_is_found_before_it_settles(tmp_path, monkeypatch):
@@ -112,13 +89,6 @@ def test_a_response_that_is_rounding_says_so(force, stiffness, said):
     assert any(line in str(warning.message) for warning in caught) is said
 
 
-def test_a_response_to_a_torque_that_is_rounding_says_so():
-    loads = [{"disk": "top-centre", "force": [0.0, 0.0], "torque": 1e-12}]
-    solution = solve_scene(scene(preparation__gravity="frictionless", loads=loads))
-    assert solution.rounding > 1.0
-    assert any("may be rounding" in remark for remark in solution.remarks)
-
-
 def counted_steps(monkeypatch) -> list[int]:
     """The time steps that dynamics takes from here on, a number for each call."""
     taken: list[int] = []
@@ -149,45 +119,6 @@ def test_maximum_steps_is_the_most_that_a_stage_takes(tmp_path, monkeypatch):
     ):
         solve_scene(Scene.from_dict(tower, folder=tmp_path))
     assert 0 < sum(taken) <= 20000
-
-
-@pytest.mark.parametrize("how", [PROTOCOL, CROSSING])
-def test_every_further_try_of_statics_has_what_is_left_of_the_steps(monkeypatch, how):
-    problem = Problem.from_scene(scene(contact__friction=0.3, loads=[]))
-    start, taken = rest_state(problem), counted_steps(monkeypatch)
-    often = replace(how, tries=100, wait=0.1 if how.wait else 0.0)
-    with pytest.raises(NotSettled):
-        settle(problem, start, often, Stop(1e-9, maximum_steps=3000), what="gravity", accept=lambda state: False)
-    assert len(taken) > 5 and 0 < sum(taken) <= 3000
-
-
-def test_a_direction_that_is_not_found_costs_no_steps(monkeypatch):
-    """The motion goes on from where it is, and its steps count once."""
-
-    class Unknown(Spectrum):
-        @property
-        def direction(self):
-            raise Clustered
-
-    problem = Problem.from_scene(scene(contact__friction=0.3, loads=[]))
-    start, taken = rest_state(problem), counted_steps(monkeypatch)
-    monkeypatch.setattr("granular_response.solvers.settle.Spectrum", Unknown)
-    often = replace(PROTOCOL, tries=100, wait=0.1)
-    with pytest.raises(NotSettled, match="so near each other"):
-        settle(problem, start, often, Stop(1e-9, maximum_steps=3000), what="gravity", accept=lambda state: False)
-    assert sum(taken) == 3000
-
-
-@pytest.mark.parametrize("how", [PROTOCOL, CROSSING])
-def test_tries_of_statics_are_as_far_apart_as_the_hand_over_says(monkeypatch, how):
-    """Six within one swing of the energy found nothing in a slab that comes to rest two swings later."""
-    problem = Problem.from_scene(scene(contact__friction=0.3, loads=[]))
-    start, taken, tries = rest_state(problem), counted_steps(monkeypatch), []
-    monkeypatch.setattr("granular_response.solvers.settle._statics", lambda *_: tries.append(sum(taken)) or start)
-    with pytest.raises(NotSettled):
-        settle(problem, start, replace(how, nudged=False), Stop(1e-9), what="gravity", accept=lambda state: False)
-    apart = np.diff(tries) * resolve_time_step(problem)
-    assert len(tries) == how.tries and apart.min() >= how.wait
 
 
 @pytest.mark.parametrize(
@@ -226,15 +157,6 @@ def test_a_limit_of_steps_holds_to_the_step(most, integrator):
         assert [one.reached.relaxation_steps for one in (result.rest, *result.loaded)] == [most] * 3
         assert result.rest.reached.steps == most
         assert result.rest.reached.time == pytest.approx(most * 1e-4)
-
-
-@pytest.mark.parametrize(("step", "said"), [("auto", "blew up"), (5e-4, "did not come to rest")])
-def test_a_packing_that_sinks_through_itself_is_told_of_its_stiffness(step, said):
-    """A smaller time step, or more steps, which were advised, do not help."""
-    soft = {"packing": {"kind": "slab", "layers": 3, "disks_per_row": 7}, "contact": {"normal_stiffness": 1e-3}}
-    protocol = {"protocol": {"time_step": step, "maximum_steps": 500}}
-    with pytest.raises(gr.SolveError, match=rf"{said} .*so soft \(contact\.normal_stiffness 0\.001\) that disks sink"):
-        gr.solve({**soft, "loads": [], **protocol}, progress=False)
 
 
 def test_walls_have_names_in_messages():

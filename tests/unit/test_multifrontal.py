@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
-from small_scenes import at_rest, scene, started
+from small_scenes import at_rest, scene
 
 from granular_response.linalg import Sequence, multifrontal, nearby, ordering
 from granular_response.linalg.dissection import Dissection
@@ -16,7 +16,6 @@ from granular_response.linalg.nearby import Nearby
 from granular_response.machine import threads
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.solution import rest_state
 from granular_response.solvers.stability import Spectrum
 from granular_response.solvers.system import StaticSystem
 
@@ -138,18 +137,6 @@ def test_the_bits_are_those_of_one_thread(monkeypatch, kind):
         assert len(set(negatives)) == 1 and (negatives[0] > 0) == (kind == "indefinite")
 
 
-def test_a_split_singular_matrix_is_an_error(monkeypatch):
-    split(monkeypatch)
-    dissection, matrix = dissected(30, 25)
-    with threads.using(2), pytest.raises(RuntimeError, match="singular"):
-        Multifrontal(dissection, 2).factor(0.0 * matrix)
-
-
-def test_less_than_one_thread_is_an_error():
-    with pytest.raises(ValueError, match="threads = 0: must be a whole number, 1 or more"), threads.using(0):
-        pass
-
-
 def test_a_packing_is_solved_alike_by_band_and_fronts(monkeypatch):
     problem = Problem.from_scene(scene(6, 13, contact__friction=0.2))
     state = problem.bare_state()
@@ -203,43 +190,6 @@ def test_an_lu_is_renewed_where_entries_have_changed_to_the_bits_of_a_new_one(fa
         assert np.array_equal(factor.solve(RIGHT), fronts.rough_factor(now).solve(RIGHT))
 
 
-def test_an_lu_is_left_where_little_or_too_much_has_changed(factorised):
-    _, matrix, factor, changed = factorised
-    before = factor.solve(RIGHT)
-    assert factor.renew(changed, 4.0, 0.9)
-    assert np.array_equal(factor.solve(RIGHT), before)
-    assert not factor.renew(changed, 1.0, 1e-9)
-    assert not factor.renew(shifted(matrix, 5.0), 1.0, 0.9)
-    assert np.array_equal(factor.solve(RIGHT), before)
-    empty = changed.copy()
-    for column in range(3):  # of one disk, with its rows
-        empty.data[empty.indptr[column] : empty.indptr[column + 1]] = 0.0
-        empty.data[empty.indices == column] = 0.0
-    with pytest.raises(RuntimeError, match="singular"):
-        factor.renew(empty, 1e-9, 1.0)
-
-
-def test_a_small_packing_has_no_rough_factor_nor_has_a_singular_matrix(monkeypatch):
-    dissection, matrix = dissected(23, 31, 3)
-    matrix = shifted(matrix, 12.0)
-    assert Multifrontal(dissection, 3).rough_factor(matrix) is None
-    monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
-    assert Multifrontal(dissection, 3).rough_factor(0.0 * matrix) is None
-
-
-def test_a_definite_step_solves_with_the_shift_or_sees_that_the_tangent_is_not_definite(monkeypatch):
-    monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
-    problem = Problem.from_scene(scene(9, 19, contact__friction=0.0))
-    state = rest_state(problem)
-    system = StaticSystem(problem, state)
-    trial = system.trial(known := system.start(state), known.q)
-    force = np.random.default_rng(5).normal(size=system.dof)
-    step = system.definite_step(trial, force, 1e-3 * problem.stiffness)
-    left = system.tangent(trial, 1e-3 * problem.stiffness) @ system.interleave(step) - system.interleave(force)
-    assert np.abs(left).max() < 1e-9
-    assert system.definite_step(trial, force, -problem.stiffness) is None
-
-
 def test_a_factor_serves_matrices_nearby_as_long_as_it_pays(factorised, monkeypatch):
     fronts, matrix, factor, changed = factorised
     near = Nearby(factor)
@@ -287,22 +237,6 @@ def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
     # what increments leave out of events
     assert kept.walls.normal_force == pytest.approx(alone.walls.normal_force, abs=12.0 * 1e-5)
     assert kept.reached.certificate.force_residual < 1e-10
-
-
-def test_a_renewed_factor_is_kept_for_its_statuses_unless_it_has_a_shift(monkeypatch):
-    monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
-    monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
-    problem = Problem.from_scene(scene(9, 19, contact__friction=0.2, preparation__gravity="frictionless"))
-    state = rest_state(problem)
-    system, known = started(problem, state)
-    trial = system.trial(known, known.q)
-    force = np.random.default_rng(5).normal(size=system.dof)
-    system.step(trial, force)
-    factor = system.kept_factor(trial)
-    system.step(trial, force)
-    assert factor is not None and system.kept_factor(trial) is factor  # renewed in its place
-    system.step(trial, force, 1e-7 * problem.stiffness)
-    assert system.kept_factor(trial) is None
 
 
 def test_no_other_factorisation_is_in_memory_when_eigenvalues_are_looked_for(monkeypatch):

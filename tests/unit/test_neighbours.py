@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from granular_response.kernels.neighbours import make_runs, run_pairs
-from granular_response.scene import SlabPacking
 from granular_response.solvers.close_pairs import close_pairs
 
 
@@ -32,38 +31,12 @@ def test_close_pairs(seed, skin):
     assert list(zip(first.tolist(), second.tolist(), strict=True)) == brute_force(position, radius, skin)
 
 
-def test_close_pairs_of_a_lattice_are_its_neighbours():
-    packing = SlabPacking(kind="slab", layers=5, disks_per_row=9).build()
-    found = np.stack(close_pairs(packing.position, packing.radius, 0.6), axis=1)
-    assert np.array_equal(found, packing.neighbour_pairs())
-
-
 def test_one_disk_has_no_pairs():
     first, second = close_pairs(np.array([[1.0, 1.0]]), np.ones(1), 0.5)
     assert len(first) == len(second) == 0
     runs, slot = make_runs(first, second, 1)
     assert runs.shape == (0, 4) and len(slot) == 0
     assert [len(part) for part in run_pairs(runs)] == [0, 0]
-
-
-@given(
-    pairs=st.sets(st.tuples(st.integers(0, 60), st.integers(1, 6)), max_size=150),
-    gap=st.integers(0, 6),
-    shortest=st.integers(1, 30),
-)
-def test_runs_hold_every_pair_once(pairs, gap, shortest):
-    listed = np.array(sorted((i, i + d) for i, d in pairs), np.int64).reshape(-1, 2)
-    runs, slot = make_runs(listed[:, 0], listed[:, 1], 70, gap, shortest)
-    first, second = run_pairs(runs)
-    assert np.array_equal(first[slot], listed[:, 0]) and np.array_equal(second[slot], listed[:, 1])
-    assert len(np.unique(slot)) == len(slot)
-    count = runs[:, 2]
-    # slots follow one another, single pairs are last, no pair stands in two slots
-    assert np.array_equal(runs[:, 3], np.cumsum(count) - count)
-    assert np.all(np.diff((count == 1).astype(int)) >= 0)
-    assert len({*zip(first.tolist(), second.tolist(), strict=True)}) == len(first)
-    # no more filling than asked for
-    assert len(first) <= len(listed) * (1 + gap)
 
 
 @given(
@@ -82,15 +55,6 @@ def test_lengthened_runs_hold_every_pair_in_a_slot_of_its_own(pairs, multiple):
     long = count > 1
     room = n - j - count + i
     assert np.all((count % multiple == 0) | (room < -count % multiple) | ~long)
-
-
-def test_lattice_is_three_runs():
-    packing = SlabPacking(kind="slab", layers=15, disks_per_row=61).build()
-    pairs = packing.neighbour_pairs()
-    runs, slot = make_runs(pairs[:, 0], pairs[:, 1], packing.n)
-    assert sorted((runs[:, 1] - runs[:, 0]).tolist()) == [1, 60, 61]
-    assert len(slot) == len(pairs)
-    assert int(runs[:, 2].sum()) < 1.03 * len(pairs)
 
 
 @pytest.mark.parametrize("far", [1e6, 1e300])

@@ -19,19 +19,6 @@ def slab(layers, disks_per_row, **changes) -> Problem:
     return Problem.from_scene(scene(layers, disks_per_row, **changes))
 
 
-def test_displacements_that_are_linear_are_carried_over_exactly():
-    coarse, fine = slab(6, 13).packing, slab(12, 25).packing
-
-    def field(packing):
-        x, z = packing.position.T
-        height = np.sqrt(3.0) * len(packing.row_count)
-        across = 0.3 * (z / height) * (1.0 - 2.0 * x / packing.width)
-        return np.stack([0.0 * x, -0.2 * z / height + across], axis=1)
-
-    carried = nested.prolonged(field(coarse), coarse, fine)
-    assert carried == pytest.approx(field(fine), abs=1e-14)
-
-
 def test_a_field_that_vanishes_at_the_side_walls_is_carried_over_to_second_order():
     errors = []
     for rows in (8, 16):

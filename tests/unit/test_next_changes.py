@@ -139,15 +139,6 @@ def test_a_rattler_that_another_disk_pushes_along_or_leaves():
         assert (found.what[0], found.rate[0], found.left[0]) == (does, pytest.approx(rate, rel=1e-3), 0.0)
 
 
-def test_a_disk_that_bears_is_no_rattler():
-    """What its contact does next is what its force says."""
-    system, trial, sense = beside_a_corner(1e-3)
-    found = next_changes(system, trial, np.array([-1.0, 0.0, 0.0, 0.0]), sense, 1e-9, 1e-9)
-    assert (found.what[0], found.left[0]) == (events.OPENS, pytest.approx(3.0)) and found.rate[0] == pytest.approx(
-        3000.0
-    )
-
-
 def test_a_disk_that_is_pushed_against_another_does_not_leave_it():
     """They touch at no force between two walls, and the load presses them together: nothing is lost."""
     load = [{"disk": 0, "force": [1.0, 0.0]}]
@@ -272,14 +263,6 @@ def test_several_right_hand_sides_have_the_digits_that_each_has_alone(b):
             found = factor.solve(rows)
             assert np.array_equal(found, [factor.solve(row) for row in rows])
             assert dense @ found.T == pytest.approx(rows.T, abs=1e-12)
-
-
-def test_more_changes_than_there_is_room_for_are_refused():
-    updated = Updated(_factor(np.eye(5) * 2.0, 0), 5, 3, 1, np.zeros(2, np.int64))
-    two = np.zeros((2, 1), np.int64), np.ones((2, 1)), np.ones((2, 1))
-    assert updated.update(np.array([1, 0]), of_all(lambda _: two))
-    assert not updated.update(np.array([1, 1]), of_all(lambda _: two))
-    assert updated.update(np.array([0, 2]), of_all(lambda _: two))  # the first one goes, so there is room
 
 
 @pytest.mark.parametrize("held", [1e-12, 1e12])

@@ -22,14 +22,6 @@ def smooth() -> gr.Result:
     return gr.solve(scene.updated({"loads.0.force": [0.0, -1e-3]}), progress=False)
 
 
-def test_the_coordination_number_counts_walls_once_and_all_disks(result):
-    found = gr.coordination_number(result)
-    for k, state in enumerate((result.rest, *result.loaded)):
-        pairs, walls = state.pairs.touching.sum(), state.walls.touching.sum()
-        assert float(found["coordination_number"][k]) == pytest.approx((2 * pairs + walls) / len(state.position))
-    assert found["state_load_factor"].values[[0, -1]].tolist() == [0.0, 1.0]
-
-
 @pytest.mark.filterwarnings("ignore:not at rest within protocol.maximum_steps")
 def test_rattlers_and_their_contacts_are_left_out():
     """Two disks with a third on them, and one that lies beside them on the floor."""

@@ -5,7 +5,6 @@ import pytest
 from observe_states import contacts, pair_index, slab, state, with_pairs
 from scipy.integrate import quad
 
-from granular_response.observe import stress as stress_module
 from granular_response.observe.stress import (
     ContactForces,
     antisymmetric_part,
@@ -49,17 +48,6 @@ def test_compression_is_positive_and_swapping_the_partners_changes_nothing():
     assert np.all(stress[:, :, 1] == 0.0)
 
 
-def test_shape_follows_the_points_and_the_grid_is_z_by_x():
-    grid = grid_points(np.array([0.0, 1.0, 2.0]), np.array([5.0, 6.0]))
-    assert grid.shape == (2, 3, 2)
-    assert grid[1, 2].tolist() == [2.0, 6.0]
-    contact = one_contact([1.0, 5.0], [0.0, 2.0], [0.0, 1.0])
-    assert coarse_grained_stress(contact, grid).shape == (2, 3, 2, 2)
-    none = ContactForces(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 2)))
-    assert not coarse_grained_stress(none, grid).any()
-    assert coarse_grained_stress(contact, np.zeros((0, 2))).shape == (0, 2, 2)
-
-
 def test_cutoff_leaves_out_what_is_far_and_hardly_changes_the_rest():
     contact = one_contact([1.0, 0.0], [2.0, 0.0], [1.0, 0.0])
     points = np.array([[0.0, 0.0], [8.9, 0.0], [9.1, 0.0], [0.0, 5.0]])  # reach: 4 w and half the branch
@@ -67,15 +55,6 @@ def test_cutoff_leaves_out_what_is_far_and_hardly_changes_the_rest():
     assert cut[2] == 0.0 < full[2]
     assert cut[1] > 0.0
     np.testing.assert_allclose(cut, full, atol=1e-7 * full[0])
-
-
-def test_chunks_change_nothing(monkeypatch):
-    rng = np.random.default_rng(3)
-    contacts_ = ContactForces(*(rng.normal(size=(40, 2)) * s for s in (6.0, 2.0, 1.0)))
-    points = rng.normal(size=(50, 2)) * 8.0
-    whole = coarse_grained_stress(contacts_, points)
-    monkeypatch.setattr(stress_module, "_CHUNK", 60)
-    np.testing.assert_allclose(coarse_grained_stress(contacts_, points), whole, rtol=1e-12, atol=1e-15)
 
 
 def test_contacts_of_a_state_with_its_walls():
@@ -107,14 +86,6 @@ def test_pressure_and_antisymmetric_part():
     stress = np.array([[[3.0, 0.5], [0.3, 1.0]], [[0.0, 1.0], [-1.0, 0.0]], [[-1.0, 0.0], [0.2, -1.0]]])
     np.testing.assert_allclose(pressure(stress), [2.0, 0.0, -1.0])
     np.testing.assert_allclose(antisymmetric_part(stress), [0.1, 1.0, -0.1])
-
-
-@pytest.mark.parametrize("option", ["width", "cutoff"])
-def test_bad_options_are_refused(option):
-    contact = one_contact([1.0, 0.0], [2.0, 0.0], [1.0, 0.0])
-    for value in (0.0, -1.0):
-        with pytest.raises(ValueError, match=option):
-            coarse_grained_stress(contact, np.zeros((1, 2)), **{option: value})
 
 
 def test_what_crosses_a_line_does_so_where_the_branch_crosses_it():

@@ -5,7 +5,7 @@ import pytest
 from observe_states import ROW, opened, pair_index, slab
 
 from granular_response.observe.network import interior_contacts
-from granular_response.observe.teardrop import open_region, teardrop
+from granular_response.observe.teardrop import teardrop
 
 LAYERS, LONG = 7, 21
 WIDTH = 2.0 * LONG
@@ -22,20 +22,6 @@ def row_pairs(row, *middles):
         assert hit.size == 1
         found.append(int(hit[0]))
     return found
-
-
-def test_no_opened_contact_is_an_empty_region():
-    region = teardrop(REST, REST, TOP)
-    assert (region.count, region.depth, region.width, region.reaches_floor) == (0, 0.0, 0.0, False)
-
-
-def test_single_contact_below_the_load():
-    chosen = row_pairs(5, 0.0)
-    region = teardrop(REST, opened(REST, chosen), TOP)
-    assert np.flatnonzero(region.contacts).tolist() == chosen
-    assert region.depth == pytest.approx(ROW)
-    assert region.width == pytest.approx(2.0)
-    assert not region.reaches_floor
 
 
 def test_region_is_the_component_nearest_to_the_load():
@@ -110,16 +96,3 @@ def test_contacts_open_at_rest_do_not_count():
     rest = opened(REST, gap)
     assert teardrop(rest, opened(rest, row_pairs(4, 1.0)), TOP).count == 1
     assert teardrop(rest, rest, TOP).count == 0
-
-
-def test_open_region_of_any_mask_and_origin():
-    mask = np.zeros(REST.pairs.first.size, dtype=bool)
-    mask[row_pairs(2, 1.0, 3.0) + row_pairs(5, 0.0)] = True
-    region = open_region(REST, mask, np.array([LONG + 2.0, 1.0]))
-    assert region.count == 2
-    assert region.depth == pytest.approx(-2 * ROW)
-
-
-def test_states_of_other_candidates_are_refused():
-    with pytest.raises(ValueError, match="match_candidates"):
-        teardrop(REST, slab(LAYERS, LONG - 1), TOP)

@@ -67,20 +67,6 @@ def test_datasets_are_the_same_from_checkout_and_archive(checkout, archive):
                 assert np.array_equal(data["x"], [1.0, 2.0])
 
 
-def test_only_what_is_there_is_listed(checkout):
-    (checkout / FIGURES).unlink()
-    assert [entry.path for entry in opened.listed(str(checkout))] == [SURVEYED]
-    with pytest.raises(ArchiveError, match="is missing"):
-        opened.load(FIGURES, str(checkout))
-
-
-@pytest.mark.parametrize(("path", "named"), [(FIGURES, FIGURES), (SURVEYED, "survey/data")])
-def test_another_file_is_refused(checkout, path, named):
-    store.write(checkout / path, {"other": xr.Dataset({"x": variable((), 1.0, "number")})})
-    with pytest.raises(ArchiveError, match=rf"{named}: is not the one of dvc\.lock"):
-        opened.load(path, str(checkout))
-
-
 def test_mistakes_are_named(checkout, tmp_path):
     with pytest.raises(ArchiveError, match=r"data/pile.nc: is no dataset of .*, must be one of data/influence.nc"):
         opened.load("data/pile.nc", str(checkout))

@@ -6,12 +6,11 @@ import matplotlib
 import matplotlib.image
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import to_rgba
 
 import granular_response as gr
-from granular_response.plot import field, network, pictures, style
+from granular_response.plot import network, pictures, style
 from granular_response.state import Box
 
 LOADS = [{"disk": {"row": "top"}, "force": [0.5, -4.0], "torque": 0.2}, {"disk": 40, "force": [0.0, -1.0]}]
@@ -59,37 +58,6 @@ def test_forces_are_those_that_the_load_adds(result, ax):
     np.testing.assert_allclose(width, np.maximum(width.max() * length / length.max(), network.THINNEST))
     ends = np.sum(np.linalg.norm(added[size > 0.02 * size.max()], axis=1))
     assert ends > 0 and len(dark.get_segments()) > len(pale.get_segments())
-
-
-def test_what_the_load_takes_away_is_told_apart(result, ax):
-    """Pale lines are contacts whose normal force the load makes smaller."""
-    gr.plot.forces(result, ax=ax, scale="linear")
-    contacts = result.contacts
-    lost = (contacts["contact_normal_force"][2] - contacts["contact_normal_force"][0]).values < 0.0
-    shown = pictures.Shown.of(result, 2)
-    point = network.pair_points(shown.position, shown.radius, *shown.pairs)
-    middle = np.array(lines(ax, style.DECREASED).get_segments()).mean(axis=1)
-    nearest = np.linalg.norm(point[None] - middle[:, None], axis=2).min(axis=1)
-    inside = nearest < 1e-9
-    index = np.linalg.norm(point[None] - middle[:, None], axis=2).argmin(axis=1)[inside]
-    # the direction of a contact turns a little under load, so a few of next to no change may differ
-    assert inside.any() and lost[index].mean() > 0.9
-
-
-@pytest.mark.parametrize("scale", ["sqrt", "percentile"])
-def test_small_forces_grow_on_other_scales(result, ax, scale):
-    gr.plot.forces(result, ax=ax, scale=scale)
-    other = style.figure()[1][0, 0]
-    gr.plot.forces(result, ax=other, scale="linear")
-    assert len(lines(ax, style.INCREASED).get_segments()) > len(lines(other, style.INCREASED).get_segments())
-
-
-def test_scales_keep_the_order_and_the_direction():
-    force = np.array([[3.0, 4.0], [0.0, -0.05], [0.0, 0.0], [1e-13, 0.0]])
-    assert network.rescaled(force, "linear", largest=5.0)[:2] == pytest.approx(force[:2] / 5.0)
-    root = network.rescaled(force, "sqrt", largest=5.0)
-    assert root == pytest.approx(np.array([[0.6, 0.8], [0.0, -0.1], [0.0, 0.0], [0.0, 0.0]]))
-    assert network.rescaled(force, "percentile", largest=5.0)[:2] == pytest.approx(np.array([[0.6, 0.8], [0.0, -0.5]]))
 
 
 def test_contacts_are_those_that_changed(result, ax):
@@ -146,22 +114,6 @@ def test_every_picture_of_a_packing_shows_floor_walls_and_loads(result, name):
     assert not at_rest.texts
 
 
-@pytest.mark.parametrize("name", ["forces", "contacts", "stress"])
-def test_a_picture_near_the_loads_ends_beside_them(result, name):
-    ax = getattr(gr.plot, name)(result, ax=style.figure()[1][0, 0], half_width=4.0)
-    disks = result.to_dataset()["loaded_disk"].values
-    x = result.loaded[-1].position[disks, 0] - (result.origin if name == "stress" else 0.0)
-    np.testing.assert_allclose(ax.get_xlim(), [x.min() - 4.0, x.max() + 4.0])
-    with pytest.raises(pictures.PictureError, match=r"half_width = 0: must be a number greater than 0"):
-        getattr(gr.plot, name)(result, half_width=0)
-
-
-def test_pictures_make_figures_of_their_own(result):
-    axes = gr.plot.contacts(result)
-    assert axes.figure.number  # one of pyplot's, so notebooks show it
-    matplotlib.pyplot.close(axes.figure)
-
-
 def test_stored_and_solved_results_look_the_same(result, tmp_path):
     result.save(tmp_path / "result.nc")
     back = gr.open_result(tmp_path / "result.nc")
@@ -177,19 +129,6 @@ def test_a_page_has_what_was_asked_for(result):
     assert [title[:5] for title in titles] == ["(a) n", "(b) i", "(c) c", "(d) s"]
     with pytest.raises(pictures.PictureError, match="what = 'chains': must be among response, floor, forces"):
         gr.plot.page(result, ["chains"])
-
-
-@pytest.mark.parametrize("what", [None, "photoelastic,forces"])
-def test_a_page_has_no_blank_margins(result, what):
-    """White above and below what is drawn: at most a quarter of an inch."""
-    picture = matplotlib.image.imread(io.BytesIO(style.render(gr.plot.page(result, what), dpi=100)))[..., :3]
-    rows = np.flatnonzero((picture.min(axis=2) < 0.9).any(axis=1))
-    assert rows[0] <= 25 and rows[-1] >= len(picture) - 26
-
-
-def test_fringes_stand_on_a_page_too(result):
-    one, other = (gr.plot.page(result, what).axes[0] for what in ("photoelastic", "forces"))
-    assert len(one.images) == 1 and not other.images
 
 
 @pytest.fixture(scope="module")
@@ -225,15 +164,6 @@ def test_a_page_without_a_response_has_the_forces_on_the_floor(loadless, turned)
     assert np.abs(curve(page.axes[0])).max() > 1e-6
     assert page.axes[3].get_ylim()[1] > pictures.Shown.of(turned).top + 1.0  # room for the arc
     assert titles(gr.plot.page(turned, state=0))[0] == "(a) floor forces, at rest"
-
-
-def test_floor_forces_are_of_the_state_asked_for(result, ax):
-    data = result.to_dataset()
-    np.testing.assert_array_equal(curve(gr.plot.floor(result, ax=ax, state=1, added=False)), data["floor_force"][0])
-    assert ax.get_ylabel() == style.FLOOR_FORCE
-    other = gr.plot.floor(result, ax=style.figure()[1][0, 0])
-    np.testing.assert_array_equal(curve(other), data["floor_force"][1] - data["floor_force_rest"])
-    assert other.get_ylabel() == style.INCREMENTAL_FLOOR_FORCE
 
 
 def test_why_there_is_no_response_is_said(loadless, turned, ax):
@@ -281,40 +211,3 @@ def test_pairs_across_periodic_sides_are_two_half_lines(ax):
     np.testing.assert_allclose(ends[[1, 3], 1], [[2.0, 1.0], [2.0, 1.0]])
     point = network.pair_points(position, 1.0, [0], [1], box=Box(10.0, periodic=True))
     np.testing.assert_allclose(point, [[0.0, 1.0]])
-
-
-def test_the_signed_norm_is_odd_and_grows_by_the_root():
-    norm = field.root_norm(4.0, signed=True)
-    np.testing.assert_allclose(norm(np.array([-4.0, -1.0, 0.0, 1.0, 4.0])), [0.0, 0.25, 0.5, 0.75, 1.0])
-    with pytest.raises(ValueError, match=r"largest = 0\.0"):
-        field.root_norm(0.0)
-
-
-def pushed(count: int, directions: int = 1) -> gr.Result:
-    """A small slab under ``count`` loads of its top disk, in some directions."""
-    slab = {"packing": {"kind": "slab", "layers": 3, "disks_per_row": 7}, "contact": {"friction": 0.2}}
-    forces = [[1e-3 * (k % directions) / count, -1.0 / count] for k in range(count)]
-    return gr.solve({**slab, "loads": [{"disk": "top-centre", "force": force} for force in forces]})
-
-
-def test_many_loads_of_one_disk_are_drawn_as_one(ax):
-    one, many = (gr.plot.packing(pushed(count), ax=style.figure(width="double")[1][0, 0]) for count in (1, 300))
-    assert len(many.get_children()) == len(one.get_children())
-    assert many.get_xlim() == one.get_xlim() and many.get_ylim() == pytest.approx(one.get_ylim())
-
-
-def test_limits_are_found_once_however_many_loads_there_are(monkeypatch):
-    """Each time looks through all that is drawn, so the time grew with the square of the number of loads."""
-    calls = []
-    autoscale = Axes.autoscale_view
-    monkeypatch.setattr(
-        Axes, "autoscale_view", lambda axes, *given, **more: calls.append(autoscale(axes, *given, **more))
-    )
-    counts = []
-    for directions in (1, 60):
-        calls.clear()
-        axes = gr.plot.packing(pushed(60, directions), ax=style.figure(width="double")[1][0, 0])
-        axes.figure.draw_without_rendering()
-        counts.append(len(calls))
-    assert counts[0] == counts[1] > 0
-    assert len(axes.texts) == 60

@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 
 import pytest
-import reduced
 import yaml
 from places import ROOT
 
@@ -41,21 +40,6 @@ def test_the_pipeline_in_git_is_the_one_that_is_made(collection):
 
 
 @pytest.mark.parametrize("collection", COLLECTIONS, ids=lambda one: one.name)
-@pytest.mark.parametrize("kind", KINDS)
-def test_every_imported_module_is_a_dependency_of_its_stage(collection, kind):
-    base = (ROOT / collection.folder).resolve()
-    definition = yaml.load((base / stages.FILE).read_text(), LOADER)["stages"][kind]
-    assert definition["foreach"] == list(collection.groups)
-    for group in collection.groups:
-        declared = [(base / one.replace("${item}", group)).resolve() for one in definition["do"]["deps"]]
-        for module in imports.closure(stages.starts(collection, kind, group)):
-            file = imports.file_of(module).resolve()
-            assert any(one == file or one in file.parents for one in declared), f"{group}: {module}"
-        code = [one for one in declared if one.suffix == ".py" or one.is_dir()]
-        assert all(one.exists() for one in code)
-
-
-@pytest.mark.parametrize("collection", COLLECTIONS, ids=lambda one: one.name)
 def test_folders_parameters_and_lock_have_the_same_groups(collection):
     base = ROOT / collection.folder
     given = yaml.load((base / "params.yaml").read_text(), LOADER)
@@ -66,11 +50,6 @@ def test_folders_parameters_and_lock_have_the_same_groups(collection):
     # DVC keeps what it once wrote of a stage that is gone, and reads it around every other stage.
     locked = set(re.findall(r"^  ([\w@]+):$", (base / "dvc.lock").read_text(), re.M))
     assert locked == set(reproduce.stage_names(collection, ROOT))
-
-
-@pytest.mark.parametrize("group", reduced.GROUPS)
-def test_a_reduced_run_is_of_its_own_group(group):
-    assert set(yaml.load(reduced.path(group).read_text(), LOADER)) == {"common", group}
 
 
 def test_a_misspelt_group_names_the_right_one_and_where_it_lives(tmp_path):

@@ -40,11 +40,6 @@ def test_a_start_without_friction_is_tapped_with_friction_only():
     np.testing.assert_array_equal(rest_state(Problem.from_scene(smooth)).position, expected.position)
 
 
-def test_taps_need_statics():
-    with pytest.raises(gr.SceneError, match=r"^preparation.taps: must be null"):
-        gr.solve(TAPPED.updated({"protocol.friction_law": "literal"}))
-
-
 def test_the_band_is_that_of_the_responses():
     ways = {
         "at once": {},

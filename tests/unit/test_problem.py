@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene, shaken
 
-from granular_response.contact import Linear
 from granular_response.scene import Scene, SceneError
-from granular_response.solvers.problem import Problem, carry_springs, static_contacts
+from granular_response.solvers.problem import Problem, carry_springs
 from granular_response.solvers.solution import solve_scene
 from granular_response.solvers.system import StaticSystem
 from granular_response.state import FLOOR
@@ -38,23 +37,6 @@ def test_a_lost_spring_is_an_error():
         carry_springs(problem.n, state.pairs, np.zeros(0, int), np.zeros(0, int))
 
 
-def test_rotations_and_springs_exist_only_with_friction():
-    for pair, wall, freedoms in ((0.0, 0.0, 2), (0.2, 0.0, 3), (0.0, 0.2, 3)):
-        problem = Problem.from_scene(scene(contact__friction=pair, wall__friction=wall))
-        assert problem.freedoms == freedoms
-        assert problem.inverse_mass.shape == (freedoms * problem.n,)
-    # without tangential stiffness there is nothing for friction to act on
-    assert not Problem.from_scene(scene(contact__stiffness_ratio=0.0)).rotations
-
-
-def test_moments_of_inertia_are_those_of_disks():
-    problem, _ = free_disks([[10, 10], [20, 10]], [0.8, 1.2])
-    m = problem.packing.mass
-    assert m.mean() == pytest.approx(1.0)
-    assert m[1] / m[0] == pytest.approx(1.5**2)
-    assert 1.0 / problem.inverse_mass[4:] == pytest.approx(0.5 * m * np.array([0.8, 1.2]) ** 2)
-
-
 @pytest.mark.parametrize("move", [0.0, 0.05, 0.6])
 def test_candidates_hold_every_contact_within_their_limit(move):
     """Whoever moves by less than the limit touches only listed partners."""
@@ -74,25 +56,6 @@ def test_candidates_hold_every_contact_within_their_limit(move):
         for wall in range(3):
             gap = problem.packing.box.wall_gap(x, np.ones(problem.n), np.full(problem.n, wall))
             assert {(k, wall) for k in np.flatnonzero(gap < 0).tolist()} <= walls
-
-
-def test_static_contacts_by_hand():
-    law = Linear(1000.0, 0.0, 800.0, 0.0, 0.5, -np.inf)
-    spring = np.array([1e-3, -1e-3, 1e-3])
-    c = static_contacts([0, 1, 2], [3, 4, 5], np.array([0.01, 0.001, -0.001]), spring, None, law)
-    assert c.normal_force == pytest.approx([10.0, 1.0, 0.0])
-    assert c.tangential_force == pytest.approx([-0.8, 0.8, 0.0])
-    assert c.status.tolist() == [1, 2, 0]
-    assert c.spring.tolist() == [1e-3, -1e-3, 0.0]
-
-
-def test_loads_on_one_disk_add_up():
-    loads = [{"disk": 3, "force": [1.0, -2.0], "torque": 0.5}, {"disk": 3, "force": [0.5, 0.0]}]
-    problem = Problem.from_scene(scene(loads=loads))
-    problem = problem.with_loads(problem.packing.position)
-    vector = problem.load_vector.reshape(3, -1)
-    assert vector[:, 3] == pytest.approx([1.5, -2.0, 0.5])
-    assert np.count_nonzero(vector) == 3
 
 
 def test_slots_of_no_listed_pair_have_no_reach():

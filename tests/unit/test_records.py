@@ -3,10 +3,9 @@
 from functools import partial
 
 import numpy as np
-import pytest
 
 from granular_response.sweeps.resources import using
-from granular_response_paper.records import axes, column, columns, labels, record, stacked, table
+from granular_response_paper.records import axes, column, columns, labels, record, table
 from granular_response_paper.tasks import computed
 
 
@@ -53,11 +52,6 @@ def test_one_record_and_none_are_tables_too():
     assert found.sizes == {"event": 0} and found["low"].dtype == float and found["name"].dtype.kind == "U"
 
 
-def test_arrays_of_any_lengths_are_stacked():
-    np.testing.assert_array_equal(stacked({(0,): (1, 2), (1,): (3,)}, float), [[1.0, 2.0], [3.0, np.nan]])
-    assert stacked({(0,): [1, 2], (1,): [3, 4]}).dtype == int
-
-
 def test_coordinates_of_cases_and_of_axes():
     found = labels("case", [outcome(1), outcome(2)], height="height", name="name")
     assert found["height"].dims == ("case",) and found["name"].values.tolist() == ["x", "xx"]
@@ -74,8 +68,3 @@ def test_tasks_give_what_they_compute_by_their_places():
         assert begun == ["a", "b", "c"]
         assert list(computed(tasks, "powers", work=ord)) == ["a", "b", "c"]
     assert begun[3:] == ["c", "b", "a"]
-
-
-def test_a_sequence_of_another_length_than_a_place_is_refused():
-    with pytest.raises(ValueError, match="zip"):
-        stacked({(0,): 1.0, (0, 1): 2.0})

@@ -12,7 +12,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.store import atomic
 from granular_response.sweeps import rest as settled
 from granular_response.sweeps.keys import key
-from granular_response.sweeps.memory import MISSING, Memory, MemoryWarning
+from granular_response.sweeps.memory import MemoryWarning
 from granular_response.sweeps.resources import using
 
 SCENE = Scene.from_dict(
@@ -64,14 +64,6 @@ def test_a_kept_state_is_the_computed_one(folder, computed):
     assert len(computed) == 1
     assert key(again) == key(first)
     np.testing.assert_array_equal(again.pairs.spring, first.pairs.spring)
-
-
-def test_a_minimised_packing_needs_no_stable_time_step(folder, computed):
-    """The step of the scene is too long for disks this stiff, but no step is taken."""
-    stiff = {"contact.friction": 0.0, "contact.normal_stiffness": 1e6, "protocol.time_step": 1e-3}
-    for _ in range(2):
-        settled.rest_state(Problem.from_scene(SCENE.updated(stiff)))
-    assert len(computed) == 1
 
 
 @pytest.mark.parametrize(
@@ -140,14 +132,6 @@ def test_states_of_other_sources_go_after_a_week(folder, computed):
     assert not old.exists() and new.exists() and thesis.exists() and odd.exists()
 
 
-def test_a_folder_that_cannot_be_written_costs_one_warning(tmp_path, computed):
-    (tmp_path / "kept").write_text("a file, where the folder would be")
-    with using(rest_states=tmp_path / "kept"), pytest.warns(MemoryWarning, match=r"kept: nothing more is kept") as said:
-        state = settled.rest_state(Problem.from_scene(SCENE))
-    assert len(said) == 1 and "\n" not in str(said[0].message)
-    assert len(state.position) == computed[0].n
-
-
 def test_a_full_disk_costs_a_warning(folder, computed, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
@@ -156,11 +140,3 @@ def test_a_full_disk_costs_a_warning(folder, computed, monkeypatch):
     with pytest.warns(MemoryWarning, match="No space left on device"):
         settled.rest_state(Problem.from_scene(SCENE))
     assert len(computed) == 1 and files(folder) == []
-
-
-def test_a_pipe_in_the_folder_counts_as_absent(folder):
-    """It has no end: who reads it waits for ever."""
-    memory = Memory(folder)
-    memory.save("kept", 1)
-    os.mkfifo(memory.shelf / "pipe.kept")
-    assert memory.load("pipe") is MISSING and memory.load("kept") == 1

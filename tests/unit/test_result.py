@@ -1,6 +1,5 @@
 """Solutions as datasets and back."""
 
-import re
 from dataclasses import fields
 
 import numpy as np
@@ -9,7 +8,7 @@ import xarray as xr
 from small_scenes import scene
 
 import granular_response
-from granular_response.scene import Scene, SceneError
+from granular_response.scene import Scene
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import continue_solution, solve_scene
@@ -59,23 +58,6 @@ def test_every_variable_says_what_it_is(solution):
     assert list(units.values()) == ["mean_radius", "mean_mass", "mean_weight", "mean_radius / reduced_time", "1"]
 
 
-def test_units_are_those_that_a_registry_learns(solution):
-    """As ``pint.UnitRegistry.define`` takes them; every unit of a result is made of them."""
-    defined = {}
-
-    class Registry:
-        def define(self, line):
-            name, value, unit = re.fullmatch(r"(\w+) = (\S+) (\w+)", line).groups()
-            defined[name] = (float(value), unit)
-
-    lab = granular_response.LaboratoryUnits()
-    lab.define(Registry())
-    assert defined["mean_weight"] == (pytest.approx(lab.mass * lab.gravity), "N")
-    assert defined["reduced_time"] == (lab.time, "s")
-    units = {variable.attrs.get("units", "1") for variable in to_dataset(solution).variables.values()}
-    assert set(re.findall(r"[a-z_]+", " ".join(units))) == {*defined, "radian"}
-
-
 def test_floor_response_of_each_load(solution):
     data = to_dataset(solution)
     assert data.floor_response.dims == ("load", "floor_disk")
@@ -87,40 +69,6 @@ def test_floor_response_of_each_load(solution):
     assert np.allclose(change / data.total_force, data.floor_response, rtol=0, atol=1e-12)
     assert data.certificate_force_residual.values.max() < 1e-9
     assert data.attrs["stable"] == "yes" and data.attrs["settled"] == "yes"
-
-
-def test_a_dataset_without_states_is_refused(solution):
-    with pytest.raises(ValueError, match="holds no states"):
-        state_from(to_dataset(solution).drop_vars("contact_spring"))
-
-
-CHANGING = {
-    "packing.layers": 4,
-    "packing.disks_per_row": 7,
-    "packing.polydispersity": 0.3,
-    "packing.lattice_constant": "touching-largest",
-    "packing.realization": 4,
-    "contact.normal_stiffness": 1000.0,
-    "contact.friction": 0.1,
-    "protocol.time_step": "auto",
-    "loads.0.force": [10, -25],
-}
-
-
-@pytest.mark.parametrize("changes", [{}, {"contact.friction": 0.0}])
-def test_a_stored_result_goes_on_with_the_bits_of_a_run_that_was_not_cut(changes, tmp_path):
-    """Dynamics on the way lists other candidates: each stored state keeps its own list."""
-    scene = Scene().updated({**CHANGING, **changes})
-    whole = granular_response.solve(scene, load_factors=[1, 2, 0.2])
-    granular_response.solve(scene, load_factors=[1, 2]).save(tmp_path / "cut.nc")
-    cut = granular_response.open_result(tmp_path / "cut.nc")
-    assert {"contact_own_place", "wall_own_place"} <= set(cut.to_dataset().variables)
-    goes_on = cut.continued([0.2])
-    for name in ("position", "angle"):
-        np.testing.assert_array_equal(getattr(goes_on.loaded[-1], name), getattr(whole.loaded[-1], name))
-    for name in ("first", "second", "spring", "normal_force"):
-        np.testing.assert_array_equal(getattr(goes_on.loaded[0].pairs, name), getattr(whole.loaded[0].pairs, name))
-        np.testing.assert_array_equal(getattr(goes_on.rest.walls, name), getattr(whole.rest.walls, name))
 
 
 def test_a_box_that_has_changed_since_is_noticed(tmp_path):
@@ -187,21 +135,6 @@ def test_a_continued_result_is_the_uninterrupted_one(tmp_path, changes):
     one, other = (to_dataset(solution).drop_dims(lists) for solution in (parts, straight))
     assert any(str(name).startswith("reached_") for name in one.variables)
     xr.testing.assert_identical(one, other)
-
-
-def test_a_state_that_still_moves_goes_on_under_the_loads_that_were_asked_for():
-    """Its ramp was cut short, so it has another load than the programme says."""
-    still = {"protocol.method": "dynamics", "protocol.static_finish": False, "protocol.maximum_steps": 3000}
-    scene = SLAB.updated({"loads.0.force": [0.3, -3.0], **still})
-    whole = solve_scene(scene, load_factors=[0.4, 1.0, 0.5])
-    parts = continue_solution(solve_scene(scene, load_factors=[0.4, 1.0]), [0.5])
-    assert parts.loaded[0].load_factor < 0.4
-    assert parts.scene == whole.scene and whole.scene.protocol.load_factors == (0.4, 1.0, 0.5)
-
-
-def test_a_scene_without_loads_has_nothing_to_go_on_with():
-    with pytest.raises(SceneError, match="loads: none in this scene"):
-        continue_solution(solve_scene(SLAB.updated({"loads": []})), [2.0])
 
 
 def test_dynamics_from_a_stored_moving_state(tmp_path):

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from small_scenes import at_rest, free_disks, scene, shaken, started
+from small_scenes import free_disks, scene, shaken, started
 from test_next_changes import added_to_tangent
 from test_statics import dense_tangent, numerical_tangent
 
@@ -194,14 +194,6 @@ def test_a_changed_status_is_the_difference_of_tangents():
                     matrices.append(system.tangent(trial).toarray())
                 added, _ = added_to_tangent(system, known.q, count + c, before, after)
                 assert added == pytest.approx(matrices[1] - matrices[0], abs=1e-8)
-
-
-def test_a_path_does_not_depend_on_where_it_is_cut():
-    """Contacts that have just closed, to rounding, are closed along the rolling too: else they are 5e-6 off."""
-    loads = [{"disk": "top-centre", "force": [0.0, -4.0]}]
-    problem, rest = at_rest(scene(5, 9, loads=loads, **SLAB))
-    whole, cut = (follow(problem, rest, np.linspace(0.0, 1.0, k + 1)[1:])[-1] for k in (1, 40))
-    assert whole.pairs.rolling_force == pytest.approx(cut.pairs.rolling_force, abs=1e-9)
 
 
 @pytest.fixture(scope="module")

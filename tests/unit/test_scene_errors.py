@@ -17,30 +17,20 @@ DISK = "must be top-centre, the index of a disk, {x: number}, or {row: top | bot
 MALFORMED = {
     # Not YAML, or not a mapping.
     "": "the scene is empty, must be a mapping ({} is the paper's scene)",
-    "# only a comment\n": "the scene is empty, must be a mapping ({} is the paper's scene)",
     "contact: {friction: 0.2": "line 1, column 24: not valid YAML: expected ',' or '}', but got '<stream end>'",
-    "contact:\n\tfriction: 0.2": "line 2, column 1: not valid YAML: found character '\\t' that cannot start any token",
     "contact: {friction: 1}\ncontact: {friction: 2}": "line 2, column 1: not valid YAML: key 'contact' is given twice",
-    "contact: {friction: 1, friction: 1}": "line 1, column 24: not valid YAML: key 'friction' is given twice",
     "contact: !!python/object:os.system {}": (
         "line 1, column 10: not valid YAML: tag 'tag:yaml.org,2002:python/object:os.system' is not allowed"
     ),
     "{}\n---\n{}": "line 2, column 1: not valid YAML: but found another document",
-    "? [a]\n: b": "line 1, column 3: not valid YAML: a key must be text",
-    "contact: {friction: !!float fast}": "line 1, column 21: not valid YAML: 'fast' does not fit its tag",
     "[a, b]": f"['a', 'b']: must be a mapping with keys among {SCENE_KEYS}",
-    "slab": f"'slab': must be a mapping with keys among {SCENE_KEYS}",
     # Unknown keys.
     "contacts: {}": f"contacts = {{}}: unknown key, did you mean contact? (allowed: {SCENE_KEYS})",
-    "1: 2": f"1 = 2: unknown key (allowed: {SCENE_KEYS})",
     "contact: {fricton: 0.2}": (
         f"contact.fricton = 0.2: unknown key, did you mean friction? (allowed: {CONTACT_KEYS})"
     ),
     "loads: [{disk: 0, force: [0, -1], torqe: 1}]": (
         "loads[0].torqe = 1: unknown key, did you mean torque? (allowed: disk, force, displacement, torque)"
-    ),
-    "preparation: {gravty: slow}": (
-        "preparation.gravty = 'slow': unknown key, did you mean gravity? (allowed: gravity, ramp_time, taps)"
     ),
     "packing: {kind: file, path: a.csv, width: 1.0, layers: 3}": (
         "packing.layers = 3: unknown key (allowed: kind, path, format, width, origin, sides, columns, overlaps, "
@@ -51,29 +41,19 @@ MALFORMED = {
     "contact: {normal_stiffness: -3000}": (
         "contact.normal_stiffness = -3000: must be a number greater than 0, at most 1e12"
     ),
-    "contact: {normal_stiffness: 0x10}": (
-        "contact.normal_stiffness = '0x10': must be a number greater than 0, at most 1e12"
-    ),
     "contact: {normal_stiffness: 6e11}": (
         "contact.normal_stiffness = 600000000000.0: "
         "must be at most 5e11 where wall.normal_stiffness, twice as much, is left open"
     ),
     "contact: {friction: -0.1}": f"contact.friction = -0.1: {RATIO}",
-    "contact: {friction: '0.2'}": f"contact.friction = '0.2': {RATIO}",
     "contact: {friction: true}": f"contact.friction = true: {RATIO}",
-    "contact: {friction: .inf}": f"contact.friction = inf: {RATIO}",
     "contact: {damping_ratio: .nan}": f"contact.damping_ratio = nan: {RATIO}",
     "wall: {friction: null}": f"wall.friction = null: {RATIO}",
-    "wall: {normal_stiffness: 0}": ("wall.normal_stiffness = 0: must be a number greater than 0, at most 1e12"),
     "contact: {friction: -1, damping_ratio: -1}": f"contact.friction = -1: {RATIO} (and 1 more mistake)",
     # Packings.
-    "packing: slab": f"packing = 'slab': must be a mapping with the key kind ({KINDS})",
     "packing: {layers: 3}": f"packing = {{'layers': 3}}: key kind is missing, must be {KINDS}",
     "packing: {kind: slub}": f"packing.kind = 'slub': must be {KINDS}, did you mean slab?",
-    "packing: {kind: [slab]}": f"packing.kind = ['slab']: must be {KINDS}",
     "packing: {kind: slab, layers: 0}": "packing.layers = 0: must be a whole number from 1 to 100000",
-    "packing: {kind: slab, layers: 15.0}": "packing.layers = 15.0: must be a whole number from 1 to 100000",
-    "packing: {kind: slab, disks_per_row: 1}": ("packing.disks_per_row = 1: must be a whole number from 2 to 100000"),
     "packing: {kind: slab, layers: 100000, disks_per_row: 100000}": (
         "packing.layers = '9999950000 disks': must have at most 100000000 disks"
     ),
@@ -83,23 +63,15 @@ MALFORMED = {
     "packing: {kind: slab, lattice_constant: touching}": (
         "packing.lattice_constant = 'touching': must be a number greater than 0, at most 1000, or touching-largest"
     ),
-    "packing: {kind: slab, seed: -1}": ("packing.seed = -1: must be a whole number, 0 or greater and less than 2^63"),
-    "packing: {kind: file, path: '', width: 1.0}": "packing.path = '': must be the path of a file",
     # Loads.
     "loads: {disk: 0, force: [0, -1]}": (
         "loads = {'disk': 0, 'force': [0, -1]}: must be a list of loads, [] for gravity alone"
     ),
-    "loads: [{disk: 0}]": "loads[0].force = null: must be given, or displacement",
-    "loads: [{disk: 0, force: -15}]": "loads[0].force = -15: must be two finite numbers [x, z]",
     "loads: [{disk: 0, force: [0, -1, 0]}]": "loads[0].force = [0, -1, 0]: must be two finite numbers [x, z]",
-    "loads: [{disk: 0, force: [0, .nan]}]": "loads[0].force = [0, nan]: must be two finite numbers [x, z]",
     "loads: [{disk: 0, force: [0, 0], torque: big}]": "loads[0].torque = 'big': must be a finite number",
-    "loads: [{disk: top, force: [0, 0]}]": f"loads[0].disk = 'top': {DISK}",
-    "loads: [{disk: -1, force: [0, 0]}]": f"loads[0].disk = -1: {DISK}",
     "loads: [{disk: 0, force: [0, 0]}, {disk: 908, force: [0, 0]}]": (
         "loads[1].disk = 908: must be from 0 to 907, the packing has 908 disks"
     ),
-    "loads: [{disk: {x: left}, force: [0, 0]}]": f"loads[0].disk = {{'x': 'left'}}: {DISK}",
     "loads: [{disk: {row: top, x: 2}, force: [0, 0]}]": f"loads[0].disk = {{'row': 'top', 'x': 2}}: {DISK}",
     "loads: [{disk: {row: 15}, force: [0, 0]}]": (
         "loads[0].disk.row = 15: must be top, bottom or from 0 to 14, the packing has 15 rows"
@@ -108,14 +80,11 @@ MALFORMED = {
         "loads[0].disk.offset = 31: must be from -29 to 30, row 1 has 60 disks"
     ),
     # Protocol and preparation.
-    "protocol: {method: newton}": ("protocol.method = 'newton': must be auto or dynamics or path or minimise"),
     "protocol: {integrator: verlett}": (
         f"protocol.integrator = 'verlett': must be {' or '.join(INTEGRATORS)}, did you mean verlet?"
     ),
     "protocol: {time_step: 0}": "protocol.time_step = 0: must be a number greater than 0, or auto",
     "protocol: {static_finish: no}": "protocol.static_finish = 'no': must be true or false",
-    "protocol: {maximum_steps: 1e6}": ("protocol.maximum_steps = 1000000.0: must be a whole number, 1 or greater"),
-    "preparation: {gravity: fast}": "preparation.gravity = 'fast': must be at-once or slow or frictionless",
 }
 
 
@@ -175,26 +144,16 @@ def test_constructors_raise_the_same_error():
         ({"contact.fricton": 1.0}, r"^contact\.fricton = 1\.0: unknown key, did you mean friction\?"),
         ({"friction": 1.0}, r"^friction = 1\.0: unknown key, did you mean contact\.friction or wall\.friction\? \("),
         (
-            {"protocol.friction": 1.0},
-            r"^protocol\.friction = 1\.0: unknown key, did you mean contact\.friction or wall",
-        ),
-        ({"layers": 3}, r"^layers = 3: unknown key, did you mean packing\.layers\?"),
-        (
             {"loads.force": [0.0, -1.0]},
             r"^loads\.force: loads has 1 items, no item 'force', did you mean loads\.0\.force",
         ),
-        ({"contacts.friction": 1.0}, r"^contacts = \{'friction': 1\.0\}: unknown key, did you mean contact\?"),
-        ({"loads.1.torque": 1.0}, r"^loads\.1: loads has 1 items, no item '1'$"),
         ({"contact.friction.x": 1.0}, r"^contact\.friction = \{'x': 1\.0\}: must be a number from 0 to 1e6"),
         ({3: 1.0}, "^3: must be the path of a key"),
         ({"contact.friction": 1.0, "contact": {"friction": 1.0}}, r"^contact: 'friction' is named twice"),
         ({"contact": Contact(friction=1.0), "contact.friction": 0.5}, r"^contact\.friction: 'friction' is named twice"),
         ({"loads.0.torque": 1.0, "loads[0].torque": 2.0}, r"^loads\[0\]\.torque: 'torque' is named twice"),
-        ({"loads[0]": {"torque": 1.0}, "loads.00.torque": 1.0}, r"^loads\.00\.torque: 'torque' is named twice"),
         ({"loads": [], "loads.0.torque": 1.0}, r"^loads\.0\.torque: 'loads' is named twice"),
-        ({"contact": 3.0, "contact.friction": 1.0}, r"^contact\.friction: 'contact' is named twice"),
         ({"packing": {"kind": "pile", "disks_per_row": 5}}, r"^packing\.disks_per_row = 5: unknown key"),
-        ({"": 1.0}, "must be the path of a key"),
         ({"packing.layers": 2}, r"^loads\[0\]\.disk = 900: must be from 0 to 120"),
     ],
 )
@@ -211,12 +170,8 @@ def test_updates_are_checked(changes, message):
             {"contact.normal_stiffness": "3000 N/m"},
             "at most 1e12; the unit is mg / mean radius, gr.LaboratoryUnits converts",
         ),
-        ({"contact.normal_stiffness": "3000N/m"}, "the unit is mg / mean radius, gr.LaboratoryUnits converts"),
         ({"protocol.ramp_time": "2 s"}, "the unit is sqrt(R/g), gr.LaboratoryUnits converts"),
-        ({"contact.normal_stiffness": "stiff"}, "must be a number greater than 0, at most 1e12"),
         ({"contact.normal_stiffness": "3000"}, "must be a number greater than 0, at most 1e12"),
-        ({"loads.force": [0, -1]}, "loads.force: loads has 1 items, no item 'force', did you mean loads.0.force?"),
-        ({"loads.1.force": [0, -1]}, "loads.1: loads has 1 items, no item '1'"),
     ],
 )
 def test_units_and_paths_are_named_where_they_are_missed(changes, said):

@@ -1,6 +1,5 @@
 """Any valid scene survives YAML; any other input is a SceneError of one line."""
 
-import contextlib
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -168,30 +167,3 @@ def leaves(data, path=()):
 @given(st.text() | st.lists(words | st.sampled_from(list(":-{}[],\n &*!#'\"|>%@0.1e")), max_size=40).map("".join))
 def test_any_text(text):
     scene_or_error(Scene.from_text, text)
-
-
-@MANY
-@given(st.text(alphabet=st.sampled_from("packingcontfrk.[]0123 é²"), max_size=20), anything)
-def test_any_update(key, value):
-    with contextlib.suppress(SceneError):
-        assert isinstance(Scene().updated({key: value}), Scene)
-
-
-@MANY
-@given(st.binary(max_size=200))
-def test_any_file(tmp_path_factory, content):
-    path = tmp_path_factory.getbasetemp() / "fuzz.yaml"
-    path.write_bytes(content)
-    scene_or_error(Scene.from_yaml, path)
-
-
-@MANY
-@given(st.binary(max_size=200) | st.text(alphabet='xzradius,0123456789.-\n\r"# e', max_size=200).map(str.encode))
-def test_any_table(tmp_path_factory, content):
-    path = tmp_path_factory.getbasetemp() / "fuzz.csv"
-    path.write_bytes(b"x,z,radius\n" + content)
-    scene = Scene.from_dict({"packing": {"kind": "file", "path": str(path), "width": 50.0}})
-    try:
-        assert scene.packing.build().n > 0
-    except SceneError as error:
-        assert len(str(error).splitlines()) == 1

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from granular_response.scene import (
-    Load,
     Packing,
     PilePacking,
     RowSelector,
@@ -61,18 +60,6 @@ def test_top_centre_is_not_covered():
     # A disk high above the middle of the box covers only what it is above.
     high = [*floor, (3.2, 9.0)]
     assert resolve_disk("top-centre", scattered(high, np.ones(5), 8.0), np.array(high)) == 4
-
-
-def test_top_centre_looks_further_where_the_middle_is_empty():
-    far = [(1.0, 1.0), (101.0, 1.0), (1.1, 2.9)]
-    assert resolve_disk("top-centre", scattered(far, np.ones(3), 102.0), np.array(far)) == 2
-
-
-def test_top_centre_uses_the_rest_positions():
-    packing = SlabPacking(layers=3, disks_per_row=7).build()
-    moved = packing.position.copy()
-    moved[0] = (7.0, 9.0)  # thrown on top of the rest
-    assert resolve_disk("top-centre", packing, moved) == 0
 
 
 def test_index_and_row():
@@ -135,14 +122,6 @@ def test_missing_disks(selector, message):
     assert str(caught.value) == message
 
 
-def test_packings_from_files_have_no_rows():
-    packing = scattered([(1.0, 1.0)], [1.0], 2.0)
-    with pytest.raises(
-        SceneError, match=r"^loads\[0\]\.disk\.row = 'top': a packing from a file or arrays has no rows"
-    ):
-        resolve_disk(RowSelector(row="top"), packing, packing.position, key="loads[0].disk")
-
-
 def test_sideways_forces_that_sum_to_zero_but_for_rounding_are_allowed():
     loads = [{"disk": k, "force": [force, 0.0]} for k, force in ((3, 0.1), (4, 0.2), (5, -0.3))]
     assert sum(load["force"][0] for load in loads) != 0.0
@@ -150,7 +129,3 @@ def test_sideways_forces_that_sum_to_zero_but_for_rounding_are_allowed():
     loads[0]["force"] = [0.1001, 0.0]
     with pytest.raises(SceneError, match="sum of the forces along x, must be 0"):
         Scene().updated({"packing.sides": "periodic", "loads": loads})
-
-
-def test_the_other_spelling_of_the_middle_of_the_top():
-    assert Load(disk="top-center", force=(0.0, -1.0)) == Load(disk="top-centre", force=(0.0, -1.0))

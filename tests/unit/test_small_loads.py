@@ -70,21 +70,6 @@ def test_nothing_holds_a_periodic_slab_on_a_smooth_floor_along_x():
     assert np.isnan(found[:, :, 0]).all() and np.isfinite(found[:, :, 1]).all()
 
 
-def test_one_contact_that_resists_rolling_bears_a_load():
-    """A disk on the floor and one on top of it; without the resistance nothing would hold the upper one."""
-    table = {"kind": "arrays", "x": [5.0, 5.0], "z": [1.0, 3.0], "radius": [1.0, 1.0], "width": 10.0}
-    rolling = {"friction": 0.5, "rolling_friction": 0.5}
-    both = {"contact": {**rolling, "rolling_stiffness_ratio": 0.5}, "wall": {**rolling, "rolling_stiffness_ratio": 0.5}}
-    loads = [{"disk": 1, "force": [0.0, -1e-3]}]
-    solution = solve_scene(Scene.from_dict({"packing": table, **both, "loads": loads}))
-    added = solution.loaded[0].walls.normal_force.sum() - solution.rest.walls.normal_force.sum()
-    found = influence(solution.problem, solution.rest, np.array([0]))
-    assert found[0] == pytest.approx(np.array([[0.0, -1.0, 0.0], [0.0, -1.0, 0.0]]), abs=1e-6)
-    assert added == pytest.approx(1e-3)
-    on_pairs, on_walls = contact_answers(solution.problem, solution.rest, np.array([1]))
-    assert np.isfinite(on_pairs).all() and on_walls.sum(axis=1) == pytest.approx(np.array([[0.0, 1.0]]), abs=1e-6)
-
-
 def test_an_unknown_that_a_load_holds_adds_nothing():
     load = [{"disk": "top-centre", "displacement": [None, -1e-4]}]
     solution = solve_scene(described({}, 80, SMALL).updated({"loads": load}))

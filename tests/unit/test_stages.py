@@ -1,9 +1,7 @@
 """Stages of a figure group that is made up for it: simulated, drawn, interrupted; progress on a terminal."""
 
-import fcntl
 import io
 import json
-import os
 import time
 from pathlib import Path
 
@@ -16,7 +14,6 @@ from rich.console import Console
 from granular_response.api import terminal
 from granular_response.scene.base import Description
 from granular_response.store import files as store
-from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.resources import Resources, current
 from granular_response_paper import captions
 from granular_response_paper import cli as paper
@@ -134,17 +131,6 @@ def test_a_second_run_of_a_group_is_refused_while_the_first_one_lasts(group, mon
     simulation.simulate(group, workers=1)
 
 
-def test_a_run_that_has_ended_leaves_no_lock(group):
-    """However it ended: the kernel closes what a killed process had open."""
-    Path("data/.squares.checkpoint").mkdir(parents=True)
-    other = os.open("data/.squares.checkpoint", os.O_RDONLY)
-    fcntl.flock(other, fcntl.LOCK_EX)
-    with pytest.raises(GroupError, match="another run is making it"):
-        simulation.simulate(group, workers=1)
-    os.close(other)
-    assert simulation.simulate(group, workers=1) == Path("data/squares.nc")
-
-
 def test_an_interruption_and_what_goes_on_from_it_are_said(group, monkeypatch, capsys):
     def interrupt(done, total, what=""):
         if done == 2:
@@ -164,27 +150,6 @@ def test_an_interruption_and_what_goes_on_from_it_are_said(group, monkeypatch, c
     assert not Path("data/.squares.checkpoint").exists()
     paper.simulate(group, workers=1, params=simulation.PARAMETERS)
     assert capsys.readouterr().err == ""
-
-
-def test_an_error_at_once_leaves_no_folder(group):
-    with pytest.raises(SweepError, match="workers = 0"):
-        simulation.simulate(group, workers=0)
-    assert not Path("data/.squares.checkpoint").exists()
-
-
-def test_the_address_of_a_scheduler_reaches_the_sweep(group, monkeypatch):
-    seen = []
-    monkeypatch.setattr(Study, "simulate", lambda *_, **__: seen.append(current().scheduler) or {})
-    simulation.simulate(group, scheduler="tcp://127.0.0.1:8786")
-    assert seen == ["tcp://127.0.0.1:8786"]
-    assert current() == Resources()
-
-
-def test_progress_is_silent_where_nobody_looks():
-    stream = io.StringIO()
-    with terminal.TerminalProgress(Console(file=stream), patience=0) as progress:
-        progress(1, 2, "scenes")
-    assert stream.getvalue() == ""
 
 
 def test_progress_on_a_terminal_shows_time_left_after_a_while():

@@ -1,7 +1,5 @@
 """Static forces against the dynamics' kernels, and tangents against finite differences."""
 
-import math
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -9,24 +7,13 @@ import pytest
 from small_scenes import free_disks, scene, shaken, started
 
 from granular_response.contact import LAWS
-from granular_response.kernels.statics import SMALL_TURN, Response, _angle, _one_pair
-from granular_response.solvers import stability
+from granular_response.kernels.statics import Response, _one_pair
 from granular_response.solvers.dynamics import Dynamics
-from granular_response.solvers.pattern import Pattern
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.solution import solve_scene
 from granular_response.solvers.stability import Spectrum
-from granular_response.solvers.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 FRICTION = {"none": (0.0, 0.0), "pairs": (0.3, 0.0), "both": (0.3, 0.4), "walls": (0.0, 0.4)}
-
-
-def test_the_angle_of_a_turn_is_that_of_the_library():
-    for tangent in (*np.linspace(-2.0, 2.0, 81) * SMALL_TURN, 1e-300, 0.0, 1.0):
-        for cosine in (1.7, 1e-3, -1.0):
-            sine = tangent * abs(cosine)
-            assert _angle(sine, cosine) == pytest.approx(math.atan2(sine, cosine), rel=4e-16)
 
 
 def problem_with(friction: str, law: str = "linear") -> Problem:
@@ -230,45 +217,3 @@ def test_an_instability_is_found_beside_disks_that_roll_freely(rollers):
     lowest, found = system.deinterleave(vectors[:, np.argmin(every)].real), Spectrum(system, trial).direction
     lowest, found = (v[: 2 * problem.n] / v[1] for v in (lowest, found))  # along x of the disk on top
     np.testing.assert_allclose(found, lowest, atol=1e-6)
-
-
-def test_a_tangent_keeps_short_integers_for_its_pattern():
-    """Half the memory of a million disks' pattern; a banded place in the flat rows may need more digits."""
-    solved = solve_scene(scene(4, 9))
-    system = StaticSystem(solved.problem, solved.rest)
-    matrix = system.tangent(system.trial(known := system.start(solved.rest), known.q))
-    assert {array.dtype for array in (matrix.indices, matrix.indptr, system.storage.across(matrix))} == {np.dtype("i4")}
-    assert system.pattern.transposed(matrix).toarray().tolist() == matrix.toarray().T.tolist()
-
-
-def test_a_pattern_serves_the_next_system_of_the_same_contacts(monkeypatch):
-    """From one load to the next; the tangents are those of a system that found nothing to take over."""
-    monkeypatch.setattr(sys.modules[Pattern.__module__], "_last", [])
-    solved = solve_scene(scene(4, 9))
-    problem, loaded = solved.problem, solved.loaded[0]
-    first, second = StaticSystem(problem, solved.rest), StaticSystem(problem, loaded)
-    assert second.pattern is first.pattern
-    fewer = replace(loaded, pairs=replace(loaded.pairs, **{k: v[1:] for k, v in vars(loaded.pairs).items()}))
-    smooth = problem.without_friction()
-    others = [StaticSystem(problem, fewer), StaticSystem(smooth, loaded)]
-    assert len({id(system.pattern) for system in (first, *others)}) == 3
-    alone = StaticSystem(problem, loaded)
-    assert alone.pattern is not second.pattern
-    known = alone.start(loaded)
-    one, other = (system.tangent(system.trial(known, known.q)) for system in (second, alone))
-    assert one.toarray().tolist() == other.toarray().tolist()
-
-
-def test_disks_that_slide_alone_call_for_no_eigenvalues(monkeypatch):
-    """What they can do without a force leaves the rest of the tangent with a positive symmetric part."""
-    friction = {"contact__friction": 0.5, "wall__friction": 0.5}
-    problem, state = free_disks([(4.0 * i, 0.9995) for i in range(1, 8)], **friction)
-    system, known = started(problem, state)
-    trial = system.trial(replace(known, spring=np.ones(len(known.spring))), known.q)
-    assert (trial.status == SLIDING).sum() == 7
-
-    def none_asked(*_, **__):
-        raise AssertionError("eigenvalues were asked for")
-
-    monkeypatch.setattr(stability, "lowest_real", none_asked)
-    assert Spectrum(system, trial).negative_modes == 0

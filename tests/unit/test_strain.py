@@ -13,7 +13,6 @@ from granular_response.solvers.strain import FOLLOWING, strained
 from granular_response.state import STICKING
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
-from granular_response.theory.moduli import Moduli
 
 LAYERS, ROW = 8, 6
 ALIKE = pytest.approx
@@ -117,22 +116,6 @@ def test_what_follows_the_strain_is_stiffer_than_what_relaxes(disordered):
         assert (np.diag(stiff) > np.diag(soft)).all()
     cuts = strained(disordered.problem, disordered.rest, "affine").cuts[1, :, 1]
     assert np.ptp(cuts) > 1e-3 * cuts.mean()  # affine motion leaves forces out of balance
-
-
-def test_the_forces_at_rest_add_as_much_as_they_are(disordered):
-    with_forces = strained(disordered.problem, disordered.rest).moduli
-    without = strained(disordered.problem, disordered.rest, prestress=False).moduli
-    change = np.abs(with_forces - without).max()
-    assert 0.0 < change < 10.0 * disordered.rest.pairs.normal_force.max()
-
-
-def test_moduli_along_x_are_those_of_a_box_of_another_width():
-    # one packing twice beside itself has the same moduli
-    scene = described({"packing.lattice_constant": 1.999, "preparation.gravity": "frictionless"})
-    narrow, wide = solve_scene(scene), solve_scene(scene.updated({"packing.disks_per_row": 2 * ROW}))
-    found = [strained(one.problem, one.rest).moduli for one in (narrow, wide)]
-    assert found[0] == ALIKE(found[1], rel=1e-6, abs=1e-6)
-    Moduli(*found[0][[0, 1, 0, 2], [0, 1, 1, 2]])
 
 
 def test_what_cannot_be_strained_is_refused(disordered):

@@ -1,38 +1,15 @@
 """What the studies of fields, piles and torques measure themselves, on hand-made input."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from observe_states import slab, with_pairs
 
 from granular_response.observe import stress as coarse
-from granular_response.scene import PilePacking, Scene, SlabPacking
-from granular_response.solvers.problem import Problem
+from granular_response.scene import SlabPacking
 from granular_response.theory.lattice import poisson_ratio
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab
 from granular_response_paper.groups.friction_fields.simulate.stress import axis_measures, harmonic_lattice
-from granular_response_paper.groups.pile_dip.simulate import mirrored
-from granular_response_paper.groups.stiffness_ratio_crossover.simulate import elastic_bodies
-from granular_response_paper.groups.torque.simulate import ring_ratio
-
-
-def test_harmonic_lattice_is_in_balance() -> None:
-    packing = SlabPacking(layers=5, disks_per_row=11).build()
-    disk = packing.n - 6
-    found = harmonic_lattice(packing, disk, 1.0, 2.0)
-    pairs = packing.neighbour_pairs()
-    net = np.zeros((packing.n, 2))
-    m = len(pairs)
-    np.add.at(net, pairs[:, 0], found.force[:m])
-    np.add.at(net, pairs[:, 1], -found.force[:m])
-    wall_disk = np.argmin(np.linalg.norm(packing.position[:, None] - found.point[None, m:], axis=2), axis=0)
-    np.add.at(net, wall_disk, found.force[m:])
-    net[disk, 1] -= 1.0
-    np.testing.assert_allclose(net, 0.0, atol=1e-12)
-    np.testing.assert_allclose(np.linalg.norm(found.branch[:m], axis=1), 2.0)
-    np.testing.assert_allclose(np.linalg.norm(found.branch[m:], axis=1), 1.0)
 
 
 def test_harmonic_lattice_is_isotropic_where_it_is_fine() -> None:
@@ -60,30 +37,3 @@ def test_axis_measures_see_the_direction_and_the_share() -> None:
     assert angle == pytest.approx(30.0)
     counts = [(np.abs(depth - g) < 0.2).sum() for g in (2.5, 3.5, 4.5)]
     assert share == pytest.approx(np.mean([6.0 / (6.0 + n - 2) for n in counts]))
-
-
-def test_ring_ratio_sums_in_rings() -> None:
-    change = np.array([[0.0, 0.0, 0.0, 9.0], [1.0, 2.0, 3.0, 9.0]])
-    reference = np.array([2.0, 2.0, 1.0, 9.0])
-    distance = np.array([0.0, 0.9, 1.0, 7.0])
-    found = ring_ratio(change, reference, distance, np.array([0.0, 1.0, 2.0, 3.0]))
-    np.testing.assert_allclose(found, [[0.0, 0.0, np.nan], [0.75, 3.0, np.nan]])
-
-
-def test_mirrored_twice_is_the_state() -> None:
-    packing = PilePacking(layers=3).build()
-    state = Problem.from_scene(Scene.from_dict({"packing": {"kind": "pile", "layers": 3}, "loads": []})).bare_state()
-    moved = replace(state, position=state.position + np.linspace(0.0, 1e-3, 2 * packing.n).reshape(-1, 2))
-    image = mirrored(moved, packing)
-    assert np.abs(image.position - moved.position).max() > 1e-4
-    np.testing.assert_allclose(mirrored(image, packing).position, moved.position, atol=1e-14)
-
-
-def test_elastic_bodies_share_the_force_out() -> None:
-    x = np.arange(-20.0, 21.0, 2.0)
-    found = elastic_bodies(np.array([0.1, 0.9]), x, 4, 42.0)
-    shares = found["profile"].sum("floor_disk")
-    np.testing.assert_allclose(shares.sel(body="smooth floor"), 1.0, atol=1e-6)
-    assert np.all((shares.sel(body="half plane") > 0.8) & (shares.sel(body="half plane") < 1.0))
-    dip = found["central_dip"].sel(body="half plane", rotations="free").values
-    assert dip[0] > 0.0 > dip[1]

@@ -5,7 +5,6 @@ import os
 import numpy as np
 import pytest
 import yaml
-from places import ROOT
 
 from granular_response.scene import SceneError
 from granular_response.store import files as store
@@ -83,18 +82,3 @@ def test_mistakes_are_one_line_each(file, tmp_path):
     file.write_text(yaml.safe_dump({**SMALL, "realizations": 0}))
     with pytest.raises(SceneError, match=r"params\.yaml: realizations = 0"):
         survey.read_parameters(file)
-
-
-def test_the_survey_extends_the_ensembles_of_the_pipeline():
-    """Scene, protocol and seeds are those of polydisperse_averages."""
-    pipeline = yaml.safe_load((ROOT / "params.yaml").read_text())["polydisperse_averages"]
-    own = yaml.safe_load((ROOT / "survey" / "params.yaml").read_text())
-    for key in ("scene", "time_step_part", "longest_time_step", "collapse_depth"):
-        assert own[key] == pipeline[key]
-
-
-def test_its_pipeline_names_a_stage_and_the_sources_of_every_block():
-    stage = yaml.safe_load((ROOT / "survey" / "dvc.yaml").read_text())["stages"]["simulate"]
-    declared = {path.removeprefix("../src/").removeprefix("granular_response/") for path in stage["do"]["deps"]}
-    assert {*survey.SOURCES, "granular_response_paper/survey"} <= declared
-    assert stage["foreach"] == "${blocks}"

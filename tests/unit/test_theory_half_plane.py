@@ -36,15 +36,6 @@ def test_peaks_are_where_the_pressure_is_largest(moduli: Moduli) -> None:
     assert np.sqrt(max(0.0, -moduli.peak_criterion)) == pytest.approx(largest, abs=2e-5)
 
 
-def test_isostatic_limit_sends_the_force_along_the_lattice_directions() -> None:
-    nearly = lattice.moduli(Springs(1e-9, 1.0))
-    assert np.sqrt(-nearly.peak_criterion) == pytest.approx(np.tan(np.pi / 6), rel=1e-8)
-    within = quad(
-        lambda x: float(half_plane.pressure(x, 1.0, nearly)), 0.55, 0.6, points=[np.tan(np.pi / 6)], limit=500
-    )[0]
-    assert within == pytest.approx(0.5, abs=1e-3)
-
-
 def test_rays_carry_the_force_and_widen_like_a_random_walk() -> None:
     x = np.linspace(-300.0, 300.0, 60_001)
     for depth in (40.0, 160.0):
@@ -56,17 +47,3 @@ def test_rays_carry_the_force_and_widen_like_a_random_walk() -> None:
         variance = ((x - mean) ** 2 * right).sum() / right.sum()
         assert mean == pytest.approx(depth / np.sqrt(3.0), rel=1e-9)
         assert variance == pytest.approx(0.1 * depth, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: half_plane.pressure(0.0, 0.0, SOLIDS[0]), r"depth = 0\.0"),
-        (lambda: rays.pressure(0.0, -1.0, angle=0.5, diffusion_length=1.0), r"depth = -1\.0"),
-        (lambda: rays.pressure(0.0, 1.0, angle=2.0, diffusion_length=1.0), r"angle = 2\.0"),
-        (lambda: rays.pressure(0.0, 1.0, angle=0.5, diffusion_length=0.0), r"diffusion_length = 0\.0"),
-    ],
-)
-def test_bad_input_is_named(call, message) -> None:
-    with pytest.raises(ValueError, match=message):
-        call()

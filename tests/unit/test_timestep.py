@@ -28,15 +28,6 @@ def test_unstable_time_step_is_one_clear_line():
     assert "\n" not in str(error.value)
 
 
-def test_undamped_limit_of_verlet_is_two_over_the_frequency():
-    assert oscillator_limit("verlet", 100.0, 0.0) == pytest.approx(0.2, rel=1e-2)
-
-
-def test_softer_disks_allow_longer_steps():
-    soft = stability_limit(Problem.from_scene(scene(contact__normal_stiffness=300.0)))
-    assert soft == pytest.approx(10**0.5 * stability_limit(Problem.from_scene(scene())), rel=1e-3)
-
-
 @pytest.mark.parametrize("integrator", ["beeman", "verlet", "gear"])
 def test_a_spring_advanced_by_the_predicted_velocity_allows_shorter_steps_than_one_on_the_position(integrator):
     """Without much damping; with it the dashpot decides."""
@@ -95,15 +86,6 @@ def test_the_step_is_safe_where_small_disks_gather():
     assert resolve_time_step(slab) == PAPERS_TIME_STEP and time_step_reason(slab) == "the paper's"
 
 
-def test_one_small_disk_shortens_the_step():
-    positions = [[10.0, 1.0], [12.0, 1.0], [11.0, 2.8]]
-    equal, _ = free_disks(positions)
-    small, _ = free_disks(positions, radius=[1.3, 1.3, 0.4])
-    assert stability_limit(small) < 0.6 * stability_limit(equal)
-    slab = Problem.from_scene(scene(packing__polydispersity=0.25))
-    assert stability_limit(slab) == stability_limit(Problem.from_scene(scene()))
-
-
 def test_a_light_disk_on_a_stiff_floor_shortens_the_step():
     """Its own mass on the springs of the wall: with its neighbours' alone it never came to rest."""
     own = {"kind": "arrays", "x": [1.0, 3.0, 5.0], "z": [1.0] * 3, "radius": [1.0] * 3, "mass": [1.0, 0.05, 1.0]}
@@ -111,29 +93,3 @@ def test_a_light_disk_on_a_stiff_floor_shortens_the_step():
     soft, stiff = (Scene.from_dict({**described, "wall": {"normal_stiffness": k}}) for k in (600.0, 6e4))
     assert stability_limit(Problem.from_scene(stiff)) < 0.5 * stability_limit(Problem.from_scene(soft))
     assert solve_scene(stiff).rest.certificate.stable
-
-
-def test_small_disks_may_touch_in_packings_of_ones_own():
-    own = {"kind": "arrays", "x": [1.0, 2.5, 3.0], "z": [1.0, 0.25, 0.25], "radius": [1.0, 0.25, 0.25]}
-    problem = Problem.from_scene(Scene.from_dict({"packing": own, "contact": {"normal_stiffness": 600.0}, "loads": []}))
-    assert resolve_time_step(problem) == pytest.approx(0.6 * stability_limit(problem, smallest=True))
-
-
-def test_load_factors_count_in_the_largest_force():
-    """With the 3/2 law contacts are as stiff as the largest load makes them."""
-    hertz = {"contact__law": "hertz", "contact__normal_stiffness": 3e4, "contact__friction": 0.0}
-    limits = [
-        stability_limit(
-            Problem.from_scene(
-                scene(
-                    3,
-                    5,
-                    **hertz,
-                    loads=[{"disk": "top-centre", "force": [0.0, -force]}],
-                    protocol__load_factors=[factor],
-                )
-            )
-        )
-        for force, factor in ((1.0, 1000.0), (1000.0, 1.0), (1.0, 1.0))
-    ]
-    assert limits[0] == limits[1] < limits[2]

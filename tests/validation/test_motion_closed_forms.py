@@ -37,28 +37,6 @@ def test_a_fall_on_the_floor_and_its_rebound():
     assert found["contacts"].values.tolist() == [0, 0, 0, 1, 0]
 
 
-@pytest.mark.parametrize("friction", [0.2, 0.8])
-def test_a_disk_slips_until_it_rolls(friction):
-    """Slip ends at u0 / (3 mu g) with 2/3 of the speed (MFIX DEM04, for disks)."""
-    smooth = {"friction": friction, "damping_ratio": 0.0}
-    disk = scene([500.0], [1.0 - 1.0 / 6000.0], weightless=False, contact=smooth, wall=smooth, vx=1.0)
-    end = 1.0 / (3.0 * friction)
-    found = gr.motion(disk.updated({"protocol.time_step": 1e-4}), [0.5 * end, end], progress=False)
-    u, spin = found["velocity"].sel(axis="x").isel(disk=0).values, found["angular_velocity"].isel(disk=0).values
-    np.testing.assert_allclose(u, [5.0 / 6.0, 2.0 / 3.0], atol=2e-4)
-    np.testing.assert_allclose(-spin, [1.0 / 3.0, 2.0 / 3.0], atol=2e-4)
-
-
-@pytest.mark.parametrize("angle", [35.0, 50.0, 65.0])
-def test_the_rebound_of_an_oblique_impact(angle):
-    """Gross sliding takes 2 mu of the tangent of the angle, whatever the inertia (MFIX DEM05)."""
-    friction, a = 0.0935, math.radians(angle)
-    rough = {"friction": friction, "damping_ratio": 0.0}
-    disk = scene([500.0], [1.01], contact=rough, wall=rough, vx=math.sin(a), vz=-math.cos(a))
-    x, z = gr.motion(disk, [0.2], progress=False)["velocity"].values[0, 0]
-    assert math.atan2(x, z) == pytest.approx(math.atan(math.tan(a) - 2.0 * friction), rel=2e-4)
-
-
 def test_a_collision_keeps_momentum_and_its_restitution():
     """Linear springs and dashpots: exp(-pi zeta / sqrt(1 - zeta^2)) (Spheral, TwoParticleCollision).
 
@@ -73,18 +51,6 @@ def test_a_collision_keeps_momentum_and_its_restitution():
     np.testing.assert_allclose(found["momentum"], 0.0, atol=1e-15)
     np.testing.assert_allclose(found["angular_momentum"], 0.0, atol=1e-12)
     assert float(found["kinetic_energy"][1]) == pytest.approx(0.25 * apart**2, rel=1e-12)
-
-
-def test_the_largest_overlap_of_an_impact_by_the_law_of_hertz():
-    """m v^2 / 2 = 2/5 kappa xi^(5/2) (Chung and Ooi 1): all energy is in the contact where the disk turns round."""
-    kappa, speed = (2.0 * 6000.0 / 3.0) ** 1.5, 0.5
-    law = {"law": "hertz", "friction": 0.0, "damping_ratio": 0.0}
-    disk = scene([500.0], [1.0], contact=law, vz=-speed)
-    times = np.linspace(0.005, 0.025, 401)
-    found = gr.motion(disk.updated({"protocol.time_step": 2.5e-5}), times, progress=False)
-    overlap = 1.0 - float(found["position"].sel(axis="z").min())
-    assert overlap == pytest.approx((5.0 * speed**2 / (4.0 * kappa)) ** 0.4, rel=1e-4)
-    assert float(found["elastic_energy"].max()) == pytest.approx(0.5 * speed**2, rel=1e-3)
 
 
 def test_times_that_are_looked_at_change_nothing_of_what_follows():

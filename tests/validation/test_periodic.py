@@ -17,7 +17,6 @@ from granular_response.observe.stress import (
 from granular_response.observe.teardrop import teardrop
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.close_pairs import close_pairs
-from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import solve_scene
 from granular_response.store.result import to_dataset
 from granular_response.theory import lattice
@@ -58,15 +57,6 @@ def test_the_response_is_the_same_one_wherever_the_load_is(friction, law):
         assert np.roll(first, column - 3) == pytest.approx(other, abs=1e-10)
 
 
-def test_the_middle_disk_of_the_top_row_is_loaded():
-    for layers in (7, 8):
-        scene = Scene().updated({"packing": {"layers": layers, "disks_per_row": ROW, "sides": "periodic"}})
-        problem = Problem.from_scene(scene)
-        problem = problem.with_loads(problem.packing.position)
-        assert problem.load_disk.tolist() == [(layers - 1) * ROW + ROW // 2]
-        assert problem.packing.width == 2.0 * ROW and problem.n == layers * ROW
-
-
 def test_neighbours_across_the_sides():
     """Six in the bulk, four at the floor and on top; the search finds those of the lattice."""
     packing = slab("top-centre").packing.build()
@@ -77,16 +67,6 @@ def test_neighbours_across_the_sides():
     for position in (packing.position, shifted):
         found = close_pairs(position, packing.radius, 0.1, packing.box.period)
         assert np.array_equal(np.stack(found, axis=1), pairs)
-
-
-def test_a_disordered_packing_has_no_place_of_its_own():
-    """Disks listed from another place on fall into the same packing."""
-    changes = {"packing.polydispersity": 0.1, "packing.lattice_constant": "touching-largest", "loads": []}
-    problem = Problem.from_scene(slab("top-centre", **changes))
-    assert len(problem.bare_state().walls.first) == ROW
-    rest = solve_scene(slab("top-centre", **changes)).rest
-    assert rest.reached.certificate.stable
-    assert floor_force(rest, np.arange(problem.n)).sum() == pytest.approx(problem.n, rel=1e-9)
 
 
 def test_stress_beyond_a_side_is_that_at_the_other():
@@ -174,14 +154,3 @@ def test_the_response_at_a_place_counts_images():
     expected = smoothed_response([0.5 * period], copies, np.tile(result.floor_response.values, 7), 2.0)[:, 0]
     assert result.response_at(0.5 * period, smooth=2.0).values == pytest.approx(expected, rel=1e-12)
     assert result.response_at(-0.5 * period, smooth=2.0).values == pytest.approx(expected, rel=1e-12)
-
-
-def test_a_disk_beyond_a_side_covers_the_one_below_it():
-    covered = {"x": [0.9, 38.9, 39.9], "z": [1.0, 1.0, 2.731], "radius": 1.0, "width": 40.0}
-    rest = {
-        "contact": {"friction": 0.8},
-        "wall": {"friction": 0.8},
-        "loads": [{"disk": "top-centre", "force": [0, -1]}],
-    }
-    scene = gr.Scene.from_arrays(**covered, sides="periodic", scene=rest)
-    assert gr.solve(scene, progress=False).to_dataset()["loaded_disk"].values.tolist() == [2]

@@ -1,7 +1,6 @@
 """The stored survey: a few of its realizations simulated again, and that it holds what its parameters and notes say."""
 
 from dataclasses import replace
-from importlib.util import module_from_spec, spec_from_file_location
 
 import numpy as np
 import pytest
@@ -72,16 +71,3 @@ def test_what_is_stored_is_what_the_parameters_name(stored, block):
     marks = store.read_attributes(FOLDER / "data" / f"{block}.nc")
     assert marks["block"] == block
     assert yaml.safe_load(marks["parameters"])["collapse_depth"] == PARAMETERS.collapse_depth
-
-
-def test_it_is_small(stored):
-    assert sum(path.stat().st_size for path in (FOLDER / "data").glob("*.nc")) < 10e6
-
-
-def test_the_notes_hold_its_tables():
-    # by its path: the benchmarks have a module of the same name
-    found = spec_from_file_location("survey_document", FOLDER / "document.py")
-    document = module_from_spec(found)
-    found.loader.exec_module(document)
-    notes = document.NOTES.read_text(encoding="utf-8")
-    assert notes == f"{document.text(document.measured())}\n", "python survey/document.py"

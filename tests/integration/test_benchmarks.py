@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import importlib
 import json
 
@@ -25,91 +24,9 @@ def document(script):
     return script("document")
 
 
-def test_the_stored_page_is_the_one_made_from_the_stored_numbers(document):
-    found = document.read()
-    assert (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8") == document.text(found)
-    assert document.quoted(found) in (ROOT / "README.md").read_text(encoding="utf-8")
-    costs = (ROOT / "docs" / "_generated" / "costs.md").read_text(encoding="utf-8")
-    assert costs == f"{document.costs(found)}\n" and costs.count("\n") == 2 + len(document.SIZES)
-
-
-def test_a_missed_goal_and_a_missing_benchmark_are_said(document):
-    found = copy.deepcopy(document.read())
-    rows = {row["what"]: row for row in document.goals(found)}
-    kept = rows["Speed of a step over LAMMPS, friction, 908 disks"]
-    assert kept["goal"] == "at least 10.0 times" and kept["met"] in (True, False)
-    for run in found["kernel"]["runs"]:
-        run["over_lammps"] = 1.5
-    rows = {row["what"]: row for row in document.goals(found)}
-    assert rows["Speed of a step over LAMMPS, friction, 908 disks"]["met"] is False
-    assert "1.5 times — **missed**" in document.text(found)
-    del found["kernel"]
-    assert "Not measured yet" in document.text(found)
-    rows = {row["what"]: row for row in document.goals(found)}
-    assert rows["Speed of a step over LAMMPS, friction, 908 disks"]["measured"] == "not measured"
-
-
-@pytest.mark.parametrize(
-    ("file", "rows", "said"),
-    [
-        ({"measured_on": "A"}, [{}, {}], "A"),
-        ({"measured_on": "A"}, [{"measured_on": "A"}, {"measured_on": "B"}], "A and B"),
-        ({"measured_on": "A"}, [{"measured_on": "A"}, {}], "A and a processor that was not recorded"),
-        ({}, [{}], "a processor that was not recorded"),
-    ],
-)
-def test_a_section_says_what_it_was_measured_on(document, file, rows, said):
-    """Also where some rows were kept from an earlier measurement."""
-    assert document.measured_on({**file, "runs": rows}) == said
-
-
-def test_the_page_says_what_its_sections_were_measured_on(document):
-    found = document.read()
-    text = document.text({"machine": found["machine"], "scale": found["scale"]})
-    assert f"The processor is {document.measured_on(found['scale'])} unless the section names another." in text
-
-
-def test_what_was_measured_is_written_with_the_processor(script, tmp_path):
-    timing = script("timing")
-    timing.write(str(tmp_path / "a.json"), {"runs": [1.23456789]})
-    assert json.loads((tmp_path / "a.json").read_text()) == {"measured_on": timing.processor(), "runs": [1.23457]}
-    timing.write(str(tmp_path / "b.json"), {"goals": []}, measured=False)
-    assert json.loads((tmp_path / "b.json").read_text()) == {"goals": []}
-
-
-def test_every_stored_benchmark_is_drawn_and_named(document):
-    found = document.read()
-    assert set(found) <= {*document.TEXTS, "machine"}
-    for benchmark in set(found) & set(document.pictures.DRAWN):
-        drawn = document.pictures.DRAWN[benchmark](found[benchmark])
-        assert drawn.axes and all(panel.has_data() for panel in drawn.axes)
-
-
 @pytest.mark.parametrize("name", SCRIPTS)
 def test_every_script_finds_what_it_imports(script, name):
     assert script(name).__doc__
-
-
-@pytest.mark.parametrize("friction", [0.0, 0.2])
-def test_kernels_are_timed_whole_and_in_parts(script, monkeypatch, friction):
-    kernel = script("kernel")
-    monkeypatch.setattr(kernel.lammps, "executable", lambda: None)
-    monkeypatch.setattr(kernel, "REPEATS", 2)
-    row = kernel.measure(4, 9, friction, 100, 20)
-    assert row["disks"] == 34 and row["microseconds"] > 0.0 and row["over_lammps"] is None
-    rows = kernel.profile(4, 9, friction, 100)
-    assert {row["part"] for row in rows} >= {"pair forces", "wall forces", "integration", "whole step"}
-    assert all(row["microseconds"] >= 0.0 for row in rows if row["microseconds"] is not None)
-
-
-def test_shares_of_a_solution_are_whole_and_of_the_right_parts(script):
-    shares, timing = script("shares"), script("timing")
-    falls = timing.scene(0.2).updated({"packing.layers": 10, "packing.disks_per_row": 21})
-    row = shares.measure("a fall", lambda: shares.settled(falls))
-    assert sum(row[part] for part in (*dict(shares.PARTS), shares.REST)) == pytest.approx(1.0)
-    assert row["dynamics"] > 0.5
-    assert shares.part_of("~") == "matrices and arrays"
-    assert shares.part_of("src/granular_response/solvers/path.py") == shares.REST
 
 
 def test_what_skipping_forces_on_changes_no_result(script):
@@ -156,18 +73,6 @@ def test_codes_that_are_not_installed_are_named(script, nothing_installed, monke
     assert "apt-get install liggghts" in capsys.readouterr().out
 
 
-def test_responses_of_ours_alone_come_within_their_errors(script, nothing_installed, monkeypatch, tmp_path):
-    responses = script("responses")
-    monkeypatch.setattr(responses, "REPEATS", 1)
-    monkeypatch.setattr(responses.precision, "SCENES", {"frictionless": (0.0, 4.0)})
-    monkeypatch.setattr(responses, "OURS", {"frictionless": {"minimisation": [{"method": "auto"}]}})
-    responses.main(str(tmp_path / "responses.json"))
-    found = json.loads((tmp_path / "responses.json").read_text())
-    (row,) = found["reached"]
-    assert row["least_error"] < 1e-9
-    assert row["1e-05"] == found["runs"][0]["processor"] > 0.0
-
-
 def test_the_least_time_within_an_error_is_of_the_runs_within_it(script):
     runs = [
         {"scene": "s", "code": "c", "error": error, "seconds": 9.0, "processor": time}
@@ -191,38 +96,6 @@ def test_a_bounce_never_gains_energy_and_slides_as_the_closed_form_says(script):
     assert (bounce.energy(damped) < 1.0).all()
     # a linear spring and dashpot along the normal, until their spring is at rest length
     assert -damped.velocity[:, 1] / bounce.incoming()[:, 1] == pytest.approx(0.163, abs=1e-3)
-
-
-def test_stored_bounces_agree_with_codes_that_have_the_same_law(document):
-    compared = {row["code"]: row for row in document.read()["bounces"]["compared"]}
-    for code in ("LAMMPS, granular", "newest LAMMPS, granular", "LAMMPS, hooke/history"):
-        assert max(compared[code]["from_ours_weak"], compared[code]["from_ours_strong"]) < 1e-3
-        assert abs(compared[code]["excess"]) < 1e-5
-    # what lammps/lammps#5007 is about
-    assert compared["newest LAMMPS, hooke/history"]["excess"] > 0.05
-
-
-def test_the_fastest_version_and_style_of_a_code_is_quoted(document):
-    steps = [
-        ("granular_response", 1.0),
-        ("LAMMPS, granular", 18.0),
-        ("newest LAMMPS, hooke/history", 11.4),
-        ("YADE", 53.0),
-    ]
-    reached = [
-        ("granular_response, load path", 2.0),
-        ("granular_response, dynamics", 1.0),
-        ("LAMMPS", 9.0),
-        ("YADE", None),
-    ]
-    found = {
-        "arena": {"runs": [{"disks": 908, "code": code, "times_ours": times} for code, times in steps]},
-        "responses": {"reached": [{"scene": "friction", "code": code, "0.0001": time} for code, time in reached]},
-    }
-    assert [row["measured"] for row in document.over_others(found)] == [
-        "LAMMPS 11.4, YADE 53",
-        "friction 0.2, 15 mg, error below 1e-4: LAMMPS 9",
-    ]
 
 
 @pytest.mark.parametrize("friction", [0.2, 0.0])
