@@ -1,6 +1,5 @@
 """Any valid scene survives YAML; any other input is a SceneError of one line."""
 
-
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
