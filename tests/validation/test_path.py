@@ -422,16 +422,16 @@ def test_an_error_that_is_not_measured_costs_no_result(monkeypatch):
     load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
     problem, rest = at_rest(scene(3, 5, contact__friction=0.2, loads=load))
     (whole,) = follow(problem, rest, [3.0], together=0.3)
-    followed, calls = path._Path._followed, []
+    followed, calls = path.followed, []
 
-    def failing(self, *args, **named):
+    def failing(leg, *args, **named):
         calls.append(args)
         if len(calls) == 2:
-            self.record.events.append(None)
+            leg.record.events.append(None)
             raise PathError("no way on")
-        return followed(self, *args, **named)
+        return followed(leg, *args, **named)
 
-    monkeypatch.setattr(path._Path, "_followed", failing)
+    monkeypatch.setattr(path, "followed", failing)
     record = PathRecord()
     (found,) = follow(problem, rest, [3.0], together=0.3, record=record)
     assert np.isfinite(whole.reached.events_error) and found.reached.events_error == np.inf
@@ -452,14 +452,14 @@ def test_what_increments_leave_out_is_measured_in_a_short_leg_too():
 def test_a_path_does_not_step_for_ever_where_no_statuses_go_on(monkeypatch):
     """A disk that is pressed in by 0.79 radii: contacts change to and fro at one load, again and again."""
     stepped = []
-    lost = path.lost
+    lost = path.events.lost
 
     def counting(kind, *args):
         stepped.append(kind)
         assert len(stepped) < 100
         return lost(kind, *args)
 
-    monkeypatch.setattr(path, "lost", counting)
+    monkeypatch.setattr(path.events, "lost", counting)
     load = [{"disk": "top-centre", "displacement": [None, -0.79]}]
     packing = {"kind": "slab", "layers": 4, "disks_per_row": 7}
     solution = solve_scene(gr.Scene.from_dict({"packing": packing, "contact": {"friction": 0.2}, "loads": load}))

@@ -20,7 +20,8 @@ from .dynamics import Dynamics, Stop, relax
 from .energy import minimise
 from .equilibrium import certify, check_overlaps, finish, reaction
 from .nested import rest_start
-from .path import follow, lost
+from .path import follow
+from .path.events import lost
 from .problem import Problem
 from .settle import PROTOCOL, NotSettled, not_settled, settle
 from .size import check_memory

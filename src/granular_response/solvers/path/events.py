@@ -13,7 +13,7 @@ ROLLING = dict(zip(("slides", "sticks", "reverses"), ROLLING_EVENTS, strict=True
 
 def changes(point: Point, after: np.ndarray, until: float | None = None) -> list[Event]:
     """The events in which contacts get the signed statuses ``after`` (m + w,), at the latest ``until``."""
-    system, found = point.section.system, list[Event]()
+    system, found = point.system, list[Event]()
     if not len(changed := np.flatnonzero(point.sense != after)):
         return found
     m, position = len(system.first), point.position

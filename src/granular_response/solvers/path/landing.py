@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from ..equilibrium import OPTIONS as NEWTON
 from ..equilibrium import attainable, external_force
 from ..rates import Changes, Rates, changed
 from ..system import Trial
-from .points import OPTIONS, Leg, Point, largest
+from .points import Leg, Point, largest
 
 
 @dataclass(frozen=True)
@@ -40,22 +39,14 @@ class Aim:
         return replace(self, most=most, length=np.inf)
 
 
-class Solved(NamedTuple):
-    """An equilibrium with the statuses of some rates, and the Newton steps to it."""
-
-    factor: float
-    trial: Trial
-    steps: int
-
-
 def landed(leg: Leg, point: Point, rates: Rates) -> Point | None:
     """Where the next contact changes, or the target or the end of the longest increment if that comes first."""
     fastest, left = largest(rates.velocity[: 2 * leg.problem.n]), abs(leg.target - point.factor)
-    if fastest * left > OPTIONS.listed_again:
-        left = OPTIONS.listed_again / fastest
+    if fastest * left > leg.options.listed_again:
+        left = leg.options.listed_again / fastest
     contact, length = rates.changes.first()
     aim = Aim(left, length, contact, int(rates.changes.what[contact]) if np.isfinite(length) else events.NOTHING)
-    for _ in range(OPTIONS.landings):
+    for _ in range(leg.options.landings):
         tried = _tried(leg, point, rates, aim)
         if not isinstance(tried, Aim):
             return tried
@@ -65,10 +56,10 @@ def landed(leg: Leg, point: Point, rates: Rates) -> Point | None:
 
 def _tried(leg: Leg, point: Point, rates: Rates, aim: Aim) -> Point | Aim | None:
     """Where an increment ends, or the next to try; None where there is none."""
-    event, length, force = aim.event, min(aim.length, aim.most), point.section.rates.force
+    event, length, force = aim.event, min(aim.length, aim.most), point.rate_problem.force
     found = smooth(leg, point, rates, length, event)
     if found is None:
-        return aim.shorter(0.5 * length) if 0.5 * length * leg.unit >= OPTIONS.beyond else None
+        return aim.shorter(0.5 * length) if 0.5 * length * leg.unit >= leg.options.beyond else None
     factor, trial, steps = found
     way = abs(factor - point.factor)
     if event is not None and leg.direction * (factor - point.factor) * leg.unit < -force:
@@ -82,7 +73,7 @@ def _tried(leg: Leg, point: Point, rates: Rates, aim: Aim) -> Point | Aim | None
         velocity = _velocity(point, trial, rates.sense)
         if event is not None and float(velocity @ rates.velocity) < 0.0:
             return aim.shorter(0.5 * length)  # another branch, beyond a limit point of the load
-    then = point.section.rates.changes(trial, velocity, rates.sense)
+    then = point.rate_problem.changes(trial, velocity, rates.sense)
     passed = np.flatnonzero((then.rate > 0.0) & (then.left < -force))
     if len(passed):  # another contact came first
         back = -then.left[passed] / then.rate[passed]
@@ -92,23 +83,22 @@ def _tried(leg: Leg, point: Point, rates: Rates, aim: Aim) -> Point | Aim | None
         return other.shorter(0.5 * way) if event is not None and contact == aim.contact else other
     if again and (turn := _turn(leg, point, rates, then, way)) is not None:
         return aim.shorter(turn)
-    if (bent := leg.stiffest * trial.bend) > OPTIONS.bent:
-        return aim.shorter(min(0.5, 0.8 * (OPTIONS.bent / bent) ** (1 / 3)) * way)
-    if steps > OPTIONS.outdated:
-        point.section.system.outdate(rates.factor)
+    if (bent := leg.stiffest * trial.bend) > leg.options.bent:
+        return aim.shorter(min(0.5, 0.8 * (leg.options.bent / bent) ** (1 / 3)) * way)
+    if steps > leg.options.outdated:
+        point.system.outdate(rates.factor)
     due = then.due(force)
     if not again:  # what the rates of the start say of contacts that bear nothing is the turn on the way
         due = due[(rates.changes.rate[due] > 0.0) | (due == aim.contact)]
-    after = point.section.system.coupled(changed(rates.sense, due, then.what))
-    return replace(point, factor=factor, trial=trial, sense=rates.sense, due=after)
+    after = point.system.coupled(changed(rates.sense, due, then.what))
+    return point.on(factor, trial, rates.sense, after)
 
 
 def _renewed(point: Point, trial: Trial, sense: np.ndarray) -> tuple[Updated, FloatArray] | None:
     """Factorisation of the tangent at a trial and the (dof,) rates by it; None where it is exactly singular."""
-    section = point.section
     try:
-        factor = section.system.renewed_factor(trial.configuration, sense)
-        return factor, section.rates.velocity(trial.configuration, sense, factor)
+        factor = point.system.renewed_factor(trial.configuration, sense)
+        return factor, point.rate_problem.velocity(trial.configuration, sense, factor)
     except RuntimeError:
         return None
 
@@ -116,12 +106,12 @@ def _renewed(point: Point, trial: Trial, sense: np.ndarray) -> tuple[Updated, Fl
 def _velocity(point: Point, trial: Trial, sense: np.ndarray) -> FloatArray:
     """(dof,) rates at a trial with signed statuses ``sense``; zero where the tangent is singular."""
     renewed = _renewed(point, trial, sense)
-    return np.zeros(point.section.system.dof) if renewed is None else renewed[1]
+    return np.zeros(point.system.dof) if renewed is None else renewed[1]
 
 
 def _turn(leg: Leg, point: Point, rates: Rates, then: Changes, length: float) -> float | None:
     """Where the first slip has turned round within an increment of a ``length``, by less than a force; or None."""
-    until, force = point.section.rates.until, point.section.rates.force
+    until, force = point.rate_problem.until, point.rate_problem.force
     back = np.flatnonzero((then.what == events.STICKS) & (then.rate > 0.0))
     way = np.where(rates.sense[back] > 0, events.SLIDES, -events.SLIDES)
     falls = zip(back.tolist(), way.tolist(), strict=True)
@@ -133,10 +123,10 @@ def _turn(leg: Leg, point: Point, rates: Rates, then: Changes, length: float) ->
 
         @cache  # the ends are asked for twice
         def slip(part: float, c: int = c, w: int = w) -> float:
-            found = Solved(point.factor, point.trial, 0) if part == 0.0 else smooth(leg, point, rates, part, None)
+            found = (point.factor, point.trial, 0) if part == 0.0 else smooth(leg, point, rates, part, None)
             if found is None:
                 return -1.0
-            return until(found.trial, c, w, _velocity(point, found.trial, rates.sense))[1]
+            return until(found[1], c, w, _velocity(point, found[1], rates.sense))[1]
 
         # slip beyond its turn grows as the square of the length
         beyond = float(np.sqrt(force * length / (ahead[k] + then.rate[c])))
@@ -150,19 +140,21 @@ def _turn(leg: Leg, point: Point, rates: Rates, then: Changes, length: float) ->
     return None
 
 
-def smooth(leg: Leg, point: Point, rates: Rates, length: float, event: tuple[int, int] | None) -> Solved | None:
-    """Load factor and equilibrium with the statuses of ``rates`` a ``length`` of the load factor on.
+def smooth(
+    leg: Leg, point: Point, rates: Rates, length: float, event: tuple[int, int] | None
+) -> tuple[float, Trial, int] | None:
+    """Load factor, equilibrium with the statuses of ``rates`` a ``length`` on, and the Newton steps that took.
 
     With an ``event``, a contact and what it does, the load factor is an unknown too: that at which the contact does
     it. Newton's method by the tangent at ``point``, or by that of an iterate where it does not lead there soon.
     """
-    system, until, force_off = point.section.system, point.section.rates.until, point.section.rates.force
+    system, until, force_off = point.system, point.rate_problem.until, point.rate_problem.force
     known, by, velocity = point.known, rates.factor, rates.velocity
     at_end = event is None and length >= abs(leg.target - point.factor)
     factor = leg.target if at_end else point.factor + leg.direction * length
     q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
-    before, enough, stalled = np.inf, NEWTON.enough if event is None else OPTIONS.passing, False
-    for done in range(OPTIONS.newton):
+    before, enough, stalled = np.inf, NEWTON.enough if event is None else leg.options.passing, False
+    for done in range(leg.options.newton):
         along = abs(factor - point.factor)
         trial = system.trial(known, q, fixed=rates.sense, velocity=rates.velocity, length=along)
         force = trial.contact_force + external_force(leg.problem, factor)
@@ -172,11 +164,11 @@ def smooth(leg: Leg, point: Point, rates: Rates, length: float, event: tuple[int
             return None
         rounding = size > 0.5 * before and size <= attainable(system, q)
         # a contact that began to slide a little early leaves a torque on a disk of which all contacts slide
-        left_over = stalled and size > OPTIONS.slow * before and size <= force_off
+        left_over = stalled and size > leg.options.slow * before and size <= force_off
         if (size <= enough or rounding or left_over) and abs(left) <= 0.5 * force_off:
-            return Solved(factor, trial, done)
-        stalled = size > OPTIONS.slow * before
-        if stalled or done % OPTIONS.same_tangent == OPTIONS.same_tangent - 1:
+            return factor, trial, done
+        stalled = size > leg.options.slow * before
+        if stalled or done % leg.options.same_tangent == leg.options.same_tangent - 1:
             renewed = _renewed(point, trial, rates.sense)
             if renewed is None:
                 return None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 
@@ -12,13 +11,12 @@ from numpy.typing import NDArray
 from ...linalg.lowest import Eigenpair
 from ...state import OPEN, FloatArray, State
 from ..dynamics import Stop
-from ..rates import Rates
 from ..settle import CROSSING, CROSSING_STOP, NotSettled, nudged, settle
 from ..stability import Clustered, Spectrum, divergence, diverging
 from ..system import Trial
 from . import events
 from .landing import smooth
-from .points import OPTIONS, Leg, PathError, Point, largest
+from .points import Leg, PathError, Point, largest
 
 
 def diverges(
@@ -29,7 +27,7 @@ def diverges(
     None if none is found. And the lowest eigenvalue if it is negative. ``near`` : a negative one of the point before,
     if it may still be there.
     """
-    system = point.section.system
+    system = point.system
     fixed = system.trial(trial.configuration, trial.configuration.q, fixed=sense)
     spectrum = Spectrum(system, fixed, near)
     negative = spectrum.negative
@@ -38,33 +36,33 @@ def diverges(
     return None, negative
 
 
-def first_unstable(leg: Leg, before: Point, point: Point, rates_from: Callable[[Point], Rates | None]) -> Point:
+def first_unstable(leg: Leg, before: Point, point: Point, *, one_by_one: bool) -> Point:
     """``point``, if it is stable with the statuses of its increment; else the one that motion leads to.
 
-    That begins where stability is lost after the point ``before``, from which the path has gone by ``rates_from`` it or
-    else, where there are none, by the return map; at ``point`` itself if candidates have been listed anew.
+    That begins where stability is lost after the point ``before``, from which the path has gone by rates or, where
+    events are not taken one by one, by the return map; at ``point`` itself if candidates have been listed anew.
     """
     direction, unstable = diverges(point, point.trial, point.sense)
     if direction is None:
         return replace(point, unstable=unstable)
-    if before.section is not point.section:
+    if before.system is not point.system:
         return by_motion(leg, point, "bifurcation", "unstable", direction)
-    rates = rates_from(before)
+    rates = before.rate_problem.solve(before.trial, before.due) if one_by_one else None
     stable, length, last = 0.0, abs(point.factor - before.factor), before
-    while (length - stable) * leg.unit > OPTIONS.stability:
+    while (length - stable) * leg.unit > leg.options.stability:
         middle = 0.5 * (stable + length)
         factor = before.factor + leg.direction * middle
         if rates is None:
             trial = leg.increased(replace(before, velocity=point.velocity), factor)
         else:
             found = smooth(leg, before, rates, middle, None)
-            trial = None if found is None else found.trial
+            trial = None if found is None else found[1]
         if trial is None:
             break
         sense = trial.sense if rates is None else rates.sense
         turned, _ = diverges(point, trial, sense)
         if turned is None:
-            stable, last = middle, replace(before, factor=factor, trial=trial, sense=sense, due=sense)
+            stable, last = middle, before.on(factor, trial, sense)
         else:
             length, direction = middle, turned
     return by_motion(leg, last, "bifurcation", "unstable", direction)
@@ -72,20 +70,20 @@ def first_unstable(leg: Leg, before: Point, point: Point, rates_from: Callable[[
 
 def relisted(leg: Leg, point: Point) -> Point:
     """Where disks have moved so far that others may be near: candidates listed anew."""
-    system = point.section.system
+    system = point.system
     moved = largest(point.known.q[: 2 * leg.problem.n])
-    if moved <= OPTIONS.listed_again and point.factor != leg.target:
+    if moved <= leg.options.listed_again and point.factor != leg.target:
         return point
     if system.meets_unlisted(point.known.q):
         return by_motion(leg, point, "jump", "disks meet that were not neighbours", None)
-    if moved <= OPTIONS.listed_again:
+    if moved <= leg.options.listed_again:
         return point
-    leg.count(point.section)
+    leg.count(point.system)
     new = leg.at(leg.problem.relisted(system.state(point.trial, point.factor)))
-    keys, others = system.status_keys(), new.section.system.status_keys()
+    keys, others = system.status_keys(), new.system.status_keys()
     sense, due = (carried(keys, others, status) for status in (point.sense, point.due))
     return replace(
-        new, trial=new.section.system.trial(new.known, new.known.q, fixed=sense), factor=point.factor,
+        new, trial=new.system.trial(new.known, new.known.q, fixed=sense), factor=point.factor,
         sense=sense, due=due,
     )  # fmt: skip
 
@@ -105,9 +103,9 @@ def beyond(leg: Leg, point: Point, reason: str) -> Point:
     new = leg.towards(point.factor, leg.beyond)
     found = leg.increased(point, new)
     if found is not None:
-        after = replace(point, factor=new, trial=found, sense=found.sense, due=found.sense)
+        after = point.on(new, found)
         moved = after.moved - point.moved
-        if np.abs(moved).max(initial=0.0) <= OPTIONS.nearby:
+        if np.abs(moved).max(initial=0.0) <= leg.options.nearby:
             leg.record.events += [events.lost("stepped over", point.factor, new, point.position, moved, reason)]
             leg.record.events += events.changes(point, found.sense, until=new)
             leg.beyond *= 2.0
@@ -120,7 +118,7 @@ def by_motion(leg: Leg, point: Point, kind: str, reason: str, direction: FloatAr
 
     The load goes on growing as fast as the protocol says.
     """
-    leg.count(point.section)
+    leg.count(point.system)
     problem, (_, here) = leg.problem, point.at_rest()
     start = here if direction is None else nudged(problem, here, direction)
     new = leg.towards(point.factor, leg.jump)
@@ -129,7 +127,7 @@ def by_motion(leg: Leg, point: Point, kind: str, reason: str, direction: FloatAr
         if state.certificate.stable is True:
             return True
         there = leg.at(state)
-        return not diverging(Spectrum(there.section.system, there.trial))
+        return not diverging(Spectrum(there.system, there.trial))
 
     protocol = problem.scene.protocol
     try:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -93,19 +92,10 @@ class PathRecord:
 
 
 @dataclass(frozen=True)
-class Section:
-    """What the points of a path share while their candidates are the same."""
-
-    system: StaticSystem
-    rates: RateProblem
-    origin: FloatArray  #: (dof,) displacements from the start of the leg to where those of the system begin
-
-
-@dataclass(frozen=True)
 class Point:
-    """An equilibrium on a path."""
+    """An equilibrium on a path; in a section of it, where candidates are the same, points share their rate problem."""
 
-    section: Section
+    rate_problem: RateProblem
     factor: float
     trial: Trial
     sense: np.ndarray  #: (m + w,) signed statuses of the increment that ends here
@@ -115,30 +105,38 @@ class Point:
     unstable: Eigenpair | None = None  #: the eigenvalue of the section that was found last, if it was negative
 
     @property
+    def system(self) -> StaticSystem:
+        return self.rate_problem.system
+
+    @property
     def known(self) -> Configuration:
         return self.trial.configuration
 
     @property
     def moved(self) -> FloatArray:
         """(n, 2) displacements of the disks within the section."""
-        n = self.section.system.problem.n
+        n = self.system.problem.n
         return self.known.q[: 2 * n].reshape(2, n).T
 
     @property
     def position(self) -> FloatArray:
         """(n, 2) of the disks."""
-        return self.section.system.reference + self.moved
+        return self.system.reference + self.moved
+
+    def on(self, factor: float, trial: Trial, sense: np.ndarray | None = None, due: np.ndarray | None = None) -> Point:
+        """A point of the same section; with the statuses of its trial if none are given."""
+        sense = trial.sense if sense is None else sense
+        return replace(self, factor=factor, trial=trial, sense=sense, due=sense if due is None else due)
 
     def at_rest(self) -> tuple[Trial, State]:
         """The point with the statuses that its contacts have at rest, and the state of that."""
-        system = self.section.system
         # what is within rounding of opening or closing is as its overlap says
         overlap = self.known.overlap
         along = self.trial.sense[: len(overlap)]
         along = np.where(overlap <= 0.0, OPEN, np.where(along == OPEN, STICKING, along))
-        sense = system.coupled(np.concatenate([along, self.trial.sense[len(overlap) :]]))
-        trial = system.trial(self.known, self.known.q, fixed=sense)
-        return trial, system.state(trial, self.factor)
+        sense = self.system.coupled(np.concatenate([along, self.trial.sense[len(overlap) :]]))
+        trial = self.system.trial(self.known, self.known.q, fixed=sense)
+        return trial, self.system.state(trial, self.factor)
 
 
 @dataclass
@@ -155,38 +153,36 @@ class Leg:
     target: float
     lowest: float
     progress: Callable[[float], None] | None
+    options: PathOptions
     guide: dict[float, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.direction = 1.0 if self.target >= self.start.load_factor else -1.0
-        self.begun = len(self.record.events)
-        self.unit = self.problem.load_size
-        self.reported = self.start.load_factor
-        self.goes_on()
+        self.begun, self.reported = len(self.record.events), self.start.load_factor
+        self.unit, laws = self.problem.load_size, (self.problem.pair_law, self.problem.wall_law)
+        self.whole = self.unit * abs(self.target - self.start.load_factor)
+        self.stiffest = max(law.tangential_stiffness for law in laws)
+        #: whether the stiffness of contacts varies with their overlap
+        self.varying = any(law.stiffest(2.0) != law.stiffest(1.0) for law in laws)
+        self.gone_on()
 
-    def goes_on(self) -> None:
+    def gone_on(self) -> None:
         """The load has grown: steps off the next lost equilibrium begin short again."""
-        self.jump, self.beyond = OPTIONS.jump / self.unit, OPTIONS.beyond / self.unit
-
-    @cached_property
-    def stiffest(self) -> float:
-        """Of the tangential springs."""
-        return max(law.tangential_stiffness for law in (self.problem.pair_law, self.problem.wall_law))
-
-    @cached_property
-    def varying(self) -> bool:
-        """Whether the stiffness of contacts varies with their overlap."""
-        return any(law.stiffest(2.0) != law.stiffest(1.0) for law in (self.problem.pair_law, self.problem.wall_law))
+        self.jump, self.beyond = self.options.jump / self.unit, self.options.beyond / self.unit
 
     def at(self, state: State) -> Point:
         """A point of a new section, around the positions and candidates of a state."""
         system = StaticSystem(self.problem, state)
         trial = system.at(state)
-        force = max(OPTIONS.event, 10.0 * attainable(system, trial.configuration.q))
-        rates = RateProblem(system, self.direction, force=force, negligible=OPTIONS.negligible)
-        turned, moved = state.angle - self.start.angle, state.position - self.start.position
-        origin = np.concatenate([moved.T.ravel(), turned])[: system.dof]
-        return Point(Section(system, rates, origin), state.load_factor, trial, trial.sense, trial.sense)
+        force = max(self.options.event, 10.0 * attainable(system, trial.configuration.q))
+        rates = RateProblem(system, self.direction, force=force, negligible=self.options.negligible)
+        return Point(rates, state.load_factor, trial, trial.sense, trial.sense)
+
+    def origin(self, point: Point) -> FloatArray:
+        """(dof,) displacements from the start to where those of a point count from."""
+        system, start = point.system, self.start
+        moved, turned = system.reference - start.position, system.angle0 - start.angle
+        return np.concatenate([moved.T.ravel(), turned])[: system.dof]
 
     def towards(self, factor: float, step: float) -> float:
         """A load factor one ``step`` on, or the target where that is no more than a tenth of a step away."""
@@ -194,11 +190,10 @@ class Leg:
 
     def increased(self, point: Point, new: float) -> Trial | None:
         """Equilibrium with the return map, one increment on, whatever changes within it."""
-        system, external = point.section.system, external_force(self.problem, new)
-        q = point.known.q
+        system, q, external = point.system, point.known.q, external_force(self.problem, new)
         guesses = [q if point.velocity is None else q + abs(new - point.factor) * point.velocity]
         if new in self.guide:
-            guesses.append(self.guide[new] - point.section.origin)
+            guesses.append(self.guide[new] - self.origin(point))
         guesses = [system.displaced(one, new) for one in guesses]
         if len(guesses) > 1:  # a short increment is nearer by its rates, a long one by what was found before
             guesses.sort(key=lambda q: np.abs(system.trial(point.known, q).contact_force + external).max())
@@ -207,31 +202,31 @@ class Leg:
     def balanced(self, point: Point) -> Point:
         """A start that dynamics alone has left nearly at rest: the equilibrium beside it."""
         external = external_force(self.problem, point.factor)
-        if float(np.abs(point.trial.contact_force + external).max(initial=0.0)) < 10.0 * point.section.rates.force:
+        if float(np.abs(point.trial.contact_force + external).max(initial=0.0)) < 10.0 * point.rate_problem.force:
             return point
-        found = solve_increment(point.section.system, point.known, external, point.known.q, self.record.work)
+        found = solve_increment(point.system, point.known, external, point.known.q, self.record.work)
         if found is None:
             raise PathError(
                 f"no equilibrium beside the start at load factor {point.factor:g}: it is not at rest; "
                 "take a smaller protocol.stop_kinetic_energy, or protocol.static_finish: true"
             )
-        return replace(point, trial=found, sense=found.sense, due=found.sense)
+        return point.on(point.factor, found)
 
     def look_down(self, load: float, disks: Dynamics | Point) -> None:
         """Raise where the first loaded disk has sunk too far."""
         if self.lowest > -np.inf and (height := float(disks.position[self.problem.load_disk[0], 1])) < self.lowest:
             raise Collapsed(load, height)
 
-    def count(self, section: Section) -> None:
+    def count(self, system: StaticSystem) -> None:
         """Add the factorisations of tangents with kept statuses to what the path has cost."""
-        self.record.work.factorisations += section.system.renewals
-        section.system.renewals = 0
+        self.record.work.factorisations += system.renewals
+        system.renewals = 0
 
     def kept(self, point: Point) -> State:
         """The certified state of a point."""
         trial, state = point.at_rest()
-        modes = diverging(Spectrum(point.section.system, trial))
-        self.count(point.section)
+        modes = diverging(Spectrum(point.system, trial))
+        self.count(point.system)
         work, certificate = self.record.work, certify(self.problem, state, modes=modes)
         reached = Reached("path", certificate, increments=work.increments, factorisations=work.factorisations)
         return replace(state, reached=reached)
