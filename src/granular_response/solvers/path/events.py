@@ -13,26 +13,24 @@ ROLLING = dict(zip(("slides", "sticks", "reverses"), ROLLING_EVENTS, strict=True
 
 def changes(point: Point, after: np.ndarray, until: float | None = None) -> list[Event]:
     """The events in which contacts get the signed statuses ``after`` (m + w,), at the latest ``until``."""
-    system, found = point.system, list[Event]()
-    if not len(changed := np.flatnonzero(point.sense != after)):
-        return found
-    m, position = len(system.first), point.position
-    count, until = m + len(system.wall_disk), point.factor if until is None else until
-    radius, box = system.problem.packing.radius, system.problem.packing.box
-    for c in changed.tolist():
-        kinds = _kinds(before := int(point.sense[c]), now := int(after[c]))
-        if c >= count:
-            if OPEN in (before, now):  # a contact that opens or closes does so along the rolling too
-                continue
-            kinds = tuple(map(ROLLING.__getitem__, kinds))
-        c, at_wall = c % count, c % count >= m
-        i, j = (system.wall_disk, system.wall) if at_wall else (system.first, system.second)
-        first, second = int(i[c - m * at_wall]), int(j[c - m * at_wall])
-        here = position[first]
-        towards = -system.wall_normals[c - m] if at_wall else box.separation(position[second], here)
-        x, z = here + towards * (radius[first] / np.hypot(*towards))
-        found += [Event(point.factor, kind, first, second, at_wall, float(x), float(z), until) for kind in kinds]
-    return found
+    changed = (point.sense != after).nonzero()[0]
+    if not changed.size:
+        return []
+    system, packing, position = point.system, point.system.problem.packing, point.position
+    m, until = len(system.first), point.factor if until is None else until
+    count = m + len(system.wall_disk)
+    c = changed % count
+    at_wall, first = c >= m, np.concatenate([system.first, system.wall_disk])[c]
+    second, here = np.concatenate([system.second, system.wall])[c], position[first]
+    towards = packing.box.separation(position[np.where(at_wall, first, second)], here)
+    towards[at_wall] = -system.wall_normals[c[at_wall] - m]
+    places = here + towards * (packing.radius[first] / np.hypot(*towards.T))[:, None]
+    columns = changed, point.sense[changed], after[changed], first, second, at_wall, places
+    return [
+        Event(point.factor, kind, i, j, wall, x, z, until)
+        for k, before, now, i, j, wall, (x, z) in zip(*(column.tolist() for column in columns), strict=True)
+        for kind in _kinds(before, now, rolls=k >= count)
+    ]
 
 
 def lost(kind: str, factor: float, until: float, position: FloatArray, moved: FloatArray, reason: str) -> Event:
@@ -43,12 +41,11 @@ def lost(kind: str, factor: float, until: float, position: FloatArray, moved: Fl
     return Event(factor, kind, i, x=float(x), z=float(z), until=until, displacement=float(far[i]), reason=reason)
 
 
-def _kinds(before: int, after: int) -> tuple[str, ...]:
-    """What a contact does between two signed statuses."""
-    if after == OPEN:
-        return ("opens",)
-    if before == OPEN:
-        return ("closes", "slides") if abs(after) == SLIDING else ("closes",)
-    if after == STICKING:
-        return ("sticks",)
-    return ("reverses",) if abs(before) == SLIDING else ("slides",)
+def _kinds(before: int, after: int, *, rolls: bool) -> tuple[str, ...]:
+    """What a contact does between two signed statuses; if these are of its rolling, beside what it does anyway."""
+    if rolls and OPEN in (before, after):
+        return ()
+    if OPEN in (before, after):
+        return ("opens",) if after == OPEN else ("closes", "slides") if abs(after) == SLIDING else ("closes",)
+    kind = "sticks" if after == STICKING else "reverses" if abs(before) == SLIDING else "slides"
+    return (ROLLING[kind] if rolls else kind,)

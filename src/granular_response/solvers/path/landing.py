@@ -74,8 +74,8 @@ def _tried(leg: Leg, point: Point, rates: Rates, aim: Aim) -> Point | Aim | None
         if event is not None and float(velocity @ rates.velocity) < 0.0:
             return aim.shorter(0.5 * length)  # another branch, beyond a limit point of the load
     then = point.rate_problem.changes(trial, velocity, rates.sense)
-    passed = np.flatnonzero((then.rate > 0.0) & (then.left < -force))
-    if len(passed):  # another contact came first
+    passed = ((then.rate > 0.0) & (then.left < -force)).nonzero()[0]
+    if passed.size:  # another contact came first
         back = -then.left[passed] / then.rate[passed]
         contact, before = int(passed[np.argmax(back)]), max(way - float(back.max()), 0.0)
         other = Aim(way, before, contact, int(then.what[contact]), passed=way)

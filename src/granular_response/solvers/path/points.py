@@ -234,4 +234,4 @@ class Leg:
 
 def largest(values: FloatArray) -> float:
     """The largest size among numbers (k,); not a number where one of them is none."""
-    return max(float(values.max()), -float(values.min()))
+    return max(float(np.maximum.reduce(values)), -float(np.minimum.reduce(values)))
