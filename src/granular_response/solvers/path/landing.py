@@ -1,8 +1,4 @@
-"""From a point to where the next contact changes: Newton's method with the statuses as they are.
-
-:func:`landed` tries an increment (:class:`Aim`) and, where another contact comes first, slip turns round on the way, or
-there is no equilibrium at its end, the next, shorter one. Nothing here changes a point.
-"""
+"""From a point to where the next contact changes, in ever shorter increments: Newton's method with kept statuses."""
 
 from __future__ import annotations
 
@@ -31,10 +27,6 @@ class Aim:
     what: int
     passed: float = np.inf  #: length within which a contact is known to change
 
-    @property
-    def event(self) -> tuple[int, int] | None:
-        return (self.contact, self.what) if self.length < self.most else None
-
     def shorter(self, most: float) -> Aim:
         return replace(self, most=most, length=np.inf)
 
@@ -56,21 +48,22 @@ def landed(leg: Leg, point: Point, rates: Rates) -> Point | None:
 
 def _tried(leg: Leg, point: Point, rates: Rates, aim: Aim) -> Point | Aim | None:
     """Where an increment ends, or the next to try; None where there is none."""
-    event, length, force = aim.event, min(aim.length, aim.most), point.rate_problem.force
+    event = (aim.contact, aim.what) if aim.length < aim.most else None
+    length, force = min(aim.length, aim.most), point.rate_problem.force
     found = smooth(leg, point, rates, length, event)
     if found is None:
         return aim.shorter(0.5 * length) if 0.5 * length * leg.unit >= leg.options.beyond else None
     factor, trial, steps = found
-    way = abs(factor - point.factor)
-    if event is not None and leg.direction * (factor - point.factor) * leg.unit < -force:
+    ahead, way = leg.direction * (factor - point.factor), abs(factor - point.factor)
+    if event is not None and ahead * leg.unit < -force:
         return aim.shorter(0.5 * length)  # another branch: the load would go back
-    if event is not None and leg.direction * (factor - point.factor) > aim.most:
+    if event is not None and ahead > aim.most:
         # the contact changes later than its rate said; or this is another branch, if it changes before
         return aim.shorter(0.5 * aim.most if aim.most == aim.passed else aim.most)
     # whether rates are found at the end too: those of the start may be off by what contacts have turned since
     again, velocity = leg.varying or trial.contradiction > force, rates.velocity
     if again:
-        velocity = _velocity(point, trial, rates.sense)
+        _, velocity = _renewed(point, trial, rates.sense)
         if event is not None and float(velocity @ rates.velocity) < 0.0:
             return aim.shorter(0.5 * length)  # another branch, beyond a limit point of the load
     then = point.rate_problem.changes(trial, velocity, rates.sense)
@@ -94,19 +87,13 @@ def _tried(leg: Leg, point: Point, rates: Rates, aim: Aim) -> Point | Aim | None
     return point.on(factor, trial, rates.sense, after)
 
 
-def _renewed(point: Point, trial: Trial, sense: np.ndarray) -> tuple[Updated, FloatArray] | None:
-    """Factorisation of the tangent at a trial and the (dof,) rates by it; None where it is exactly singular."""
+def _renewed(point: Point, trial: Trial, sense: np.ndarray) -> tuple[Updated | None, FloatArray]:
+    """Factorisation of the tangent at a trial and the (dof,) rates by it; None and zeros where it is singular."""
     try:
         factor = point.system.renewed_factor(trial.configuration, sense)
         return factor, point.rate_problem.velocity(trial.configuration, sense, factor)
     except RuntimeError:
-        return None
-
-
-def _velocity(point: Point, trial: Trial, sense: np.ndarray) -> FloatArray:
-    """(dof,) rates at a trial with signed statuses ``sense``; zero where the tangent is singular."""
-    renewed = _renewed(point, trial, sense)
-    return np.zeros(point.system.dof) if renewed is None else renewed[1]
+        return None, np.zeros(point.system.dof)
 
 
 def _turn(leg: Leg, point: Point, rates: Rates, then: Changes, length: float) -> float | None:
@@ -124,9 +111,7 @@ def _turn(leg: Leg, point: Point, rates: Rates, then: Changes, length: float) ->
         @cache  # the ends are asked for twice
         def slip(part: float, c: int = c, w: int = w) -> float:
             found = (point.factor, point.trial, 0) if part == 0.0 else smooth(leg, point, rates, part, None)
-            if found is None:
-                return -1.0
-            return until(found[1], c, w, _velocity(point, found[1], rates.sense))[1]
+            return -1.0 if found is None else until(found[1], c, w, _renewed(point, found[1], rates.sense)[1])[1]
 
         # slip beyond its turn grows as the square of the length
         beyond = float(np.sqrt(force * length / (ahead[k] + then.rate[c])))
@@ -169,10 +154,10 @@ def smooth(
             return factor, trial, done
         stalled = size > leg.options.slow * before
         if stalled or done % leg.options.same_tangent == leg.options.same_tangent - 1:
-            renewed = _renewed(point, trial, rates.sense)
+            renewed, velocity = _renewed(point, trial, rates.sense)
             if renewed is None:
                 return None
-            by, velocity = renewed
+            by = renewed
             velocity[rates.idle] = rates.velocity[rates.idle]
             if event is not None:
                 _, rate = until(trial, *event, velocity)

@@ -22,14 +22,12 @@ from .points import Leg, PathError, Point, largest
 def diverges(
     point: Point, trial: Trial, sense: np.ndarray, near: Eigenpair | None = None
 ) -> tuple[FloatArray | None, Eigenpair | None]:
-    """(dof,) direction in which an equilibrium of the section of a point diverges with signed statuses ``sense``.
+    """(dof,) direction in which an equilibrium around a point diverges with signed statuses ``sense``, if one is found.
 
-    None if none is found. And the lowest eigenvalue if it is negative. ``near`` : a negative one of the point before,
-    if it may still be there.
+    And the lowest eigenvalue if it is negative; ``near`` : a negative one of the point before that may still be there.
     """
-    system = point.system
-    fixed = system.trial(trial.configuration, trial.configuration.q, fixed=sense)
-    spectrum = Spectrum(system, fixed, near)
+    fixed = point.system.trial(trial.configuration, trial.configuration.q, fixed=sense)
+    spectrum = Spectrum(point.system, fixed, near)
     negative = spectrum.negative
     with suppress(Clustered):
         return divergence(spectrum), negative
@@ -70,22 +68,18 @@ def first_unstable(leg: Leg, before: Point, point: Point, *, one_by_one: bool) -
 
 def relisted(leg: Leg, point: Point) -> Point:
     """Where disks have moved so far that others may be near: candidates listed anew."""
-    system = point.system
-    moved = largest(point.known.q[: 2 * leg.problem.n])
+    system, moved = point.system, largest(point.known.q[: 2 * leg.problem.n])
     if moved <= leg.options.listed_again and point.factor != leg.target:
         return point
     if system.meets_unlisted(point.known.q):
         return by_motion(leg, point, "jump", "disks meet that were not neighbours", None)
     if moved <= leg.options.listed_again:
         return point
-    leg.count(point.system)
+    leg.count(system)
     new = leg.at(leg.problem.relisted(system.state(point.trial, point.factor)))
     keys, others = system.status_keys(), new.system.status_keys()
     sense, due = (carried(keys, others, status) for status in (point.sense, point.due))
-    return replace(
-        new, trial=new.system.trial(new.known, new.known.q, fixed=sense), factor=point.factor,
-        sense=sense, due=due,
-    )  # fmt: skip
+    return new.on(point.factor, new.system.trial(new.known, new.known.q, fixed=sense), sense, due)
 
 
 def carried(before: NDArray[np.int64], after: NDArray[np.int64], sense: np.ndarray) -> np.ndarray:
