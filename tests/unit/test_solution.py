@@ -8,6 +8,7 @@ from granular_response.errors import EquilibriumError
 from granular_response.scene import SceneError
 from granular_response.solvers import path
 from granular_response.solvers.dynamics import DynamicsError
+from granular_response.solvers.path import losses, points
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import NotSettled
 from granular_response.solvers.solution import rest_state, solve_scene
@@ -102,9 +103,9 @@ def test_a_path_whose_every_increment_fails_gives_up_after_a_few(monkeypatch, st
 
     problem = Problem.from_scene(scene(loads=[{"disk": "top-centre", "force": [0.0, -1.0]}]))
     rest = rest_state(problem)
-    monkeypatch.setattr(path, "solve_increment", fails)
-    monkeypatch.setattr(path._Path, "_landed", fails)
-    monkeypatch.setattr(path._Path, "_by_motion", moves)
+    monkeypatch.setattr(points, "solve_increment", fails)
+    monkeypatch.setattr(path, "landed", fails)
+    monkeypatch.setattr(losses, "by_motion", moves)
     with pytest.raises(Moves):
         path.follow(problem.with_loads(rest.position), rest, [steps * path.OPTIONS.beyond])
     assert len(tried) > 1

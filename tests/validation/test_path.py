@@ -343,14 +343,14 @@ def test_what_increments_leave_out_is_measured_in_a_short_leg_too():
 def test_a_path_does_not_step_for_ever_where_no_statuses_go_on(monkeypatch):
     """A disk that is pressed in by 0.79 radii: contacts change to and fro at one load, again and again."""
     stepped = []
-    lost = path.lost
+    lost = path.events.lost
 
     def counting(kind, *args):
         stepped.append(kind)
         assert len(stepped) < 100
         return lost(kind, *args)
 
-    monkeypatch.setattr(path, "lost", counting)
+    monkeypatch.setattr(path.events, "lost", counting)
     load = [{"disk": "top-centre", "displacement": [None, -0.79]}]
     packing = {"kind": "slab", "layers": 4, "disks_per_row": 7}
     solution = solve_scene(gr.Scene.from_dict({"packing": packing, "contact": {"friction": 0.2}, "loads": load}))

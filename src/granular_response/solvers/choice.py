@@ -1,19 +1,15 @@
 """The one place that picks how a scene is solved: the cheapest method that is valid for it.
 
-A :class:`Plan` is decided once for each problem (``Problem.plan``); whoever solves, stores or reports reads it.
+A :class:`Plan` is decided once, with the problem (``Problem.plan``); whoever solves, stores or reports reads it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from ..contact import CUT
-from ..scene import SceneError
+from ..contact import CUT, RULES, Law
+from ..scene import Packing, Protocol, Scene, SceneError
 from ..scene.errors import show
-
-if TYPE_CHECKING:
-    from .problem import Problem
 
 #: Kinetic energy, over its limit, below which statics may take over from a vibration that changes no contact. Contacts
 #: turn meanwhile, so that springs remember it in second order: up to 5e-9 mg at the largest one, in mg R, and in
@@ -41,8 +37,8 @@ class Plan:
     quiet_energy: float  #: at which it hands over if no contact changes any more; 0 where that does not count
 
 
-def plan(problem: Problem) -> Plan:
-    """Decide how a problem is solved.
+def plan(scene: Scene, packing: Packing, law: Law, *, rotations: bool) -> Plan:
+    """Decide how a scene is solved, with its packing and its law between disks; ``rotations`` : whether disks turn.
 
     Statics has the friction law ``cut`` only; with another one everything is dynamics, to the end.
 
@@ -51,14 +47,14 @@ def plan(problem: Problem) -> Plan:
     SceneError
         When the scene asks for a method that it does not have.
     """
-    protocol, loads = problem.scene.protocol, problem.scene.loads
+    protocol, loads = scene.protocol, scene.loads
     asked = protocol.method
-    only_motion = getattr(problem.pair_law, "only_motion", "")
-    if problem.rotations and problem.rule != CUT:
+    only_motion = getattr(law, "only_motion", "")
+    if rotations and RULES[protocol.friction_law] != CUT:
         only_motion = f"protocol.friction_law {protocol.friction_law} is a law of motion that statics does not have"
     if asked in ("path", "minimise") and only_motion and loads:
         raise SceneError(f"protocol.method = {asked}: must be dynamics or auto, {only_motion}")
-    if asked == "minimise" and problem.rotations:
+    if asked == "minimise" and rotations:
         raise SceneError(
             "protocol.method = minimise: must be path, dynamics or auto in a scene with friction (contact or wall)"
         )
@@ -66,63 +62,61 @@ def plan(problem: Problem) -> Plan:
     if why := "protocol.method is dynamics" if asked == "dynamics" else only_motion:
         rest = load = Choice("dynamics", why)
     else:
-        rest, load = _rest(problem), _load(problem)
-    stop, quiet = _stop_energies(problem, static)
+        rest, load = _rest(scene, packing, rotations), _load(protocol, rotations)
+    stop, quiet = _stop_energies(scene, packing, rotations, static)
     return Plan(rest, load if loads else Choice("none", "loads is empty"), static, stop, quiet)
 
 
-def _rest(problem: Problem) -> Choice:
+def _rest(scene: Scene, packing: Packing, rotations: bool) -> Choice:
     """The state at rest under gravity.
 
     Friction and disorder make it depend on the fall into it, so it is reached as the paper does, by dynamics. The
     ordered frictionless packing has its minimum from wherever one starts.
     """
-    smooth = not problem.rotations or problem.scene.preparation.gravity == "frictionless"
+    smooth = not rotations or scene.preparation.gravity == "frictionless"
     if not smooth:
         return Choice("dynamics", "with friction the rest state depends on how gravity was applied")
-    if not problem.packing.ordered:
+    if not packing.ordered:
         return Choice("dynamics", "the rest state of a disordered packing depends on the fall into it")
-    how = "prepared without friction, and no disorder" if problem.rotations else "no friction and no disorder"
+    how = "prepared without friction, and no disorder" if rotations else "no friction and no disorder"
     return Choice("minimise", f"{how}: rest is the minimum of the energy")
 
 
-def _load(problem: Problem) -> Choice:
+def _load(protocol: Protocol, rotations: bool) -> Choice:
     """The states under load."""
-    if problem.scene.protocol.method == "path":
+    if protocol.method == "path":
         return Choice("path", "protocol.method is path")
-    if problem.rotations:
+    if rotations:
         return Choice("path", "friction: a path of equilibria through every load between")
     return Choice("minimise", "no friction: equilibrium is a minimum of the energy")
 
 
-def _stop_energies(problem: Problem, static: bool) -> tuple[float, float]:
+def _stop_energies(scene: Scene, packing: Packing, rotations: bool, static: bool) -> tuple[float, float]:
     """The paper's own: 1e-6 without friction, 1e-9 with disorder, and else what the protocol says.
 
     In an ordered packing with friction ``QUIET`` times as much will do where no contact changes any more, up to
     ``LARGEST_QUIET``; in a disordered one some nearly always does. With ``method: dynamics``, or without a static
     finish, the protocol is taken at its word.
     """
-    protocol = problem.scene.protocol
-    stop = protocol.stop_kinetic_energy
+    protocol, stop = scene.protocol, scene.protocol.stop_kinetic_energy
     if protocol.method == "dynamics" or not static:
         return stop, 0.0
-    if problem.rotations and problem.packing.ordered:
-        at_once = protocol.stop_rule == "instantaneous" and not problem.rolls
+    if rotations and packing.ordered:
+        at_once = protocol.stop_rule == "instantaneous" and not (scene.contact.rolls or scene.resolved_wall.rolls)
         return stop, min(QUIET * stop, LARGEST_QUIET) if at_once else 0.0
-    return max(stop, 1e-9 if problem.rotations else 1e-6), 0.0
+    return max(stop, 1e-9 if rotations else 1e-6), 0.0
 
 
-def idle_settings(problem: Problem) -> list[str]:
+def idle_settings(scene: Scene, decided: Plan, *, rotations: bool) -> list[str]:
     """Settings of preparation and protocol that differ from their default and change nothing, each with the reason."""
-    scene, rest, load = problem.scene, problem.plan.rest, problem.plan.load
-    preparation, protocol = scene.preparation, scene.protocol
+    rest, load, preparation, protocol = decided.rest, decided.load, scene.preparation, scene.protocol
     slow, falls = preparation.gravity == "slow", rest.method == "dynamics"
-    hand_over = problem.plan.stop_energy
+    hand_over = decided.stop_energy
     reasons = {
         "preparation.gravity": rest.reason if slow and not falls else "",
         "preparation.ramp_time": "" if slow and falls else rest.reason if slow else "preparation.gravity is not slow",
         "protocol.load_factors": "" if scene.loads else load.reason,
-        "protocol.friction_law": "" if problem.rotations else "no friction",
+        "protocol.friction_law": "" if rotations else "no friction",
         "protocol.stop_kinetic_energy": ""
         if hand_over == protocol.stop_kinetic_energy
         else f"statics takes over at {hand_over:g} already",

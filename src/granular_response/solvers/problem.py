@@ -156,6 +156,7 @@ class Problem:
     pair_law: Law
     wall_law: Law
     rule: int
+    plan: Plan
     load_disk: NDArray[np.int64]
     load: FloatArray
     held: Held = NOTHING
@@ -164,9 +165,10 @@ class Problem:
 
     @classmethod
     def from_scene(cls, scene: Scene, packing: Packing | None = None) -> Problem:
-        """Build the packing (unless given) and the laws of a scene; raises ``SceneError`` for a bad packing.
+        """Build the packing (unless given) and the laws of a scene, and decide how it is solved.
 
-        Among them are, of those that are built here, packings in which disks begin deep inside others or walls.
+        Raises ``SceneError`` for a bad packing, among them, of those that are built here, packings in which disks begin
+        deep inside others or walls; and for a method that the scene does not have.
         """
         start = scene.packing.build() if packing is None else packing
         _check_period(start)
@@ -181,6 +183,7 @@ class Problem:
             pair_law=pair_law,
             wall_law=wall_law,
             rule=RULES[scene.protocol.friction_law],
+            plan=plan(scene, start, pair_law, rotations=max(pair_law.friction, wall_law.friction) > 0.0),
             load_disk=np.zeros(0, np.int64),
             load=np.zeros((0, 3)),
             pair_rolling=_rolling(scene.contact),
@@ -235,11 +238,6 @@ class Problem:
         return 3 if self.rotations else 2
 
     @cached_property
-    def plan(self) -> Plan:
-        """How it is solved; raises ``SceneError`` when the scene asks for a method that it does not have."""
-        return plan(self)
-
-    @cached_property
     def weight(self) -> FloatArray:
         """(n,) weights; their mean is 1."""
         return np.ascontiguousarray(self.packing.mass)
@@ -275,7 +273,8 @@ class Problem:
     def without_friction(self) -> Problem:
         """The same packing with smooth disks and walls."""
         pair, wall = self.pair_law.without_friction(), self.wall_law.without_friction()
-        return replace(self, pair_law=pair, wall_law=wall, pair_rolling=None, wall_rolling=None)
+        smooth = plan(self.scene, self.packing, pair, rotations=False)
+        return replace(self, pair_law=pair, wall_law=wall, pair_rolling=None, wall_rolling=None, plan=smooth)
 
     @cached_property
     def load_size(self) -> float:

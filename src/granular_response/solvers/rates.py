@@ -55,7 +55,7 @@ class Changes:
 
     def due(self, force: float) -> np.ndarray:
         """Contacts that are within a ``force`` of their change."""
-        return np.flatnonzero((self.rate > 0.0) & (self.left <= force))
+        return ((self.rate > 0.0) & (self.left <= force)).nonzero()[0]
 
 
 def next_changes(
@@ -73,15 +73,6 @@ def next_changes(
         sense.astype(float), force, negligible, system.loaded, system.disks, system.count, what, left, rate,
     )  # fmt: skip
     return Changes(what, left, rate, due)
-
-
-def _contacts(system: StaticSystem, trial: Trial) -> tuple:
-    """The contacts of a trial, as the kernels of events take them."""
-    rolling = None if trial.rolled is None else trial.rolled.force
-    return (
-        system.problem.n, system.problem.packing.radius, system.pairs, system.walls, system.rolls, trial.normal,
-        trial.tangential, rolling, trial.configuration.overlap,
-    )  # fmt: skip
 
 
 #: Status after what a contact does next, by that and ``SLIDES``: one that slides under a negative force comes first.
@@ -137,7 +128,12 @@ class RateProblem:
 
     def until(self, trial: Trial, c: int, what: int, displacement: FloatArray) -> tuple[float, float]:
         """Force (mean weights) left until contact ``c`` does ``what``; by how much a displacement (dof,) lowers it."""
-        return events.until(c, what, trial.configuration.q, displacement, *_contacts(self.system, trial))
+        system, here = self.system, trial.contacts
+        return events.until(
+            c, what, trial.configuration.q, displacement, system.problem.n, system.problem.packing.radius, system.pairs,
+            system.walls, system.rolls, here.normal, here.tangential,
+            None if trial.rolled is None else trial.rolled.force, here.overlap,
+        )  # fmt: skip
 
     def solve(self, trial: Trial, sense: np.ndarray) -> Rates | None:
         """Rates at an equilibrium with statuses that do not contradict themselves; None where none are found.

@@ -20,7 +20,8 @@ from .dynamics import Dynamics, Stop, relax
 from .energy import minimise
 from .equilibrium import certify, check_overlaps, finish, reaction
 from .nested import rest_start
-from .path import follow, lost
+from .path import follow
+from .path.events import lost
 from .problem import Problem
 from .settle import PROTOCOL, NotSettled, not_settled, settle
 from .size import check_memory
@@ -104,7 +105,8 @@ class Solution:
                 f"not certified: up to {out:.1g} of what a disk bears is out of balance ({plan.rest.reason}); "
                 "take a smaller protocol.stop_kinetic_energy"
             )
-        lines = (*idle_settings(self.problem), self.unsettled or uncertified or rounded, self.displaced)
+        idle = idle_settings(self.problem.scene, plan, rotations=self.problem.rotations)
+        lines = (*idle, self.unsettled or uncertified or rounded, self.displaced)
         return [line for line in lines if line]
 
     @property
@@ -195,7 +197,6 @@ def checked_problem(scene: Scene) -> Problem:
     problem = Problem.from_scene(scene)
     check_memory(scene, problem.n)  # a file's disks are counted by now
     _check_loads(problem.with_loads(problem.packing.position), scene.protocol.load_factors)
-    problem.plan  # noqa: B018 a method that is none for the scene
     return problem
 
 

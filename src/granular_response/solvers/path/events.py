@@ -1,0 +1,51 @@
+"""Events of a path: what contacts do between two points, and the loss of an equilibrium."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...state import OPEN, ROLLING_EVENTS, SLIDING, STICKING, Event, FloatArray
+from .points import Point
+
+#: What an event along the tangent is called along the rolling.
+ROLLING = dict(zip(("slides", "sticks", "reverses"), ROLLING_EVENTS, strict=True))
+
+
+def changes(point: Point, after: np.ndarray, until: float | None = None) -> list[Event]:
+    """The events in which contacts get the signed statuses ``after`` (m + w,), at the latest ``until``."""
+    changed = (point.sense != after).nonzero()[0]
+    if not changed.size:
+        return []
+    system, packing, position = point.system, point.system.problem.packing, point.position
+    m, until = len(system.first), point.factor if until is None else until
+    count = m + len(system.wall_disk)
+    c = changed % count
+    at_wall, first = c >= m, np.concatenate([system.first, system.wall_disk])[c]
+    second, here = np.concatenate([system.second, system.wall])[c], position[first]
+    towards = packing.box.separation(position[np.where(at_wall, first, second)], here)
+    towards[at_wall] = -system.wall_normals[c[at_wall] - m]
+    places = here + towards * (packing.radius[first] / np.hypot(*towards.T))[:, None]
+    columns = changed, point.sense[changed], after[changed], first, second, at_wall, places
+    return [
+        Event(point.factor, kind, i, j, wall, x, z, until)
+        for k, before, now, i, j, wall, (x, z) in zip(*(column.tolist() for column in columns), strict=True)
+        for kind in _kinds(before, now, rolls=k >= count)
+    ]
+
+
+def lost(kind: str, factor: float, until: float, position: FloatArray, moved: FloatArray, reason: str) -> Event:
+    """The loss of an equilibrium, after which disks at ``position`` (n, 2) have moved by ``moved`` (n, 2)."""
+    far = np.hypot(*moved.T)
+    i = int(np.argmax(far))
+    x, z = position[i]
+    return Event(factor, kind, i, x=float(x), z=float(z), until=until, displacement=float(far[i]), reason=reason)
+
+
+def _kinds(before: int, after: int, *, rolls: bool) -> tuple[str, ...]:
+    """What a contact does between two signed statuses; if these are of its rolling, beside what it does anyway."""
+    if rolls and OPEN in (before, after):
+        return ()
+    if OPEN in (before, after):
+        return ("opens",) if after == OPEN else ("closes", "slides") if abs(after) == SLIDING else ("closes",)
+    kind = "sticks" if after == STICKING else "reverses" if abs(before) == SLIDING else "slides"
+    return (ROLLING[kind] if rolls else kind,)
