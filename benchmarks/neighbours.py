@@ -1,7 +1,7 @@
 """Lists of close disks: the sweep of this package and a tree of scipy, in turns.
 
-`python benchmarks/neighbours.py OUTPUT.json`. Slabs whose disks are displaced a little at random, with the skin of a fall
-under gravity. Both give the same pairs, which is checked. Times are of the processor.
+`python benchmarks/neighbours.py OUTPUT.json`. Slabs whose disks are displaced a little at random, with the skin of a
+fall under gravity. Both give the same pairs, which is checked. Times are of the processor.
 """
 
 from __future__ import annotations

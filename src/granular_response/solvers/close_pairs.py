@@ -17,7 +17,9 @@ MOST_NEIGHBOURS = 4
 def close_pairs(
     position: FloatArray, radius: FloatArray, skin: float, period: float | None = None
 ) -> tuple[IntArray, IntArray]:
-    """All pairs of disks whose gap is less than ``skin``: each disk is compared with those after it along the longer side.
+    """All pairs of disks whose gap is less than ``skin``.
+
+    Each disk is compared with those that follow it along the longer side of the packing.
 
     Parameters
     ----------

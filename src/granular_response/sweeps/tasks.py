@@ -73,8 +73,9 @@ def map_tasks(
     what
         What the tasks are, for the progress line.
 
-    Raises SweepError for a set of items, which has no order, if a task raises (the message names its item), if workers
-    keep dying at one task, if something cannot be sent to a worker or back, or if the cluster cannot be reached or is lost.
+    Raises SweepError for a set of items, which has no order; if a task raises (the message names its item), if workers
+    keep dying at one task, if something cannot be sent to a worker or back, or if the cluster cannot be reached or is
+    lost.
 
     Examples
     --------

@@ -166,7 +166,8 @@ def read(path: Path) -> Table:
     if moving:
         v = np.array([moving[ids[k]][1] for k in order]).T
         columns = {"vx": v[0], "vz": v[1] if up == "y" else v[2], "spin": v[5] if up == "y" else -v[4]}
+    box = FileBox(left, width, reason=_REASON) if mark is None else mark.box
     return Table(
-        x, z if up == "z" else y, 0.5 * diameter, [places[k] for k in order], density * diameter**3,
-        FileBox(left, width, reason=_REASON) if mark is None else mark.box, columns=columns, ids=[int(ids[k]) for k in order],
+        x, z if up == "z" else y, 0.5 * diameter, [places[k] for k in order], density * diameter**3, box,
+        columns=columns, ids=[int(ids[k]) for k in order],
     )  # fmt: skip

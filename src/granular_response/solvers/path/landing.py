@@ -138,7 +138,7 @@ def smooth(
     at_end = event is None and length >= abs(leg.target - point.factor)
     factor = leg.target if at_end else point.factor + leg.direction * length
     q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
-    before, enough, stalled = np.inf, NEWTON.enough if event is None else leg.options.passing, False
+    before, enough, stalled = np.inf, NEWTON.enough if event is None else leg.passing, False
     for done in range(leg.options.newton):
         along = abs(factor - point.factor)
         trial = system.trial(known, q, fixed=rates.sense, velocity=rates.velocity, length=along)

@@ -35,8 +35,9 @@ class PathOptions:
     #: Force of a spring from the bend of its contact's way within an increment, above which that is shortened; what is
     #: left of it is smaller, and falls as the third power of the length.
     bent: float = 1e-8
-    #: Unbalanced force that is left at an event. The next increment takes it up, so that it does not add up. In the
-    #: slabs of the benchmarks events are off by 5e-10 in the median, and wall forces at the end by 3e-10 at most.
+    #: Unbalanced force that is left at an event, and part of the load where that is below a mean weight. The next
+    #: increment takes it up, so that it does not add up. In the slabs of the benchmarks events are off by 5e-10 in the
+    #: median, and wall forces at the end by 3e-10 at most.
     passing: float = 1e-8
     #: Newton steps of a landing above which the next rates have a factorisation of their own. Those of an old one miss
     #: events, and a landing is then tried again; a lower number asks for more factorisations than that spares.
@@ -161,6 +162,7 @@ class Leg:
         self.begun, self.reported = len(self.record.events), self.start.load_factor
         self.unit, laws = self.problem.load_size, (self.problem.pair_law, self.problem.wall_law)
         self.whole = self.unit * abs(self.target - self.start.load_factor)
+        self.passing = self.options.passing * min(self.unit, 1.0)
         self.stiffest = max(law.tangential_stiffness for law in laws)
         #: whether the stiffness of contacts varies with their overlap
         self.varying = any(law.stiffest(2.0) != law.stiffest(1.0) for law in laws)
