@@ -5,6 +5,7 @@ import pytest
 import reduced
 
 from granular_response.scene import Scene
+from granular_response.studies import LoadPath, Measures
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
@@ -17,7 +18,6 @@ from granular_response_extensions.moduli.simulate.solid import Solid, fitted, tr
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.parameters import UNIT_LOAD
-from granular_response_paper.slab_response import LoadPath, Measures
 
 
 def test_packings_that_relax_are_softer(datasets):

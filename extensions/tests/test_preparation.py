@@ -9,10 +9,10 @@ from granular_response.solvers.solution import rest_state
 from granular_response.solvers.taps import tapped as after_taps
 from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import State
+from granular_response.studies import LoadPath, Measures
 from granular_response_extensions.preparation import draw as figures
 from granular_response_extensions.preparation import simulate as study
 from granular_response_extensions.preparation.parameters import Parameters
-from granular_response_paper.slab_response import LoadPath, Measures
 
 PARAMETERS = reduced.parameters("preparation")
 WAYS = PARAMETERS["ways"]

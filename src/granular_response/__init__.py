@@ -4,8 +4,9 @@
 ``Scene.from_arrays``), ``Contact`` and ``Wall`` laws, ``Load`` and ``Protocol``. ``solve`` settles and loads it, and a
 ``Result`` holds what came of it: states, certificates, events, floor response, contacts, stress. ``plot`` draws it,
 ``open_result`` reads a stored one, ``sweep`` solves a scene with many values of its keys, ``find_event`` finds where
-something happens, ``theory`` has predictions to compare with. What goes wrong with a scene, a file or a solution is a
-``GranularError``; a wrong argument of a call may be a ValueError, TypeError or IndexError, as its docstring says.
+something happens, ``studies`` has load paths of slabs, ``theory`` predictions to compare with. What goes wrong with a
+scene, a file or a solution is a ``GranularError``; a wrong argument of a call may be a ValueError, TypeError or
+IndexError, as its docstring says.
 
 What stands in ``__all__`` is the public namespace. It keeps its names and meanings, and is loaded on first use;
 everything below it may change from version to version.
@@ -25,6 +26,7 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from . import plot as plot
+    from . import studies as studies
     from . import theory as theory
     from .api.event import find_event as find_event
     from .api.event_table import Events as Events
@@ -45,8 +47,6 @@ if TYPE_CHECKING:
     from .errors import GranularError as GranularError
     from .errors import SolveError as SolveError
     from .machine.threads import using as threads  # noqa: F401
-    from .observe.events import Bracket as Bracket
-    from .observe.events import EventNotBracketed as EventNotBracketed
     from .plot.pictures import PictureError as PictureError
     from .scene import ArrayPacking as Arrays  # noqa: F401
     from .scene import Contact as Contact
@@ -73,6 +73,8 @@ if TYPE_CHECKING:
     from .store.export import ExportError as ExportError
     from .store.files import StoreError as StoreError
     from .store.result import ResultError as ResultError
+    from .studies.brackets import Bracket as Bracket
+    from .studies.brackets import EventNotBracketed as EventNotBracketed
     from .sweeps.errors import SweepError as SweepError
     from .sweeps.tasks import map_tasks as map_tasks
 
@@ -80,11 +82,11 @@ if TYPE_CHECKING:
 _HOME = {
     "Arrays": "scene:ArrayPacking",
     "At": "scene:TopSelector",
-    "Bracket": "observe.events",
+    "Bracket": "studies.brackets",
     "Certificate": "state",
     "Contact": "scene",
     "Event": "state",
-    "EventNotBracketed": "observe.events",
+    "EventNotBracketed": "studies.brackets",
     "Events": "api.event_table",
     "ExportError": "store.export",
     "File": "scene:FilePacking",
@@ -125,6 +127,7 @@ _HOME = {
     "register_law": "solvers.laws",
     "solve": "api.result",
     "stiffness_matrix": "api.observables",
+    "studies": "",
     "sweep": "api.sweep",
     "theory": "",
     "threads": "machine.threads:using",

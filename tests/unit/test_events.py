@@ -12,13 +12,13 @@ from rich.console import Console
 from small_scenes import scene
 
 import granular_response as gr
-from granular_response.observe.events import EventNotBracketed
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import CONTACT_EVENTS
 from granular_response.store.checked import checked, read_result
 from granular_response.store.export import export
 from granular_response.store.result import ResultError, chosen_states, state_from, to_dataset
 from granular_response.store.summary import summarise
+from granular_response.studies import EventNotBracketed
 
 LOAD = [{"disk": "top-centre", "force": [0.0, -6.0]}]
 SCENE = scene(4, 9, contact__friction=0.2, loads=LOAD)

@@ -1,0 +1,58 @@
+"""Studies of a slab under a growing load: its path, what is measured on it, and where something happens first.
+
+A :class:`LoadPath` holds the states of a scene along its load, each found from the one below it. :class:`Measures` says
+what is measured on these states, a :class:`Happening` what is looked for along the path, and :meth:`LoadPath.first` at
+which load it happens first. Happenings of the paper are made by :func:`first_opening`, :func:`reaches_floor`,
+:func:`two_peaks`, :func:`third_peak`, :func:`leaves_linear_range` and :func:`loses_symmetry`. Along anything but the
+load, such as the friction, :func:`bisect_event` narrows an event down. Units are the reduced ones: mean radii, and mean
+disk weights for forces.
+
+Examples
+--------
+>>> scene = gr.Scene(packing=gr.Slab(layers=4, disks_per_row=9), loads=[gr.Load(disk="top-centre", force=(0, -1))])
+>>> path = gr.studies.LoadPath.of(scene)
+>>> states = path.through([0.1, 0.5, 2.0])
+>>> opening = gr.studies.first_opening(gr.studies.Measures(path))
+>>> low, high = path.first([0.1, 0.5, 2.0], opening)
+>>> 0.0 < low < high < 2.0
+True
+"""
+
+from .brackets import Bracket, EventNotBracketed, bisect_event, first_change, linear_end
+from .measures import (
+    LINEARITY,
+    MARGINS,
+    Measures,
+    first_opening,
+    leaves_linear_range,
+    loses_symmetry,
+    reaches_floor,
+    third_peak,
+    two_peaks,
+    wall_margin,
+)
+from .path import EXACT, NARROW, Happening, LoadPath, by_motion, lost
+
+__all__ = [
+    "EXACT",
+    "LINEARITY",
+    "MARGINS",
+    "NARROW",
+    "Bracket",
+    "EventNotBracketed",
+    "Happening",
+    "LoadPath",
+    "Measures",
+    "bisect_event",
+    "by_motion",
+    "first_change",
+    "first_opening",
+    "leaves_linear_range",
+    "linear_end",
+    "loses_symmetry",
+    "lost",
+    "reaches_floor",
+    "third_peak",
+    "two_peaks",
+    "wall_margin",
+]
