@@ -7,10 +7,10 @@ import pytest
 import reduced
 
 from granular_response_extensions.crossover_scaling import tables
-from granular_response_extensions.crossover_scaling.claims import CLAIMS
 from granular_response_extensions.crossover_scaling.parameters import Parameters
 from granular_response_extensions.crossover_scaling.simulate import series as study
 from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.table import claims_of
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.frictionless_crossover import simulate as frictionless
 
@@ -137,10 +137,12 @@ def test_the_document_gets_a_line_for_each_series_of_layers(datasets):
 def test_claims_are_judged(datasets):
     data = Data({"crossover_scaling": datasets})
     allowed = {"supported", "in part", "cannot tell", "not supported"}
-    assert {judge(claim, data).verdict for claim in CLAIMS} <= allowed
+    assert {judge(claim, data).verdict for claim in claims_of("crossover_scaling")} <= allowed
     grown = datasets["powers"].copy(deep=True)
     grown["exponent"][:] = 2.0
-    assert [judge(claim, Data({"crossover_scaling": {"powers": grown}})).verdict for claim in CLAIMS] == [
+    assert [
+        judge(claim, Data({"crossover_scaling": {"powers": grown}})).verdict for claim in claims_of("crossover_scaling")
+    ] == [
         "supported",
         "supported",
     ]

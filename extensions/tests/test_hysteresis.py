@@ -7,10 +7,10 @@ from small_scenes import at_rest
 
 from granular_response.solvers.solution import loaded_states
 from granular_response_extensions.hysteresis import simulate, tables
-from granular_response_extensions.hysteresis.claims import CLAIMS
 from granular_response_extensions.hysteresis.parameters import Parameters
 from granular_response_extensions.hysteresis.simulate.loops import keep_books
 from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.table import claims_of
 from granular_response_paper.claims.verdict import judge
 
 PARAMETERS = reduced.parameters("hysteresis")
@@ -96,7 +96,7 @@ def test_loads_of_all_ways_are_the_same():
 
 
 def test_the_claims_are_measured(datasets):
-    found = [judge(claim, Data({"hysteresis": datasets})) for claim in CLAIMS]
+    found = [judge(claim, Data({"hysteresis": datasets})) for claim in claims_of("hysteresis")]
     assert all(entry.tests for entry in found)
     without = found[0].tests[0]
     assert without.outcome == "no" and without.found.low > 1.0

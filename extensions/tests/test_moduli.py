@@ -10,12 +10,12 @@ from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import response_of_layers
-from granular_response_extensions.moduli.claims import CLAIMS
 from granular_response_extensions.moduli.parameters import Parameters
 from granular_response_extensions.moduli.simulate import response
 from granular_response_extensions.moduli.simulate.loaded import loads, respond
 from granular_response_extensions.moduli.simulate.solid import Solid, fitted, triangles
 from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.table import claims_of
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.parameters import UNIT_LOAD
 
@@ -50,7 +50,7 @@ def test_the_nearest_isotropic_solid_is_isotropic_and_leaves_one_that_is():
 
 
 def test_claims_of_packings_are_judged(datasets):
-    for claim in (one for one in CLAIMS if one.id in ("B4", "B5")):
+    for claim in (one for one in claims_of("moduli") if one.id in ("B4", "B5")):
         entry = judge(claim, Data({"moduli": datasets}))
         assert len(entry.tests) == 2  # of the case with friction and the one without
         assert ["friction 0," in test.case for test in entry.tests].count(True) == 1

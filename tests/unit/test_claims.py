@@ -16,10 +16,10 @@ from scipy.stats import binom
 
 from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response.store import files as store
-from granular_response_paper.claims import bounds, declared, preparations, summary, table
+from granular_response_paper.claims import declared, preparations, summary, table
 from granular_response_paper.claims import stored as stored_table
 from granular_response_paper.claims.bootstrap import RARE, over_brackets, over_realizations, part_of
-from granular_response_paper.claims.claim import Bound, Claim, Data, NotMeasured, Quantity, Test, at
+from granular_response_paper.claims.claim import Bound, Claim, Data, NotMeasured, Quantity, Test, at, rise
 from granular_response_paper.claims.verdict import MEANINGS, SCHEME, Entry, elsewhere_of, judge, verdict_of
 from granular_response_paper.claims.words import WORDS, words
 from granular_response_paper.groups.frictionless_crossover.claims import size_in_steps
@@ -603,7 +603,7 @@ def test_a_star_marks_verdicts_that_hang_on_a_threshold():
 
     def star(force):
         def measure(data, words):
-            return [Test("force", Quantity.exact(force), bounds.near(words, "about", 20.0))]
+            return [Test("force", Quantity.exact(force), declared.bound({"about": 20}, words))]
 
         return judge(Claim("F1", "I", "", "", measure), Data({})).star
 
@@ -627,7 +627,7 @@ def test_strict_bounds_leave_out_their_ends():
 
 def test_sampled_events_lie_at_most_a_term_below_the_papers_force():
     def outcome(low, high):
-        return bounds.sampled(words(), 10.0).outcome(Quantity.bracket(low, high))
+        return declared.bound({"sampled": 10}, words()).outcome(Quantity.bracket(low, high))
 
     assert outcome(7.5, 10.0) == "yes"
     assert outcome(7.4, 7.6) == outcome(9.9, 10.1) == "cannot tell"
@@ -636,8 +636,9 @@ def test_sampled_events_lie_at_most_a_term_below_the_papers_force():
 
 def test_orders_use_the_smallest_step():
     up = [Quantity.bracket(1.0, 1.1), Quantity.bracket(2.0, 2.1), Quantity.bracket(3.0, NAN)]
-    assert bounds.rises("force", up).outcome == "yes" and bounds.rises("force", up[:2][::-1]).outcome == "no"
-    assert bounds.rises("force", [*up[:2], Quantity.bracket(2.0, 2.2)]).outcome == "cannot tell"
+    assert rise(up).low > 1.0 > rise(up[:2][::-1]).high
+    steady = rise([*up[:2], Quantity.bracket(2.0, 2.2)])
+    assert steady.low < 1.0 < steady.high
 
 
 STUDY = dataset(
@@ -673,16 +674,16 @@ def test_a_declared_test_measures_what_it_says(spec, ends):
         high=("event", [1.5, 4.0]),
     )
     data = Data({"group": {"study": STUDY, "events": table_}})
-    made = declared._measured("group", "number", [{**spec, "bound": {"at least": 0}}], data, words())
-    np.testing.assert_allclose([(one.found.low, one.found.high) for one in made], ends)
+    rows = list(declared._rows("group", [spec], data, words()))
+    np.testing.assert_allclose([(found.low, found.high) for _, found in rows], ends)
     if "each" in spec:
-        assert [one.case for one in made] == ["friction 0", "friction 0.2", "friction 1"]
+        assert [case for case, _ in rows] == ["friction 0", "friction 0.2", "friction 1"]
 
 
 def test_a_declared_mean_has_the_interval_of_the_bootstrap():
-    spec = {"value": "study.each", "at": {"friction": 1}, "over": {"realization": "mean"}, "bound": {"at least": 0}}
-    (made,) = declared._measured("group", "number", [spec], Data({"group": {"study": STUDY}}), words())
-    assert made.found == over_realizations([1.0, 2.0, 3.0, 2.0], np.mean)
+    spec = {"value": "study.each", "at": {"friction": 1}, "over": {"realization": "mean"}}
+    ((_, found),) = declared._rows("group", [spec], Data({"group": {"study": STUDY}}), words())
+    assert found == over_realizations([1.0, 2.0, 3.0, 2.0], np.mean)
 
 
 @pytest.mark.parametrize(
@@ -692,21 +693,25 @@ def test_a_declared_mean_has_the_interval_of_the_bootstrap():
         ({"at least": "marked"}, 0.5, math.inf), ({"lower by": "marked"}, -math.inf, 0.5),
         ({"higher by": "marked"}, 1.5, math.inf),
         ({"hardly lower by": "slightly"}, 0.75, math.inf), ({"between": [1, 2]}, 1.0, 2.0),
-        ({"less than": 1}, -math.inf, 1.0),
+        ({"less than": 1}, -math.inf, 1.0), ({"same size": "similar"}, 1.0 / 1.5, 1.5),
+        ({"order of magnitude": "almost"}, 5.0, 20.0), ({"about": 0.25, "plus": 4}, 4.1875, 4.3125),
+        ({"at most": "about", "times": 0.02, "plus": 0.02}, -math.inf, 0.025),
     ],
 )  # fmt: skip
 def test_bounds_are_declared_by_terms_or_numbers(bound, least, most):
-    made = bounds.declared(bound, words())
-    assert (made.least, made.most) == (least, most)
-    (kind,) = bound
+    made = declared.bound(bound, words())
+    assert (made.least, made.most) == pytest.approx((least, most))
+    kind, *_ = bound
     assert made.strict == (kind == "less than") and bool(made.word) == (kind not in ("between", "less than"))
 
 
 def test_what_is_declared_wrongly_is_refused(tmp_path):
-    with pytest.raises(bounds.DeclaredError, match="bound roughly: must be"):
-        bounds.declared({"roughly": 20}, words())
+    with pytest.raises(declared.DeclaredError, match="bound roughly: must be"):
+        declared.bound({"roughly": 20}, words())
+    assert declared.bound({"more than": 0, "word": "visible"}, words()) == Bound(0.0, word="visible", strict=True)
+    assert declared.bound({"at least": "rare"}, words()) == Bound(RARE)
     for wrong, message in (({"bound": {}}, "needs one of"), ({"event": "a", "sizes": 1}, "unknown key sizes")):
-        with pytest.raises(bounds.DeclaredError, match=message):
+        with pytest.raises(declared.DeclaredError, match=message):
             declared._check("group: F1", wrong)
 
 
@@ -887,7 +892,7 @@ def test_a_median_of_brackets_holds_what_is_not_known_of_each():
 def test_every_term_is_used_and_no_other(good):
     used = {test.bound.word for entry in table.evaluate(Data(good), EVERY) for test in entry.tests}
     assert used - {""} == set(WORDS)
-    assert words("about", 2.0)["about"] == 2.0 * WORDS["about"].bound
+    assert words("about", 2.0)["about"] == 2.0 * WORDS["about"][0]
     with pytest.raises(KeyError):
         words("roughly", 2.0)
 

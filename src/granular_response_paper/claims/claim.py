@@ -8,12 +8,14 @@ of the packing (``prepared``) decide nothing but the second column.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import ClassVar, Literal
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from granular_response.errors import GranularError
 
@@ -166,9 +168,21 @@ class Test:
         except NotMeasured as missing:
             raise NotMeasured(f"{self.what}: {missing}") from None
 
-    def named(self, case: str) -> Test:
-        """The same test for a value of what the text leaves open."""
-        return replace(self, case=case)
+
+#: What the function of a claim yields: for each case its name and a number for each test.
+Numbers = Iterator[tuple[Any, ...]]
+
+
+class Case(str):
+    """The name of a value of what the text leaves open, what its number is ``of``, and the preparation if another."""
+
+    of: str
+    prepared: str
+
+    def __new__(cls, name: str = "", of: str = "", prepared: str = "") -> Case:
+        case = super().__new__(cls, name)
+        case.of, case.prepared = of, prepared
+        return case
 
 
 Measure = Callable[["Data", Words], Sequence[Test]]
@@ -255,3 +269,27 @@ def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
         masks[dimension] = masks.get(dimension, True) & same
         needs(masks[dimension].any(), f"nothing is stored at {name} = {label}")
     return dataset.isel({dimension: int(np.flatnonzero(mask)[0]) for dimension, mask in masks.items()})
+
+
+def rise(values: Sequence[Quantity]) -> Quantity:
+    """The smallest ratio of neighbours among positive ``values``; above 1 if each is larger than the one before."""
+    steps = [after.per(before) for before, after in pairwise(values)]
+    needs(steps, "fewer than two values to compare")
+    value, low, high = (min(getattr(step, name) for step in steps) for name in ("value", "low", "high"))
+    return Quantity(value, low, high, steps[0].kind)
+
+
+def first(curve: xr.Dataset, name: str, happened: ArrayLike) -> Quantity:
+    """Between which stored values of the coordinate ``name`` something has ``happened`` first, in their order.
+
+    Raises NotMeasured if it has at the first one.
+    """
+    values, place = curve[name].values, np.flatnonzero(happened)
+    needs(values.size and not (place.size and place[0] == 0), f"no {name} is stored at which it has not happened yet")
+    ends = sorted(values[place[0] - 1 : place[0] + 1]) if place.size else (values[-1], np.nan)
+    return Quantity.bracket(*ends)
+
+
+def material(case: xr.Dataset) -> str:
+    """A case of a study in words."""
+    return f"polydispersity {float(case['polydispersity']):g}, friction {float(case['friction']):g}"

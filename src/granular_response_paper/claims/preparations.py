@@ -7,12 +7,11 @@ friction, makes other packings; their events are read from a summary of the grou
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from .claim import Data, Quantity, Test
+from .claim import Case, Data, Quantity
 
 GROUP = "preparation"
 
@@ -20,41 +19,34 @@ GROUP = "preparation"
 OWN = "gravity at once"
 
 
-def events(data: Data, name: str, friction: float) -> dict[str, Quantity]:
+def events(data: Data, name: str, friction: float) -> list[tuple[Case, Quantity]]:
     """The brackets of an event beside smooth walls, by preparation; none without the summary.
 
     Dashpots are the paper's. Without friction the equilibrium is one minimum, whatever came before, and there is none.
     """
     if GROUP not in data.groups or friction == 0.0:
-        return {}
+        return []
     found = data.get(GROUP, "events")
     found = found.isel(event=found["name"].values == name)
     damping = found["damping_ratio"].values
     here = np.isclose(found["friction"].values, friction) & (found["wall_friction"].values == 0.0)
-    brackets = {
-        _text(str(found["gravity"].values[k]), float(found["ramp_time"].values[k])): Quantity.bracket(
-            float(found["low"].values[k]), float(found["high"].values[k])
-        )
-        for k in np.flatnonzero(here & (damping == damping[:1])).tolist()
-    }
-    return {way: bracket for way, bracket in brackets.items() if way != OWN}
+    here &= damping == damping[:1]
+    columns = (found[name].values[here].tolist() for name in ("gravity", "ramp_time", "low", "high"))
+    brackets = {_text(way, ramp): Quantity.bracket(low, high) for way, ramp, low, high in zip(*columns, strict=True)}
+    return [(Case(prepared=way), bracket) for way, bracket in brackets.items() if way != OWN]
 
 
-def tested(
-    data: Data, event: str, frictions: Sequence[float], own: Mapping[float, Quantity], tests: Callable[..., list[Test]]
-) -> list[Test]:
-    """Tests of the brackets of an event at some frictions, in each preparation that has all of them.
+def along(
+    data: Data, event: str, frictions: Sequence[float], own: Mapping[float, Quantity]
+) -> Iterator[tuple[Case, list[Quantity]]]:
+    """The brackets of an event at some frictions, in each preparation that has all of them, by its name.
 
-    ``tests`` makes tests of the brackets in the order of ``frictions``; ``own`` has those without friction, which are
-    the same in every preparation.
+    ``own`` has those without friction, which are the same in every preparation.
     """
-    found = {mu: events(data, event, mu) for mu in frictions if mu > 0.0}
-    ways = [way for way in found[max(found)] if all(way in brackets for brackets in found.values())]
-    return [
-        replace(test, prepared=way)
-        for way in ways
-        for test in tests(*(found[mu][way] if mu in found else own[mu] for mu in frictions))
-    ]
+    found = {mu: {way.prepared: one for way, one in events(data, event, mu)} for mu in frictions if mu > 0.0}
+    for way in found[max(found)]:
+        if all(way in brackets for brackets in found.values()):
+            yield Case(prepared=way), [found[mu][way] if mu in found else own[mu] for mu in frictions]
 
 
 def _text(gravity: str, ramp_time: float) -> str:

@@ -17,13 +17,13 @@ from typing import Any
 from granular_response.store import atomic
 from granular_response.store import files as store
 
-from ..registry import PAPER, Collection, collection_of, group_member, group_path
+from ..registry import PAPER, Collection, collection_of, group_path
 from . import preparations, summary
 from .claim import Claim, Data, Quantity
-from .declared import TEXTS, Claims
+from .declared import TEXTS, read
 from .stored import OUTPUT, PARTS, ClaimsError
 from .verdict import MEANINGS, SCHEME, Entry, judge, key, rounded
-from .words import TABLE
+from .words import WORDS
 
 #: Sections of the paper, in order.
 SECTIONS = ("abstract", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "beyond")
@@ -32,12 +32,10 @@ SECTIONS = ("abstract", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "beyon
 KINDS = {"bracket": "bracket", "confidence": "95 % confidence", "range": "range"}
 
 
-def claims_of(group: str) -> Sequence[Claim]:
-    """The claims of a figure group; none if it has neither ``claims.py`` nor ``claims.yaml``."""
-    found: Sequence[Claim] | None = group_member(group, "claims", "CLAIMS", optional=True)
-    if found is None and (group_path(group) / TEXTS).is_file():
-        return Claims(f"{collection_of(group).package}.{group}")
-    return found or ()
+def claims_of(group: str) -> list[Claim]:
+    """The claims of a figure group; none if it has no ``claims.yaml``."""
+    there = (group_path(group) / TEXTS).is_file()
+    return read(f"{collection_of(group).package}.{group}") if there else []
 
 
 def part_of(claim: Claim) -> str:
@@ -97,7 +95,7 @@ def document(entries: Sequence[Entry]) -> dict[str, Any]:
         "counts": counts,
         "scheme": list(SCHEME),
         "verdicts": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
-        "words": [{"word": w.name, "bound": w.bound, "sentence": w.sentence} for w in TABLE],
+        "words": [{"word": word, "bound": bound, "sentence": text} for word, (bound, text) in WORDS.items()],
         "table": [_row(entry) for entry in entries],
     }
 

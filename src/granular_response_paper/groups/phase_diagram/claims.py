@@ -8,26 +8,22 @@ in every claim here; wider lattices are another preparation.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, pairwise
+from itertools import combinations, pairwise, product
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.special import betaincinv
 
 from granular_response.scene.lattice import SlabPacking, touching_largest
 from granular_response.state import FloatArray
-from granular_response_paper.claims import bounds
-from granular_response_paper.claims.bootstrap import LEVELS, RARE, of_draws, over_realizations, part_of
-from granular_response_paper.claims.claim import Bound, Data, Quantity, Test, at
-from granular_response_paper.claims.declared import Claims
+from granular_response_paper.claims.bootstrap import LEVELS, of_draws, over_realizations, part_of
+from granular_response_paper.claims.claim import Bound, Case, Data, Numbers, Quantity, at, needs
 from granular_response_paper.claims.words import Words
 from granular_response_paper.survey.crossover import ABOVE, BELOW, FOUND, counted
 
 GROUP = "phase_diagram"
-CLAIMS = Claims(__package__)
 
 #: The initial lattice of this project, and the literal one.
 USUAL, LITERAL = "touching-largest", "2.0"
@@ -41,40 +37,31 @@ TOLERANCES = (0.01, 0.02, 0.05)
 #: How intervals over realizations are made.
 BOOTSTRAP = "bootstrap of realizations"
 
+#: Names a number: by the value of what the text leaves open, and what it is of.
+Label = Callable[..., Case]
+
 
 def _case(study: xr.Dataset, polydispersity: float, friction: float, start: str = USUAL) -> xr.Dataset:
     """The case with these numbers. Raises NotMeasured if there is none."""
-    here = np.isclose(study["polydispersity"].values, polydispersity) & np.isclose(study["friction"].values, friction)
-    here &= study["lattice_constant"].values.astype(str) == start
-    CLAIMS.needs(here.any(), f"no case of polydispersity {polydispersity:g}, friction {friction:g}, start {start}")
-    return study.isel(case=int(np.flatnonzero(here)[0]))
+    return at(study, polydispersity=polydispersity, friction=friction, lattice_constant=start)
 
 
-def _disorders(study: xr.Dataset) -> list[float]:
-    return sorted({delta for delta in study["polydispersity"].values.tolist() if delta > 0.0})
+def _every(study: xr.Dataset) -> list[tuple[float, str, float]]:
+    """Polydispersity, start and friction of every case: by start this project's first, then by their constants."""
+    columns = (study[name].values.tolist() for name in ("polydispersity", "lattice_constant", "friction"))
+    return sorted(zip(*columns, strict=True), key=lambda case: (case[0], case[1] != USUAL, *case[1:]))
 
 
-def _starts(study: xr.Dataset, polydispersity: float) -> list[str]:
-    """The stored initial lattices: this project's, then by their constants."""
-    stored = set(
-        study["lattice_constant"].values[np.isclose(study["polydispersity"].values, polydispersity)].astype(str)
-    )
-    return [USUAL] * (USUAL in stored) + sorted(stored - {USUAL})
+def _disordered(study: xr.Dataset) -> list[tuple[float, str, float]]:
+    return [case for case in _every(study) if case[0] > 0.0]
 
 
-def _frictions(study: xr.Dataset, polydispersity: float, start: str) -> list[float]:
-    here = np.isclose(study["polydispersity"].values, polydispersity)
-    here &= study["lattice_constant"].values.astype(str) == start
-    return sorted(set(study["friction"].values[here].tolist()))
-
-
-def _every(study: xr.Dataset, friction: float | None = None) -> Iterator[tuple[float, str, float]]:
-    """Polydispersity, start and friction of every case of disorder, or of those with one friction."""
-    for delta in _disorders(study):
-        for start in _starts(study, delta):
-            for mu in _frictions(study, delta, start):
-                if friction in (None, mu):
-                    yield delta, start, mu
+def _lines(study: xr.Dataset) -> dict[tuple[float, str], list[float]]:
+    """Frictions by polydispersity and start, of disordered cases."""
+    found: dict[tuple[float, str], list[float]] = {}
+    for delta, start, mu in _disordered(study):
+        found.setdefault((delta, start), []).append(mu)
+    return found
 
 
 def _disorder(polydispersity: float) -> str:
@@ -85,19 +72,32 @@ def _title(start: str) -> str:
     return "largest disks touch at first" if start == USUAL else f"lattice constant {start}"
 
 
-def _prepared(test: Test, start: str, polydispersity: float = 0.01) -> Test:
-    """A test of a start: one value of what the text leaves open, or another preparation if the lattice is wider."""
-    title = ", ".join(filter(None, (test.case, _title(start))))
-    if start != USUAL and float(start) > touching_largest(polydispersity):
-        return replace(test, prepared=title, case="")
-    return test.named(title)
+def _label(start: str, polydispersity: float = 0.01) -> Label:
+    """Names of numbers of a start: one value of what the text leaves open, or another preparation if it is wider."""
+    wider = start != USUAL and float(start) > touching_largest(polydispersity)
+
+    def label(case: str = "", of: str = "") -> Case:
+        title = ", ".join(filter(None, (case, _title(start))))
+        return Case("" if wider else title, of, title if wider else "")
+
+    return label
 
 
-def _by_start(study: xr.Dataset, *frictions: float) -> Iterator[tuple[str, list[xr.Dataset]]]:
+def _cases(
+    data: Data, *names: str, friction: float | None = None, **labels: float
+) -> Iterator[tuple[Label, float, float, list[xr.Dataset]]]:
+    """Every case of disorder, or of those with one friction: names, polydispersity, friction, and its datasets."""
+    studies = [at(data.get(GROUP, name), **labels) for name in names]
+    for delta, start, mu in _disordered(studies[0]):
+        if friction in (None, mu):
+            yield _label(start, delta), delta, mu, [_case(study, delta, mu, start) for study in studies]
+
+
+def _by_start(study: xr.Dataset, *frictions: float) -> Iterator[tuple[Label, list[xr.Dataset]]]:
     """Starts of delta = 0.01 with their cases of these frictions."""
-    for start in _starts(study, 0.01):
-        if set(frictions) <= set(_frictions(study, 0.01, start)):
-            yield start, [_case(study, 0.01, mu, start) for mu in frictions]
+    for (delta, start), there in _lines(study).items():
+        if np.isclose(delta, 0.01) and set(frictions) <= set(there):
+            yield _label(start), [_case(study, 0.01, mu, start) for mu in frictions]
 
 
 def _with_interval(case: xr.Dataset, name: str) -> Quantity:
@@ -107,16 +107,10 @@ def _with_interval(case: xr.Dataset, name: str) -> Quantity:
     return Quantity(float(case[name]), low, high, "confidence", BOOTSTRAP, samples)
 
 
-@CLAIMS.measures("D1")
-def two_peaks_or_one(data: Data, words: Words) -> list[Test]:
-    """The paper shows one mean of each friction, so that what is asked is only that such ones are not rare."""
-    tests = []
-    for start, cases in _by_start(at(data.get(GROUP, "starts"), width=NARROW), 0.0, 0.2):
-        deepest, flattest = (_tail(case, level) for case, level in zip(cases, LEVELS[::-1], strict=True))
-        two, one = bounds.at_least(words, "marked"), bounds.at_most(words, "visible")
-        tests.append(_prepared(Test("dip at friction 0, 97.5 % quantile", deepest, two, unit="%"), start))
-        tests.append(_prepared(Test("dip at friction 0.2, 2.5 % quantile", flattest, one, unit="%"), start))
-    return tests
+def two_peaks_or_one(data: Data, words: Words) -> Numbers:
+    """D1. The paper shows one mean of each friction, so that what is asked is only that such ones are not rare."""
+    for label, cases in _by_start(at(data.get(GROUP, "starts"), width=NARROW), 0.0, 0.2):
+        yield label(), *(_tail(case, level) for case, level in zip(cases, LEVELS[::-1], strict=True))
 
 
 def _tail(case: xr.Dataset, level: float) -> Quantity:
@@ -141,7 +135,7 @@ class Crossover:
         """As stored, with its interval; open to one side where it is a bound."""
         force, kind = float(case["force"]), int(case["kind"])
         low, high = (float(at(case, level=level)["interval"]) for level in LEVELS)
-        CLAIMS.needs(not np.isnan([force, low, high]).any(), "crossovers holds a case without number")
+        needs(not np.isnan([force, low, high]).any(), "crossovers holds a case without number")
         # at no force two peaks, or at all: what was looked at ends there
         low = 0.0 if kind == BELOW else min(max(low, 0.0), force)
         high = max(high, force) if kind == BELOW else high
@@ -195,166 +189,112 @@ def trend(line: Sequence[Crossover]) -> Quantity:
     return of_draws(float(np.median(up - down)), ends, "Kendall's tau of the draws", samples, "inverted_cdf")
 
 
-def _order(name: str, line: Sequence[Crossover]) -> list[Test]:
-    """That crossover forces rise along a line, and no step against it is clear of its interval.
+def _order(line: Sequence[Crossover]) -> tuple[Quantity, int]:
+    """How crossover forces rise along a line, and the steps against it that are clear of their intervals.
 
     Those with two peaks at every force are below all others and of no order among themselves.
     """
     rest = [one for one in line if one.kind != BELOW]
     steps = [after.per(before) for before, after in pairwise(line) if after.comparable(before)]
-    rising = Bound(0.0, word="visible", strict=True)
-    back = Quantity.exact(sum(step.high < 1.0 for step in steps))
-    return [
-        Test("trend (Kendall's tau)", trend(rest if len(rest) > 1 else line), rising, name),
-        Test("steps against it, clear of their intervals", back, replace(bounds.NONE, word="visible"), name),
-    ]
+    return trend(rest if len(rest) > 1 else line), sum(step.high < 1.0 for step in steps)
 
 
-@CLAIMS.measures("D3a")
-def rises_with_friction(data: Data, words: Words) -> list[Test]:
-    study, tests = data.get(GROUP, "crossovers"), []
-    for delta, start in dict.fromkeys((delta, start) for delta, start, _ in _every(study)):
-        frictions = _frictions(study, delta, start)
+def rises_with_friction(data: Data, words: Words) -> Numbers:
+    """D3a."""
+    for (delta, start), frictions in _lines(data.get(GROUP, "crossovers")).items():
         if len(frictions) > 1:
             line = [_crossover(data, words, delta, mu, start) for mu in frictions]
-            tests += [_prepared(test, start, delta) for test in _order(_disorder(delta), line)]
-    return tests
+            yield _label(start, delta)(_disorder(delta)), *_order(line)
 
 
-@CLAIMS.measures("D3b")
-def falls_with_disorder(data: Data, words: Words) -> list[Test]:
-    study, tests = data.get(GROUP, "crossovers"), []
-    deltas = _disorders(study)
+def falls_with_disorder(data: Data, words: Words) -> Numbers:
+    """D3b."""
+    lines = _lines(data.get(GROUP, "crossovers"))
+    deltas = sorted({delta for delta, _ in lines}, reverse=True)
     for start in (USUAL, LITERAL):
-        for mu in sorted(set.intersection(*(set(_frictions(study, delta, start)) for delta in deltas))):
-            line = [_crossover(data, words, delta, mu, start) for delta in reversed(deltas)]
+        for mu in sorted(set.intersection(*(set(lines.get((delta, start), ())) for delta in deltas))):
+            line = [_crossover(data, words, delta, mu, start) for delta in deltas]
             if any(after.comparable(before) for before, after in pairwise(line)) or start == LITERAL:
-                tests += [test.named(f"{test.case}, {_title(start)}") for test in _order(f"friction {mu:g}", line)]
-    return tests
+                yield f"friction {mu:g}, {_title(start)}", *_order(line)
 
 
-@CLAIMS.measures("D4")
-def gradual(data: Data, words: Words) -> list[Test]:
-    studies = [at(data.get(GROUP, name), width=WIDE) for name in ("shapes", "realizations", "crossovers")]
-    tests, most = [], bounds.at_most(words, "gradual")
-    for delta, start, mu in _every(studies[0], 1.0):
-        case, single, crossover = (_case(study, delta, mu, start) for study in studies)
+def gradual(data: Data, words: Words) -> Numbers:
+    """D4."""
+    for label, delta, _, found in _cases(data, "shapes", "realizations", "crossovers", friction=1.0, width=WIDE):
+        case, single, crossover = found
         if int(crossover["kind"]) == FOUND:
             dips, leans = (single[name].transpose("realization", "step").values for name in ("shape", "asymmetry"))
             steps = np.fmax.reduce(np.fmax(np.abs(np.diff(dips)), np.abs(np.diff(leans))), axis=1)
-            found = {"mean": _with_interval(case, "largest_step"), "median realization": over_realizations(steps)}
-            for name, step in found.items():
-                what = f"largest change between neighbouring forces, {name}"
-                tests.append(_prepared(Test(what, step, most, _disorder(delta)), start, delta))
-    return tests
+            yield label(_disorder(delta), "mean"), _with_interval(case, "largest_step")
+            yield label(_disorder(delta), "median realization"), over_realizations(steps)
 
 
-@CLAIMS.measures("D5")
-def five_enough(data: Data, words: Words) -> list[Test]:
-    """A statement on samples of five: it must hold in most of them, wherever the mean of all has a crossover.
+def five_enough(data: Data, words: Words) -> Numbers:
+    """D5, a statement on samples of five: it must hold in most of them, wherever the mean of all has a crossover.
 
     Where it has none up to the largest force, samples may have one beyond it.
     """
-    study, tests = at(data.get(GROUP, "crossovers"), width=WIDE), []
-    for delta, start, mu in _every(study):
-        case = _case(study, delta, mu, start)
+    for label, delta, mu, (case,) in _cases(data, "crossovers", width=WIDE):
         seen = replace(_with_interval(case, "seen"), method="samples of five, bootstrap")
-        seen = replace(seen, high=1.0) if int(case["kind"]) == ABOVE else seen
         if int(case["kind"]) != BELOW:
-            what = f"samples of five with a crossover, friction {mu:g}"
-            tests.append(_prepared(Test(what, seen, Bound(0.5), _disorder(delta), "%"), start, delta))
-    return tests
+            seen = replace(seen, high=1.0) if int(case["kind"]) == ABOVE else seen
+            yield label(_disorder(delta), f"{mu:g}"), seen
 
 
-@CLAIMS.measures("D6")
-def below_lattice(data: Data, words: Words) -> list[Test]:
-    tests, below = [], Bound(most=1.0, word="visible", strict=True)
-    for delta, start, mu in _every(data.get(GROUP, "crossovers")):
+def below_lattice(data: Data, words: Words) -> Numbers:
+    """D6."""
+    for delta, start, mu in _disordered(data.get(GROUP, "crossovers")):
         found, lattice = (_crossover(data, words, d, mu, s) for d, s in ((delta, start), (0.0, USUAL)))
         if found.comparable(lattice):
-            what = f"crossover per lattice's, friction {mu:g}"
-            tests.append(_prepared(Test(what, found.per(lattice), below, _disorder(delta)), start, delta))
-    return tests
+            yield _label(start, delta)(_disorder(delta), f"{mu:g}"), found.per(lattice)
 
 
-@CLAIMS.measures("D8")
-def preparation(data: Data, words: Words) -> list[Test]:
-    tests, what = [], "crossover from lattice constant 2 per that from touching disks"
+def preparation(data: Data, words: Words) -> Numbers:
+    """D8."""
     for mu in (0.0, 0.2):
         usual, literal = (_crossover(data, words, 0.01, mu, start) for start in (USUAL, LITERAL))
-        larger = Bound(1.0, word="visible", strict=True)
-        tests.append(Test(what, literal.per(usual), larger, f"friction {mu:g}"))
-    return tests
+        yield f"friction {mu:g}", literal.per(usual)
 
 
-@CLAIMS.measures("D13")
-def like_the_lattice(data: Data, words: Words) -> list[Test]:
-    """One peak under the smallest force, two under larger ones, at the frictions at which the lattice has both."""
-    study, tests = data.get(GROUP, "crossovers"), []
-    ordered = [mu for mu in _frictions(study, 0.0, USUAL) if _crossover(data, words, 0.0, mu, USUAL).kind == FOUND]
-    for delta, start, mu in _every(study):
-        if mu in ordered:
+def like_the_lattice(data: Data, words: Words) -> Numbers:
+    """D13. One peak under the smallest force, two under larger ones, at the frictions at which the lattice has both."""
+    study = data.get(GROUP, "crossovers")
+    lattice = [mu for delta, start, mu in _every(study) if delta == 0.0 and start == USUAL]
+    both = [mu for mu in lattice if _crossover(data, words, 0.0, mu, USUAL).kind == FOUND]
+    for delta, start, mu in _disordered(study):
+        if mu in both:
             found = _crossover(data, words, delta, mu, start).found
             smallest, largest = _case(study, delta, mu, start)["limits"].values[-1].tolist()
-            for bound in (Bound(smallest, strict=True), Bound(most=largest)):
-                test = Test(
-                    f"crossover force, friction {mu:g}", found, bound, f"{_disorder(delta)}, friction {mu:g}", "mg"
-                )
-                tests.append(_prepared(test, start, delta))
-    return tests
+            case = _label(start, delta)(f"{_disorder(delta)}, friction {mu:g}", f"{mu:g}")
+            yield case, (found, Bound(smallest, strict=True)), (found, Bound(most=largest))
 
 
-@CLAIMS.measures("D18")
-def without_contacts(data: Data, words: Words) -> list[Test]:
-    study, tests = at(data.get(GROUP, "shapes"), width=NARROW), []
-    for delta, start, mu in _every(study, 0.0):
-        dip, least = (
-            _with_interval(_case(study, delta, mu, start).isel(step=0), "shape"),
-            bounds.at_least(words, "visible"),
-        )
-        tests.append(_prepared(Test("dip under the smallest force", dip, least, _disorder(delta), "%"), start, delta))
-    return tests
+def without_contacts(data: Data, words: Words) -> Numbers:
+    """D18."""
+    for label, delta, _, (case,) in _cases(data, "shapes", friction=0.0, width=NARROW):
+        yield label(_disorder(delta)), _with_interval(case.isel(step=0), "shape")
 
 
 #: What is counted as contacts of a disk.
 COUNTED = {"contacts of disks": "", "walls counted": "_with_walls", "away from the boundaries": "_bulk"}
 
 
-def _coordination(data: Data, bound: Bound, scale: float = 1.0) -> list[Test]:
-    tests = []
-    for start, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
+def coordination(data: Data, words: Words, per: float = 1.0) -> Numbers:
+    """D7a, D14."""
+    for label, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
         for name, kind in COUNTED.items():
-            mean = over_realizations(case[f"coordination_number{kind}"].values / scale, np.mean)
-            tests.append(_prepared(Test("contacts per disk", mean, bound, name), start))
-    return tests
+            yield label(name), over_realizations(case[f"coordination_number{kind}"].values / per, np.mean)
 
 
-@CLAIMS.measures("D7a")
-def coordination(data: Data, words: Words) -> list[Test]:
-    # the paper holds 4.25 against the isostatic 4: what is "about" is the excess
-    low, high = (4.0 + (1.0 + sign * words["about"]) * 0.25 for sign in (-1.0, 1.0))
-    return _coordination(data, Bound(low, high, "about"))
-
-
-@CLAIMS.measures("D14")
-def below_six(data: Data, words: Words) -> list[Test]:
-    return _coordination(data, bounds.lower(words, "marked"), 6.0)
-
-
-@CLAIMS.measures("D7b")
-def missing_horizontal(data: Data, words: Words) -> list[Test]:
-    """Of the contacts of the ideal lattice, in which every disk touches its neighbours."""
+def missing_horizontal(data: Data, words: Words) -> Numbers:
+    """D7b, of the contacts of the ideal lattice, in which every disk touches its neighbours."""
     packing = SlabPacking().build()
     i, j = packing.neighbour_pairs().T  # type: ignore[union-attr]
     level = packing.row[i] == packing.row[j]
     ideal = {"horizontal": level.sum() / packing.n, "oblique": (~level).sum() / packing.n}
-    tests = []
-    for start, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
+    for label, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
         missing = {name: number - case[f"{name}_contacts"].values for name, number in ideal.items()}
-        part = over_realizations(missing["horizontal"] / sum(missing.values()), np.mean)
-        test = Test("horizontal part of the missing contacts", part, bounds.at_least(words, "marked"), unit="%")
-        tests.append(_prepared(test, start))
-    return tests
+        yield label(), over_realizations(missing["horizontal"] / sum(missing.values()), np.mean)
 
 
 def _away(data: Data, words: Words) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -372,12 +312,11 @@ def _away(data: Data, words: Words) -> tuple[NDArray[np.bool_], NDArray[np.bool_
     return below, above
 
 
-@CLAIMS.measures("D9")
-def resembles(data: Data, words: Words) -> list[Test]:
-    """At forces that are known to be away from the crossover of their case."""
+def resembles(data: Data, words: Words) -> Numbers:
+    """D9, at forces that are known to be away from the crossover of their case."""
     study = at(data.get(GROUP, "realizations"), width=WIDE)
     off = study["difference"].transpose("case", "realization", "step").values
-    constant, tests = study["lattice_constant"].values.astype(str), []
+    constant = study["lattice_constant"].values.astype(str)
     for start in (USUAL, LITERAL):
         here = (study["polydispersity"].values > 0.0) & (constant == start)
         known = np.isfinite(off).any(axis=1) & here[:, None]
@@ -385,28 +324,21 @@ def resembles(data: Data, words: Words) -> list[Test]:
             typical = [np.nanmedian(off[case, :, step]) for case, step in np.argwhere(away & known)]
             if len(typical) > 2:
                 found = replace(over_realizations(typical), method="bootstrap of the median over cases and forces")
-                case = f"{side} the crossover, {_title(start)}"
-                what = "difference of a typical realization from the mean"
-                tests.append(Test(what, found, bounds.at_most(words, "similar"), case, "%"))
-    return tests
+                yield f"{side} the crossover, {_title(start)}", found
 
 
-def _at_15(data: Data, name: str) -> Iterator[tuple[str, list[xr.Dataset]]]:
+def _at_15(data: Data, name: str) -> Iterator[tuple[Label, list[xr.Dataset]]]:
     """By start: delta = 0.01 under 15 mg at friction 0 and at 0.2, w = 3."""
     study = at(data.get(GROUP, name), width=NARROW).assign(applied=data.get(GROUP, "shapes")["applied_force"])
-    for start, cases in _by_start(study, 0.0, 0.2):
-        yield start, [one.isel(step=int(np.flatnonzero(np.isclose(one["applied"].values, 15.0))[0])) for one in cases]
+    for label, cases in _by_start(study, 0.0, 0.2):
+        yield label, [one.isel(step=int(np.flatnonzero(np.isclose(one["applied"].values, 15.0))[0])) for one in cases]
 
 
-@CLAIMS.measures("D10")
-def fluctuations(data: Data, words: Words) -> list[Test]:
-    tests = []
-    for start, cases in _at_15(data, "shapes"):
+def fluctuations(data: Data, words: Words) -> Numbers:
+    """D10."""
+    for label, cases in _at_15(data, "shapes"):
         without, full = (_with_interval(case, "spread") for case in cases)
-        tests.append(
-            _prepared(Test("spread without friction per with 0.2", without.per(full), Bound(1.0, strict=True)), start)
-        )
-    return tests
+        yield label(), without.per(full)
 
 
 def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quantity:
@@ -425,41 +357,20 @@ def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quan
     return of_draws(part(without, full, 20000), drawn, method, number)
 
 
-@CLAIMS.measures("D11")
-def evident(data: Data, words: Words) -> list[Test]:
-    tests, least = [], 1.0 - words["holds"]
-    for start, cases in _at_15(data, "realizations"):
+def evident(data: Data, words: Words) -> Numbers:
+    """D11."""
+    least = 1.0 - words["holds"]
+    for label, cases in _at_15(data, "realizations"):
         without, full = (case["shape"].values[np.isfinite(case["shape"].values)] for case in cases)
-        what = f"samples in which {least:.0%} of the pairs of realizations differ"
-        tests.append(
-            _prepared(Test(what, evident_samples(without, full, least), Bound(RARE, word="holds"), unit="%"), start)
-        )
-    return tests
+        yield label(of=f"{least:.0%}"), evident_samples(without, full, least)
 
 
-def _collapses(
-    data: Data, wanted: Bound, polydispersity: float | None = None, friction: float | None = None
-) -> list[Test]:
-    """The part of the packings that collapse along their load paths, of all cases or of one disorder and friction."""
-    study, tests = data.get(GROUP, "realizations"), []
-    for delta, start, mu in _every(study, friction):
+def collapses(data: Data, words: Words, polydispersity: float | None = None, friction: float | None = None) -> Numbers:
+    """D12, D16: the part of the packings that collapse along their load paths, of all cases or of one of them."""
+    for label, delta, mu, (one,) in _cases(data, "realizations", friction=friction):
         if polydispersity in (None, delta):
-            one = _case(study, delta, mu, start)
             part = part_of(np.isfinite(one["collapse_force"].values[: int(one["realizations"])]))
-            case = f"{_disorder(delta)}, friction {mu:g}"
-            tests.append(_prepared(Test("packings that collapse", part, wanted, case, "%"), start, delta))
-    return tests
-
-
-@CLAIMS.measures("D12")
-def unstable(data: Data, words: Words) -> list[Test]:
-    """Two of five packings were unstable: not rare if so many or more are in one of forty samples of five."""
-    return _collapses(data, Bound(float(betaincinv(2, 4, RARE))), 0.1, 0.2)
-
-
-@CLAIMS.measures("D16")
-def rearrangements(data: Data, words: Words) -> list[Test]:
-    return _collapses(data, Bound(RARE))
+            yield label(f"{_disorder(delta)}, friction {mu:g}"), part
 
 
 #: Names of what is off in the linear range.
@@ -500,7 +411,7 @@ def linear_end(ends: FloatArray) -> Quantity:
 
     Raises NotMeasured for two realizations or none; a lattice has one, without scatter.
     """
-    CLAIMS.needs(len(ends) not in (0, 2), "linear_range holds too few realizations")
+    needs(len(ends) not in (0, 2), "linear_range holds too few realizations")
     picked = np.random.default_rng(0).integers(0, len(ends), (2000, len(ends)))
     low, high = (np.quantile(ends[picked, k], 0.5, axis=1, method="inverted_cdf") for k in (0, 1))
     value = float(np.quantile(ends[:, 1], 0.5, method="inverted_cdf"))
@@ -531,34 +442,24 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
     return of_draws(value / number, (low / number, high / number), "Jonckheere's statistic, bootstrap", samples)
 
 
-@CLAIMS.measures("D2")
-def shorter_range(data: Data, words: Words) -> list[Test]:
-    study, tests = data.get(GROUP, "linear_range"), []
-    for start in _starts(study, 0.01):
-        for mu in _frictions(study, 0.01, start):
-            for tolerance in TOLERANCES:
-                ends, lattice = (linear_ends(_case(study, *case), tolerance) for case in ((0.01, mu, start), (0.0, mu)))
-                what = f"realizations with a shorter range, {tolerance:.0%} off"
-                test = Test(what, shorter(ends, lattice[0]), Bound(0.5, strict=True), f"friction {mu:g}", "%")
-                tests.append(_prepared(test, start))
-    return tests
+def shorter_range(data: Data, words: Words) -> Numbers:
+    """D2."""
+    study = data.get(GROUP, "linear_range")
+    for (delta, start), frictions in _lines(study).items():
+        for mu, tolerance in product(frictions if np.isclose(delta, 0.01) else (), TOLERANCES):
+            ends, lattice = (linear_ends(_case(study, *case), tolerance) for case in ((0.01, mu, start), (0.0, mu)))
+            yield _label(start)(f"friction {mu:g}", f"{tolerance:.0%}"), shorter(ends, lattice[0])
 
 
-@CLAIMS.measures("A5")
-def shorter_with_disorder(data: Data, words: Words) -> list[Test]:
-    """The response as a whole, since that at x = 0 is near zero without friction."""
-    study, tests = data.get(GROUP, "linear_range"), []
+def shorter_with_disorder(data: Data, words: Words) -> Numbers:
+    """A5, by the response as a whole, since that at x = 0 is near zero without friction."""
+    study = data.get(GROUP, "linear_range")
+    lines = _lines(study)
     for start in (USUAL, LITERAL):
-        deltas = [delta for delta in _disorders(study) if start in _starts(study, delta)]
-        for mu in _frictions(study, deltas[-1], start) if deltas else ():
-            for tolerance in TOLERANCES:
-                cases = [_case(study, 0.0, mu), *(_case(study, delta, mu, start) for delta in deltas)]
-                ends = [linear_ends(case, tolerance, PROFILE) for case in cases]
-                lattice, least = (linear_end(one) for one in ends[:2])
-                case = f"friction {mu:g}, {tolerance:.0%} off, {_title(start)}"
-                longer = Bound(1.0, strict=True)
-                tests.append(Test(f"lattice per disorder of {deltas[0]:g}", lattice.per(least), longer, case))
-                if len(deltas) > 1:
-                    falls = Bound(most=0.0, strict=True)
-                    tests.append(Test("order of the realizations (Kendall's tau)", order_of(ends[1:]), falls, case))
-    return tests
+        deltas = [delta for delta, one in lines if one == start]
+        for mu, tolerance in product(lines[deltas[-1], start] if deltas else (), TOLERANCES):
+            cases = [_case(study, 0.0, mu), *(_case(study, delta, mu, start) for delta in deltas)]
+            ends = [linear_ends(case, tolerance, PROFILE) for case in cases]
+            lattice, least = (linear_end(one) for one in ends[:2])
+            case = Case(f"friction {mu:g}, {tolerance:.0%} off, {_title(start)}", f"{deltas[0]:g}")
+            yield case, lattice.per(least), order_of(ends[1:]) if len(deltas) > 1 else None
