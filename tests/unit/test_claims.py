@@ -662,6 +662,12 @@ DECLARED = [
     ({"trend": "study.size", "along": "friction", "at": {"kind": "b"}, "falling": True}, [(1 / 3, 1 / 3)]),
     ({"event": "opens", "friction": 0.2}, [(1.0, 1.5)]),
     ({"event": "opens", "friction": 0.2, "per": {"event": "opens", "friction": 1}}, [(0.25, 0.5)]),
+    ({"event": "opens", "at": {"side": "rough"}}, [(3.0, 4.0)]),
+    (
+        {"value": "study.size", "at": {"friction": 0.2}, "unlike": {"value": "study.size", "at": {"friction": 1}}},
+        [(0.75, 0.75)],
+    ),
+    ({"value": "study.size", "at": {"kind": "b"}, "over": {"friction": "average"}}, [(11 / 3, 11 / 3)]),
 ]
 
 
@@ -672,6 +678,7 @@ def test_a_declared_test_measures_what_it_says(spec, ends):
         friction=("event", [0.2, 1.0]),
         low=("event", [1.0, 3.0]),
         high=("event", [1.5, 4.0]),
+        side=("event", ["smooth", "rough"]),
     )
     data = Data({"group": {"study": STUDY, "events": table_}})
     rows = list(declared._rows("group", [spec], data, words()))
@@ -955,6 +962,10 @@ def test_the_counts_in_words(good):
     assert f"Under another preparation {tried} were tried: {tried} hold, 0 fail, 0 cannot be told." in firm
 
 
+def other_ways(data):
+    return [(way.prepared, ends) for way, ends in preparations.along(data, "crossover", [0.2])]
+
+
 def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path, good):
     """It has the layout of the dataset ``events``, and says what it was made from."""
     store.write(tmp_path / "preparation.nc", good["preparation"], {"group": "preparation", "parameters": "ways: []"})
@@ -963,7 +974,7 @@ def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path
     assert made["source"] == "preparation.nc" and made["parameters"] == "ways: []" and len(made["source_sha256"]) == 64
     data = table.collect(tmp_path / "none", path)
     assert data.event("preparation", "crossover", 0.2) == Data(good).event("preparation", "crossover", 0.2)
-    assert preparations.events(data, "crossover", 0.2) == preparations.events(Data(good), "crossover", 0.2) != {}
+    assert other_ways(data) == other_ways(Data(good)) != []
     assert table.collect(tmp_path / "none", tmp_path / "none.nc").groups == {}
     store.write(tmp_path / "other.nc", pile_study(), {"group": "pile_dip"})
     with pytest.raises(NotMeasured, match="no events of the group preparation"):

@@ -237,17 +237,13 @@ class Data:
             raise NotMeasured(f"data/{group}.nc holds no dataset {name}")
         return self.groups[group][name]
 
-    def event(self, group: str, name: str, friction: float | None = None, table: str = "events") -> Quantity:
-        """The bracket of an event in a ``table`` of them; ``friction`` None takes the first event of that name."""
-        events = self.get(group, table)
-        here = events["name"].values == name
-        if friction is not None and "friction" in events.variables:
-            here = here & (np.abs(events["friction"].values - friction) <= _SAME * abs(friction))
-        if not here.any():
-            with_friction = "" if friction is None else f" at friction {friction:g}"
-            raise NotMeasured(f"data/{group}.nc: {table} holds no {name}{with_friction}")
-        k = int(np.flatnonzero(here)[0])
-        return Quantity.bracket(float(events["low"].values[k]), float(events["high"].values[k]))
+    def event(
+        self, group: str, name: str, friction: float | None = None, table: str = "events", **at_: Any
+    ) -> Quantity:
+        """The bracket of an event in a ``table`` of them, the first with this name, this friction and other labels."""
+        labels = {"name": name, **at_} | ({} if friction is None else {"friction": friction})
+        found = at(self.get(group, table), **labels)
+        return Quantity.bracket(float(found["low"]), float(found["high"]))
 
 
 def needs(there: object, what: str) -> None:

@@ -4,11 +4,13 @@ A test has one of
 
 ``event``
     the name of an event in the group's dataset ``events`` (or in ``table``, or of another ``group``); with
-    a ``friction``, and ``prepared: true`` if the same event in other preparations makes the second column;
+    a ``friction`` and other labels ``at``, and ``prepared: true`` if the same event in other preparations makes the
+    second column, or ``prepared: only`` if nothing else is looked at;
 ``value``
     ``dataset.variable``, at the labels ``at`` or where coordinates lie in ``where``; ``over`` reduces what is left,
     dimension by dimension (``max``, ``min``, ``first``, ``last``, ``mean`` and ``median`` with the interval of the
-    bootstrap over realizations, ``interval`` with the stored ends along that dimension, ``range`` of all entries);
+    bootstrap over realizations, ``interval`` with the stored ends along that dimension, ``range`` of all entries,
+    ``average`` without an interval); with ``unlike``, another one, their largest difference per its largest value;
 ``trend``
     the same, smallest ratio of neighbours along the dimension ``along`` (``falling: true`` turns it round);
 
@@ -48,7 +50,7 @@ TEXTS = "claims.yaml"
 
 _KINDS = ("event", "value", "trend")
 _KEYS = {*_KINDS, "table", "friction", "prepared", "at", "where", "over", "along", "falling", "per", "scale", "unit"}
-_KEYS |= {"case", "each", "bound", "what", "group"}
+_KEYS |= {"case", "each", "bound", "what", "group", "unlike"}
 
 #: By the kind of a bound: its ends, from its number v and the threshold t of its term.
 _ENDS: dict[str, Callable[[Any, float], Sequence[float]]] = {
@@ -65,6 +67,9 @@ _ENDS: dict[str, Callable[[Any, float], Sequence[float]]] = {
     "order of magnitude": lambda v, t: (10.0 ** (1.0 - t), 10.0 ** (1.0 + t)),
 }
 _ENDS |= dict.fromkeys(WORDS, lambda v, t: ((1.0 - t) * v, (1.0 + t) * v))
+
+
+_SIMPLE: dict[str, Callable[..., Any]] = {"max": np.max, "min": np.min, "average": np.mean}
 
 
 class DeclaredError(GranularError):
@@ -169,20 +174,29 @@ def _rows(group: str, tests: Sequence[Mapping[str, Any]], data: Data, words: Wor
                 name = label if isinstance(label, str) else f"{dimension.replace('_', ' ')} {label:g}"
                 yield name, *before, _number(group, {**spec, "at": {**spec.get("at", {}), dimension: label}}, data)
             continue
-        yield spec.get("case", ""), *before, _number(group, spec, data)
-        for way, number in preparations.events(data, spec["event"], spec["friction"]) if "prepared" in spec else ():
-            yield way, *before, number
+        if spec.get("prepared") != "only":
+            yield spec.get("case", ""), *before, _number(group, spec, data)
+        if "prepared" in spec:
+            frictions = [one["friction"] for one in (spec, spec.get("per")) if one]
+            own = {frictions[-1]: _number(group, spec["per"], data)} if "per" in spec else {}
+            for way, ends in preparations.along(data, spec["event"], frictions, own):
+                yield way, *before, ends[0].per(ends[1]) if "per" in spec else ends[0]
 
 
 def _number(group: str, spec: Mapping[str, Any], data: Data) -> Quantity:
     if "event" in spec:
-        found = data.event(spec.get("group", group), spec["event"], spec.get("friction"), spec.get("table", "events"))
+        labels = {name: spec[name] for name in ("friction", "table") if name in spec} | spec.get("at", {})
+        found = data.event(spec.get("group", group), spec["event"], **labels)
     elif "trend" in spec:
         values = _selected(group, spec, spec["trend"], data).sortby(spec["along"])
         along = [_reduced(values.isel({spec["along"]: k}), spec) for k in range(values.sizes[spec["along"]])]
         found = rise(along[::-1] if spec.get("falling") else along)
     else:
-        found = _reduced(_selected(group, spec, spec["value"], data), spec)
+        values = _selected(group, spec, spec["value"], data)
+        if "unlike" in spec:
+            other = _selected(group, spec["unlike"], spec["unlike"]["value"], data)
+            values = np.abs(values.drop_vars(values.coords) - other.drop_vars(other.coords)).max() / other.max()
+        found = _reduced(values, spec)
     if "per" in spec:
         found = found.per(_number(group, spec["per"], data))
     scale = float(spec.get("scale", 1.0))
@@ -198,7 +212,7 @@ def _where(study: xr.Dataset, spec: Mapping[str, Any]) -> xr.Dataset:
 
 def _selected(group: str, spec: Mapping[str, Any], source: str, data: Data) -> xr.DataArray:
     name, _, variable = source.rpartition(".")
-    return at(_where(data.get(group, name), spec), **spec.get("at", {}))[variable]
+    return at(_where(data.get(spec.get("group", group), name), spec), **spec.get("at", {}))[variable]
 
 
 def _reduced(values: xr.DataArray, spec: Mapping[str, Any]) -> Quantity:
@@ -210,11 +224,11 @@ def _reduced(values: xr.DataArray, spec: Mapping[str, Any]) -> Quantity:
             return Quantity(value, low, high, "confidence", "bootstrap of the mean")
         if how == "range":
             return Quantity.range(values.values.reshape(-1))
-        if how not in ("first", "last", "max", "min"):
-            raise DeclaredError(f"over {dimension}: {how}, must be one of max, min, first, last, mean, median, range")
-        if how in ("max", "min"):
-            values = values.reduce(getattr(np, how), dimension)
-        else:
+        if how in ("first", "last"):
             values = values.isel({dimension: 0 if how == "first" else -1})
+        elif how in _SIMPLE:
+            values = values.reduce(_SIMPLE[how], dimension)
+        else:
+            raise DeclaredError(f"over {dimension}: {how}, must be first, last, mean, median, {', '.join(_SIMPLE)}")
     needs(values.size == 1, f"{values.name}: {values.size} numbers in place of one")
     return Quantity.exact(float(values.values.reshape(-1)[0]))

@@ -19,34 +19,31 @@ GROUP = "preparation"
 OWN = "gravity at once"
 
 
-def events(data: Data, name: str, friction: float) -> list[tuple[Case, Quantity]]:
-    """The brackets of an event beside smooth walls, by preparation; none without the summary.
+def along(
+    data: Data, event: str, frictions: Sequence[float], own: Mapping[float, Quantity] | None = None
+) -> Iterator[tuple[Case, list[Quantity]]]:
+    """The brackets of an event at some frictions beside smooth walls, in each preparation that has all of them.
 
-    Dashpots are the paper's. Without friction the equilibrium is one minimum, whatever came before, and there is none.
+    ``own`` has those without friction, which are the same in every preparation: the equilibrium is one minimum,
+    whatever came before. Dashpots are the paper's. There is nothing without the summary.
     """
-    if GROUP not in data.groups or friction == 0.0:
-        return []
+    found = {mu: _events(data, event, mu) for mu in frictions if mu > 0.0}
+    for way in found[max(found)]:
+        if way != OWN and all(way in brackets for brackets in found.values()):
+            yield Case(prepared=way), [found[mu][way] if mu in found else (own or {})[mu] for mu in frictions]
+
+
+def _events(data: Data, name: str, friction: float) -> dict[str, Quantity]:
+    """The brackets of an event by preparation."""
+    if GROUP not in data.groups:
+        return {}
     found = data.get(GROUP, "events")
     found = found.isel(event=found["name"].values == name)
     damping = found["damping_ratio"].values
     here = np.isclose(found["friction"].values, friction) & (found["wall_friction"].values == 0.0)
     here &= damping == damping[:1]
     columns = (found[name].values[here].tolist() for name in ("gravity", "ramp_time", "low", "high"))
-    brackets = {_text(way, ramp): Quantity.bracket(low, high) for way, ramp, low, high in zip(*columns, strict=True)}
-    return [(Case(prepared=way), bracket) for way, bracket in brackets.items() if way != OWN]
-
-
-def along(
-    data: Data, event: str, frictions: Sequence[float], own: Mapping[float, Quantity]
-) -> Iterator[tuple[Case, list[Quantity]]]:
-    """The brackets of an event at some frictions, in each preparation that has all of them, by its name.
-
-    ``own`` has those without friction, which are the same in every preparation.
-    """
-    found = {mu: {way.prepared: one for way, one in events(data, event, mu)} for mu in frictions if mu > 0.0}
-    for way in found[max(found)]:
-        if all(way in brackets for brackets in found.values()):
-            yield Case(prepared=way), [found[mu][way] if mu in found else own[mu] for mu in frictions]
+    return {_text(way, ramp): Quantity.bracket(low, high) for way, ramp, low, high in zip(*columns, strict=True)}
 
 
 def _text(gravity: str, ramp_time: float) -> str:

@@ -22,8 +22,7 @@ def _series(data: Data, event: str) -> list[tuple[str, xr.Dataset, Quantity]]:
     return list(zip(names, found, (Quantity.range(end[1:], end[0]) for end in ends), strict=True))
 
 
-def deep_and_shallow(data: Data, words: Words) -> Numbers:
-    """B8."""
+def deep_and_shallow(data: Data, words: Words) -> Numbers:  # B8
     for name, _, power in _series(data, "crossover"):
         yield name, power
 

@@ -30,8 +30,7 @@ def _brackets(event: xr.Dataset) -> list[Quantity]:
     return [Quantity.bracket(*ends) for ends in zip(event["low"].values, event["high"].values, strict=True)]
 
 
-def ranges(data: Data, words: Words) -> Numbers:
-    """B2."""
+def ranges(data: Data, words: Words) -> Numbers:  # B2
     events, found = data.get("hysteresis", "events"), {}
     for case in range(events.sizes["case"]):
         one = events.isel(case=case)

@@ -9,8 +9,7 @@ from granular_response_paper.claims.claim import Data, Numbers, Quantity, materi
 from granular_response_paper.claims.words import Words
 
 
-def saint_venant(data: Data, words: Words) -> Numbers:
-    """B1."""
+def saint_venant(data: Data, words: Words) -> Numbers:  # B1
     study = data.get("influence", "saint_venant")
     for case in range(study.sizes["case"]):
         one = study.isel(case=case, separation=0)

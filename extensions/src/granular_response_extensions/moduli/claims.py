@@ -29,8 +29,7 @@ def _slabs(data: Data) -> dict[str, xr.Dataset]:
     return {f"friction {float(mu):g}": found.isel(slab=k, step=known[k]) for k, mu in enumerate(found["friction"])}
 
 
-def reach(data: Data, words: Words) -> Numbers:
-    """B27."""
+def reach(data: Data, words: Words) -> Numbers:  # B27
     ratios = {}
     for name, slab in _slabs(data).items():
         crossover = Quantity.bracket(*slab["crossover"].values)
@@ -44,8 +43,7 @@ def reach(data: Data, words: Words) -> Numbers:
     yield from ratios.items()
 
 
-def incrementally_elastic(data: Data, words: Words) -> Numbers:
-    """B28."""
+def incrementally_elastic(data: Data, words: Words) -> Numbers:  # B28
     found = {}
     for name, slab in _slabs(data).items():
         crossover = Quantity.bracket(*slab["crossover"].values)
@@ -58,8 +56,7 @@ def incrementally_elastic(data: Data, words: Words) -> Numbers:
     yield from sorted(found.items(), key=lambda one: not one[0].startswith("friction 0.2, up"))
 
 
-def peaks(data: Data, words: Words) -> Numbers:
-    """B29."""
+def peaks(data: Data, words: Words) -> Numbers:  # B29
     for name, slab in _slabs(data).items():
         wrong = (slab["predicted_two_peaks"] != slab["two_peaks"]).sum("step")
         yield f"{name}, {slab.sizes['step']} forces", Quantity.range(wrong.values.ravel())

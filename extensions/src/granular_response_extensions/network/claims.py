@@ -21,8 +21,7 @@ def _means(data: Data, name: str, state: str) -> list[tuple[str, list[tuple[floa
     return found
 
 
-def tail(data: Data, words: Words) -> Numbers:
-    """B11."""
+def tail(data: Data, words: Words) -> Numbers:  # B11
     for state in ("rest", "loaded"):
         for delta, means in _means(data, "tail_variation", state):
             yield from ((Case(f"{delta}, {state}", f"{mu:g}"), found) for mu, found in means)
@@ -36,7 +35,6 @@ def coordination(data: Data, words: Words) -> Numbers:
         yield Case(delta, f"{largest:g}"), None, full
 
 
-def isostaticity(data: Data, words: Words) -> Numbers:
-    """B13."""
+def isostaticity(data: Data, words: Words) -> Numbers:  # B13
     for delta, means in _means(data, "hyperstaticity", "rest"):
         yield from ((Case(delta, f"{mu:g}"), found) for mu, found in means if mu > 0.0)

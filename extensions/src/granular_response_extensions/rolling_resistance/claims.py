@@ -22,16 +22,14 @@ def _held(data: Data, rolling: int) -> dict[str, xr.Dataset]:
     }
 
 
-def without_resistance(data: Data, words: Words) -> Numbers:
-    """B14."""
+def without_resistance(data: Data, words: Words) -> Numbers:  # B14
     for name, one in _held(data, 0).items():
         needs(float(one["rolling_friction"]) == 0.0, "thresholds holds nothing without rolling resistance")
         yield f"the core, {name}", Quantity.bracket(float(one["low"]), float(one["high"])), None
         yield f"every disk, {name}", None, float(one["loose_disks"])
 
 
-def no_dip(data: Data, words: Words) -> Numbers:
-    """B15."""
+def no_dip(data: Data, words: Words) -> Numbers:  # B15
     piles = data.get(GROUP, "piles").sel(case="resisting")
     for size in piles["layers"]:
         yield f"friction of Fig. 17, {int(size)} layers", float(piles["floor_dip"].sel(layers=size))
@@ -45,8 +43,7 @@ def _slabs(data: Data, name: str = "slabs") -> xr.Dataset:
     return found
 
 
-def small_load(data: Data, words: Words) -> Numbers:
-    """B16."""
+def small_load(data: Data, words: Words) -> Numbers:  # B16
     response = _slabs(data)["floor_response"].isel(load=0)
     without = response.isel(rolling_friction=0)
     change = abs(response - without).max("floor_disk") / without.max("floor_disk")

@@ -20,8 +20,7 @@ def two_sided(data: Data, words: Words) -> Numbers:
     yield "", *(central_dip(x, study[name].values, interior=inside) for name in ("stress_zz", "stress_zz_lattice"))
 
 
-def antisymmetric(data: Data, words: Words) -> Numbers:
-    """S3."""
+def antisymmetric(data: Data, words: Words) -> Numbers:  # S3
     study = data.get("friction_fields", "stress")
     study = study.sel(friction=study["friction"] > 0.0)
     x, z = np.meshgrid(study["x"].values, study["z"].values)

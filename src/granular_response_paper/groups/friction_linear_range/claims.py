@@ -46,8 +46,7 @@ def linear_range(data: Data, words: Words) -> Numbers:
         yield case, *(end.per(without) for end in ends)
 
 
-def range_grows(data: Data, words: Words) -> Numbers:
-    """A1."""
+def range_grows(data: Data, words: Words) -> Numbers:  # A1
     for name, frictions in (("frictions 0, 0.2 and 1", FRICTIONS), ("all frictions", _frictions(data))):
         for part in TOLERANCES:
             yield f"response {part:.0%} off, {name}", rise([_linear(data, mu, part) for mu in frictions])
@@ -69,8 +68,7 @@ def smaller_anisotropy(data: Data, words: Words) -> Numbers:
         yield case, np.diff(size).max(), 1.0 - size[-1] / size[0]
 
 
-def elastic_without_friction(data: Data, words: Words) -> Numbers:
-    """F11."""
+def elastic_without_friction(data: Data, words: Words) -> Numbers:  # F11
     curve = _curve(data, 0.0, "response_at_centre")
     until = data.event(GROUP, "first_opening", 0.0).low
     before = curve["response_at_centre"].values[curve["force"].values <= until]
@@ -91,8 +89,7 @@ def _slides(data: Data, force: float) -> tuple[FloatArray, FloatArray, FloatArra
     return (one["contact_status"].values == SLIDING)[touching], away[touching], level[touching]
 
 
-def far_from_the_load(data: Data, words: Words) -> Numbers:
-    """I1."""
+def far_from_the_load(data: Data, words: Words) -> Numbers:  # I1
     for force in (5.0, 15.0):
         slides, away, _ = _slides(data, force)
         far = np.hypot(*away.T) > 20.0
@@ -101,16 +98,14 @@ def far_from_the_load(data: Data, words: Words) -> Numbers:
         yield f"per sliding contact, {force:g} mg", far[slides].sum() / max(slides.sum(), 1)
 
 
-def sliding_near(data: Data, words: Words) -> Numbers:
-    """R12."""
+def sliding_near(data: Data, words: Words) -> Numbers:  # R12
     for radius, force in product((6.0, 10.0, 15.0), (3.0, 5.0, 10.0, 15.0)):
         slides, away, _ = _slides(data, force)
         needs(slides.any(), f"states_mu_0.2 holds no sliding contact under {force:g} mg")
         yield f"within {radius:g} R at {force:g} mg", (np.hypot(*away[slides].T) < radius).mean()
 
 
-def spreads_downward(data: Data, words: Words) -> Numbers:
-    """R13."""
+def spreads_downward(data: Data, words: Words) -> Numbers:  # R13
     found = (_slides(data, force) for force in (2.0, 5.0, 10.0, 15.0))
     yield "", rise([Quantity.exact(-np.quantile(away[slides, 1], 0.1)) for slides, away, _ in found])
 
@@ -134,14 +129,12 @@ def _jump(data: Data) -> tuple[xr.Dataset, int]:
     return runs, int(lost[0])
 
 
-def sharp(data: Data, words: Words) -> Numbers:
-    """R5b."""
+def sharp(data: Data, words: Words) -> Numbers:  # R5b
     runs, first = _jump(data)
     yield "", np.diff(runs["asymmetry"].values)[first - 1]
 
 
-def sliding_drops(data: Data, words: Words) -> Numbers:
-    """R6a."""
+def sliding_drops(data: Data, words: Words) -> Numbers:  # R6a
     runs, first = _jump(data)
     sliding = runs["mobilised_contacts"].transpose("force", "margin").values
     for margin, before, after in zip(runs["margin"].values, sliding[first - 1], sliding[first], strict=True):
@@ -156,8 +149,7 @@ def network_asymmetric(data: Data, words: Words) -> Numbers:
     yield "", network[first - 1], network[first:].min()
 
 
-def network_changes(data: Data, words: Words) -> Numbers:
-    """R6c."""
+def network_changes(data: Data, words: Words) -> Numbers:  # R6c
     runs, first = _jump(data)
     states = data.get(GROUP, "large_force_states")
     states = states.assign_coords(force=states["force"])
@@ -166,8 +158,7 @@ def network_changes(data: Data, words: Words) -> Numbers:
     yield "", (before != after).sum() / before.sum()
 
 
-def by_sliding(data: Data, words: Words) -> Numbers:
-    """R6d."""
+def by_sliding(data: Data, words: Words) -> Numbers:  # R6d
     states = data.get(GROUP, "states_mu_1")
     force, status = states["force"].values, states["contact_status"].values
     rest, last = status[0], status[np.flatnonzero(force <= 90.0)[-1]]
@@ -189,8 +180,7 @@ def mirror_images(data: Data, words: Words) -> Numbers:
     yield "", min(apart, default=1.0)
 
 
-def similar_beyond(data: Data, words: Words) -> Numbers:
-    """R7b."""
+def similar_beyond(data: Data, words: Words) -> Numbers:  # R7b
     runs, first = _jump(data)
     size, force = runs["asymmetry"].values, runs["force"].values
     far = np.flatnonzero(force >= 150.0)
@@ -199,36 +189,10 @@ def similar_beyond(data: Data, words: Words) -> Numbers:
         yield f"{force[k]:g} mg", size[k] / size[first]
 
 
-def ratio(data: Data, words: Words, event: str, over: float, under: float) -> Numbers:
-    """R8a, R11: of an event at two frictions, in both geometries and in other preparations."""
-    tables = {"rows of 61 and 60": "events", "rows of 60": "events_equal_rows"}
-    own = {case: {mu: data.event(GROUP, event, mu, table) for mu in (over, under)} for case, table in tables.items()}
-    for case, found in own.items():
-        yield case, found[over].per(found[under])
-    for way, (one, other) in preparations.along(data, event, (over, under), own["rows of 61 and 60"]):
-        yield way, one.per(other)
-
-
-def crossover_rises(data: Data, words: Words) -> Numbers:
-    """R9."""
+def crossover_rises(data: Data, words: Words) -> Numbers:  # R9
     found = {}
     for mu in _frictions(data):
         curve = _curve(data, mu, "double_peaked")
         found[mu] = first(curve, "force", curve["double_peaked"].values > 0.0)
     for case, ends in [("", list(found.values())), *preparations.along(data, "crossover", list(found), found)]:
         yield case, rise(ends)
-
-
-def not_identical(data: Data, words: Words) -> Numbers:
-    """R14."""
-    curves = (at(_curve(data, mu, "central_dip"), force=force) for mu, force in ((0.2, 25.0), (0.0, 4.0)))
-    one, other = (curve["floor_response"].values for curve in curves)
-    yield "", np.abs(one - other).max() / max(one.max(), other.max())
-
-
-def rough_walls(data: Data, words: Words) -> Numbers:
-    """R15, of the preparation that has both kinds of walls: the text's own is in the summary too."""
-    found = data.get(preparations.GROUP, "events")
-    one = at(found, name="linear_range", wall_friction=1.0, gravity="at-once", friction=1.0)
-    rough = Quantity.bracket(float(one["low"]), float(one["high"]))
-    yield "", rough.per(data.event(GROUP, "linear_range", 1.0))

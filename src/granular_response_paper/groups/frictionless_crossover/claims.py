@@ -36,13 +36,11 @@ def _open_regions(data: Data) -> list[tuple[float, NDArray[Any]]]:
     return found
 
 
-def horizontal(data: Data, words: Words) -> Numbers:
-    """F5a."""
+def horizontal(data: Data, words: Words) -> Numbers:  # F5a
     yield "", min(share for share, _ in _open_regions(data))
 
 
-def teardrop(data: Data, words: Words) -> Numbers:
-    """F5b."""
+def teardrop(data: Data, words: Words) -> Numbers:  # F5b
     widest = _open_regions(data)[-1][1]
     depth = data.get(GROUP, "response")["teardrop_depth"].values / ROW
     needs(len(widest) > 3, "no region of four rows that has not reached the floor")
@@ -66,8 +64,7 @@ def _slabs(data: Data, name: str) -> xr.Dataset:
     return study.isel(slab=np.isclose(study["normal_stiffness"].values, STIFFNESS))
 
 
-def teardrop_and_depth(data: Data, words: Words) -> Numbers:
-    """F6."""
+def teardrop_and_depth(data: Data, words: Words) -> Numbers:  # F6
     slabs = _slabs(data, "regions")
     layers = slabs["layers"].values
     use = (slabs["reaches_floor"].values[0] == 0) & (slabs["teardrop_depth"].values[0] > 2.0 * ROW)
@@ -77,8 +74,7 @@ def teardrop_and_depth(data: Data, words: Words) -> Numbers:
             yield Case(f"{layers[k]:g} layers", f"{what} per that in {layers[0]:g}"), deep.per(thin)
 
 
-def deep_and_shallow(data: Data, words: Words) -> Numbers:
-    """F7."""
+def deep_and_shallow(data: Data, words: Words) -> Numbers:  # F7
     found = {}
     for name in ("sizes", "widths"):
         slabs = _slabs(data, name)
@@ -104,8 +100,7 @@ def _between(data: Data) -> xr.Dataset:
     return study.isel(normal_stiffness=chosen)
 
 
-def stiffness_response(data: Data, words: Words) -> Numbers:
-    """F8."""
+def stiffness_response(data: Data, words: Words) -> Numbers:  # F8
     study = _between(data)
     values = study["response_at_centre"].transpose("normal_stiffness", "force").values
     for force, low, high, last in zip(study["force"].values, values.min(0), values.max(0), values[-1], strict=True):
@@ -123,8 +118,7 @@ def stiffness_teardrop(data: Data, words: Words) -> Numbers:
     yield "", *spread, ((depth[-1] - depth[0])[use] / ROW).max()
 
 
-def crossover_and_stiffness(data: Data, words: Words) -> Numbers:
-    """F10."""
+def crossover_and_stiffness(data: Data, words: Words) -> Numbers:  # F10
     study = _between(data)
     by_dip = np.moveaxis(study["crossovers"].values, 1, 0)
     definitions = {"two peaks, each above the response at x = 0": study["crossover_bracket"].values}

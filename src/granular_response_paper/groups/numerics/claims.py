@@ -6,28 +6,16 @@ import numpy as np
 
 from granular_response.state import FloatArray
 from granular_response_paper.claims.bootstrap import over_realizations
-from granular_response_paper.claims.claim import Data, Numbers, at, needs
+from granular_response_paper.claims.claim import Data, Numbers, needs
 from granular_response_paper.claims.words import Words
 
 GROUP = "numerics"
 
-#: How the energy that ends a run is read; the paper's time step and energy.
-RULES = {
-    "instantaneous": "stop as soon as the energy is small",
-    "envelope": "stop when it stays small for a whole swing",
-}
+#: The paper's time step and energy.
 STEP, ENERGY = 5e-4, 1e-13
 
 
-def swing(data: Data, words: Words) -> Numbers:
-    """N3b."""
-    study = data.get(GROUP, "swing")
-    for rule in study["stop_rule"].values.tolist():
-        yield RULES[rule], at(study, stop_rule=rule)["mean_acceleration"].values.mean()
-
-
-def damping(data: Data, words: Words) -> Numbers:
-    """N6."""
+def damping(data: Data, words: Words) -> Numbers:  # N6
     study = data.get(GROUP, "damping").sortby("damping_ratio")
     stable = study["beeman_limit"].values >= STEP
     time = np.where(study["settled"].values > 0, study["relaxation_time"].values, np.inf)
@@ -36,8 +24,7 @@ def damping(data: Data, words: Words) -> Numbers:
     yield "", time[half][0] / time[stable].min()
 
 
-def disorder(data: Data, words: Words) -> Numbers:
-    """N7."""
+def disorder(data: Data, words: Words) -> Numbers:  # N7
     study = data.get(GROUP, "disorder")
     stopped, finished = study["stopped"].values, study["finished"].values
 
@@ -49,8 +36,7 @@ def disorder(data: Data, words: Words) -> Numbers:
     yield "", over_realizations(np.arange(len(stopped)), difference)
 
 
-def needed(data: Data, words: Words) -> Numbers:
-    """N8."""
+def needed(data: Data, words: Words) -> Numbers:  # N8
     study = data.get(GROUP, "stop_energy").sortby("stop_kinetic_energy")
     larger = study.isel(stop_kinetic_energy=study["stop_kinetic_energy"].values > 2.0 * ENERGY)
     needs(larger.sizes["stop_kinetic_energy"], "stop_energy holds no larger energy")

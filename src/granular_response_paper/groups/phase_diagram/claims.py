@@ -199,16 +199,14 @@ def _order(line: Sequence[Crossover]) -> tuple[Quantity, int]:
     return trend(rest if len(rest) > 1 else line), sum(step.high < 1.0 for step in steps)
 
 
-def rises_with_friction(data: Data, words: Words) -> Numbers:
-    """D3a."""
+def rises_with_friction(data: Data, words: Words) -> Numbers:  # D3a
     for (delta, start), frictions in _lines(data.get(GROUP, "crossovers")).items():
         if len(frictions) > 1:
             line = [_crossover(data, words, delta, mu, start) for mu in frictions]
             yield _label(start, delta)(_disorder(delta)), *_order(line)
 
 
-def falls_with_disorder(data: Data, words: Words) -> Numbers:
-    """D3b."""
+def falls_with_disorder(data: Data, words: Words) -> Numbers:  # D3b
     lines = _lines(data.get(GROUP, "crossovers"))
     deltas = sorted({delta for delta, _ in lines}, reverse=True)
     for start in (USUAL, LITERAL):
@@ -218,8 +216,7 @@ def falls_with_disorder(data: Data, words: Words) -> Numbers:
                 yield f"friction {mu:g}, {_title(start)}", *_order(line)
 
 
-def gradual(data: Data, words: Words) -> Numbers:
-    """D4."""
+def gradual(data: Data, words: Words) -> Numbers:  # D4
     for label, delta, _, found in _cases(data, "shapes", "realizations", "crossovers", friction=1.0, width=WIDE):
         case, single, crossover = found
         if int(crossover["kind"]) == FOUND:
@@ -241,16 +238,14 @@ def five_enough(data: Data, words: Words) -> Numbers:
             yield label(_disorder(delta), f"{mu:g}"), seen
 
 
-def below_lattice(data: Data, words: Words) -> Numbers:
-    """D6."""
+def below_lattice(data: Data, words: Words) -> Numbers:  # D6
     for delta, start, mu in _disordered(data.get(GROUP, "crossovers")):
         found, lattice = (_crossover(data, words, d, mu, s) for d, s in ((delta, start), (0.0, USUAL)))
         if found.comparable(lattice):
             yield _label(start, delta)(_disorder(delta), f"{mu:g}"), found.per(lattice)
 
 
-def preparation(data: Data, words: Words) -> Numbers:
-    """D8."""
+def preparation(data: Data, words: Words) -> Numbers:  # D8
     for mu in (0.0, 0.2):
         usual, literal = (_crossover(data, words, 0.01, mu, start) for start in (USUAL, LITERAL))
         yield f"friction {mu:g}", literal.per(usual)
@@ -269,8 +264,7 @@ def like_the_lattice(data: Data, words: Words) -> Numbers:
             yield case, (found, Bound(smallest, strict=True)), (found, Bound(most=largest))
 
 
-def without_contacts(data: Data, words: Words) -> Numbers:
-    """D18."""
+def without_contacts(data: Data, words: Words) -> Numbers:  # D18
     for label, delta, _, (case,) in _cases(data, "shapes", friction=0.0, width=NARROW):
         yield label(_disorder(delta)), _with_interval(case.isel(step=0), "shape")
 
@@ -279,8 +273,7 @@ def without_contacts(data: Data, words: Words) -> Numbers:
 COUNTED = {"contacts of disks": "", "walls counted": "_with_walls", "away from the boundaries": "_bulk"}
 
 
-def coordination(data: Data, words: Words, per: float = 1.0) -> Numbers:
-    """D7a, D14."""
+def coordination(data: Data, words: Words, per: float = 1.0) -> Numbers:  # D7a, D14
     for label, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
         for name, kind in COUNTED.items():
             yield label(name), over_realizations(case[f"coordination_number{kind}"].values / per, np.mean)
@@ -334,8 +327,7 @@ def _at_15(data: Data, name: str) -> Iterator[tuple[Label, list[xr.Dataset]]]:
         yield label, [one.isel(step=int(np.flatnonzero(np.isclose(one["applied"].values, 15.0))[0])) for one in cases]
 
 
-def fluctuations(data: Data, words: Words) -> Numbers:
-    """D10."""
+def fluctuations(data: Data, words: Words) -> Numbers:  # D10
     for label, cases in _at_15(data, "shapes"):
         without, full = (_with_interval(case, "spread") for case in cases)
         yield label(), without.per(full)
@@ -357,8 +349,7 @@ def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quan
     return of_draws(part(without, full, 20000), drawn, method, number)
 
 
-def evident(data: Data, words: Words) -> Numbers:
-    """D11."""
+def evident(data: Data, words: Words) -> Numbers:  # D11
     least = 1.0 - words["holds"]
     for label, cases in _at_15(data, "realizations"):
         without, full = (case["shape"].values[np.isfinite(case["shape"].values)] for case in cases)
@@ -442,8 +433,7 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
     return of_draws(value / number, (low / number, high / number), "Jonckheere's statistic, bootstrap", samples)
 
 
-def shorter_range(data: Data, words: Words) -> Numbers:
-    """D2."""
+def shorter_range(data: Data, words: Words) -> Numbers:  # D2
     study = data.get(GROUP, "linear_range")
     for (delta, start), frictions in _lines(study).items():
         for mu, tolerance in product(frictions if np.isclose(delta, 0.01) else (), TOLERANCES):

@@ -8,8 +8,7 @@ from granular_response_paper.claims.claim import Data, Numbers, at
 from granular_response_paper.claims.words import Words
 
 
-def nearly_symmetrical(data: Data, words: Words) -> Numbers:
-    """D15."""
+def nearly_symmetrical(data: Data, words: Words) -> Numbers:  # D15
     few = at(data.get("polydisperse_averages", "averages"), width=6.0)
     mean = few["mean_of_few"].transpose("case", "step", "x").values[few["polydispersity"].values > 0.0]
     with np.errstate(invalid="ignore"):

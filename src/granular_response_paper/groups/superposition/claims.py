@@ -34,8 +34,7 @@ def linear_range(data: Data, words: Words) -> Numbers:
     yield Case(of=f"{low:g}"), None, part_of(ends > low)
 
 
-def falls_with_depth(data: Data, words: Words) -> Numbers:
-    """U4."""
+def falls_with_depth(data: Data, words: Words) -> Numbers:  # U4
     study = at(data.get(GROUP, "errors"), force=1.0).sortby("gap")
     error = study["row_error"].transpose("distance", "realization", "gap").values
     needs(error.shape[2] > 1, "errors holds one depth")

@@ -11,8 +11,7 @@ from granular_response_paper.claims.words import Words
 EVENT = "loss_of_symmetry_path"
 
 
-def loss_of_symmetry(data: Data, words: Words) -> Numbers:
-    """R5a."""
+def loss_of_symmetry(data: Data, words: Words) -> Numbers:  # R5a
     brackets = data.get("symmetry_breaking", "brackets")
     columns = (brackets[name].values.tolist() for name in ("low", "high", "ramp_time", "time_step"))
     for low, high, ramp, step in zip(*columns, strict=True):
@@ -22,4 +21,4 @@ def loss_of_symmetry(data: Data, words: Words) -> Numbers:
     yield "rows of 60 disks", Quantity.bracket(literal["low"].item(), literal["high"].item())
     with suppress(NotMeasured):  # without a summary of preparations
         yield "along a load path", data.event(preparations.GROUP, EVENT, 1.0)
-    yield from preparations.events(data, EVENT, 1.0)
+    yield from ((way, *found) for way, found in preparations.along(data, EVENT, [1.0]))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import xarray as xr
 
 from granular_response_paper.claims.claim import Data, Numbers, needs
 from granular_response_paper.claims.words import Words
@@ -14,24 +13,9 @@ GROUP = "torque"
 NEAR, FAR = 6.0, 9.0
 
 
-def _rings(data: Data) -> tuple[xr.Dataset, np.ndarray]:
-    """What the largest torque changes in rings, and which of them are close to the load."""
+def near_the_load(data: Data, words: Words) -> Numbers:  # T1b
     rings = data.get(GROUP, "reach").sortby("torque").isel(torque=-1)
-    near = rings["ring_outer"].values <= NEAR
-    needs(near.any(), f"reach holds no ring within {NEAR:g} radii")
-    return rings, near
-
-
-def chains(data: Data, words: Words) -> Numbers:
-    """T1a."""
-    rings, near = _rings(data)
-    yield "", rings["force_change"].values[near].mean()
-
-
-def near_the_load(data: Data, words: Words) -> Numbers:
-    """T1b."""
-    rings, near = _rings(data)
-    far = rings["ring_inner"].values >= FAR
+    near, far = rings["ring_outer"].values <= NEAR, rings["ring_inner"].values >= FAR
     study, disks = (data.get(GROUP, name).sortby("torque") for name in ("stress", "torques"))
     stress = np.stack([study[f"stress_{component}"].values for component in ("xx", "xz", "zx", "zz")])
     change = stress[:, -1] - stress[:, 0]
@@ -39,7 +23,10 @@ def near_the_load(data: Data, words: Words) -> Numbers:
     x, z = np.meshgrid(study["x"].values, study["z"].values)
     distance = np.hypot(x - place[0], z - place[1])
     within, beyond = distance < NEAR, distance > FAR
-    needs(far.any() and within.any() and beyond.any(), f"nothing within {NEAR:g} or beyond {FAR:g} radii of the load")
+    needs(
+        near.any() and far.any() and within.any() and beyond.any(),
+        f"nothing within {NEAR:g} or beyond {FAR:g} radii of the load",
+    )
     areas = {
         "antisymmetric part": 0.5 * np.abs(change[1] - change[2]),
         "whole stress": np.sqrt((change**2).sum(axis=0)),
