@@ -20,7 +20,7 @@ from granular_response_paper.claims import declared, preparations, summary, tabl
 from granular_response_paper.claims import stored as stored_table
 from granular_response_paper.claims.bootstrap import RARE, over_brackets, over_realizations, part_of
 from granular_response_paper.claims.claim import Bound, Claim, Data, NotMeasured, Quantity, Test, at, rise
-from granular_response_paper.claims.verdict import MEANINGS, SCHEME, Entry, elsewhere_of, judge, verdict_of
+from granular_response_paper.claims.verdict import MEANINGS, SCHEME, Verdict, elsewhere_of, judge, verdict_of
 from granular_response_paper.claims.words import WORDS, words
 from granular_response_paper.groups.frictionless_crossover.claims import size_in_steps
 from granular_response_paper.groups.phase_diagram.claims import (
@@ -572,7 +572,7 @@ def test_verdicts_follow_from_the_cases():
     # numbers of one case must hold together
     assert verdict_of([a_test(*YES), a_test(*NO)]) == "not supported"
     assert verdict_of([a_test(*YES), a_test(*OPEN_)]) == "cannot tell"
-    said = {"id": "F1", "place": "I", "paper": "", "measured": "", "measure": lambda data, words: []}
+    said = {"id": "F1", "place": "I", "paper": "", "measured": "", "measure": lambda data: []}
     assert verdict_of(cases(YES), Claim(**said, derivation=True)) == "derivation"
     assert verdict_of(cases(NO), Claim(**said, derivation=True)) == "not supported"
     assert verdict_of(cases(NO), Claim(**said, modal=True)) == "not seen"
@@ -590,20 +590,20 @@ def test_the_second_column_follows_from_other_preparations_alone():
 
 def test_a_row_lists_its_cases_and_preparations():
     tests = [a_test(*YES, case="slow"), a_test(*NO, case="fast"), a_test(*NO, prepared="otherwise")]
-    claim = Claim("F1", "I", "", "", lambda data, words: tests, here="From {0} to {1}.")
+    claim = Claim("F1", "I", "", "", lambda data: tests, here="From {0} to {1}.")
     entry = judge(claim, Data({}))
     assert entry.here == "From 1.5 (1 to 2) to 2.55 (2.1 to 3)."
     assert entry.cases == "Supported for: slow. Not supported for: fast."
     assert entry.preparations == "Fails: otherwise." and (entry.verdict, entry.elsewhere) == ("in part", "no")
-    assert Entry(claim, "supported", tuple(tests[:1])).cases == ""
+    assert Verdict(claim, "supported", tuple(tests[:1])).cases == ""
 
 
 def test_a_star_marks_verdicts_that_hang_on_a_threshold():
     """Of "about", a quarter: within an eighth, a quarter and a half of 20."""
 
     def star(force):
-        def measure(data, words):
-            return [Test("force", Quantity.exact(force), declared.bound({"about": 20}, words))]
+        def measure(data):
+            return [Test("force", Quantity.exact(force), declared.bound({"about": 20}, data.words))]
 
         return judge(Claim("F1", "I", "", "", measure), Data({})).star
 
@@ -681,7 +681,7 @@ def test_a_declared_test_measures_what_it_says(spec, ends):
         side=("event", ["smooth", "rough"]),
     )
     data = Data({"group": {"study": STUDY, "events": table_}})
-    rows = list(declared._rows("group", [spec], data, words()))
+    rows = list(declared._rows("group", [spec], data))
     np.testing.assert_allclose([(found.low, found.high) for _, found in rows], ends)
     if "each" in spec:
         assert [case for case, _ in rows] == ["friction 0", "friction 0.2", "friction 1"]
@@ -689,7 +689,7 @@ def test_a_declared_test_measures_what_it_says(spec, ends):
 
 def test_a_declared_mean_has_the_interval_of_the_bootstrap():
     spec = {"value": "study.each", "at": {"friction": 1}, "over": {"realization": "mean"}}
-    ((_, found),) = declared._rows("group", [spec], Data({"group": {"study": STUDY}}), words())
+    ((_, found),) = declared._rows("group", [spec], Data({"group": {"study": STUDY}}))
     assert found == over_realizations([1.0, 2.0, 3.0, 2.0], np.mean)
 
 

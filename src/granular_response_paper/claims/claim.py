@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from granular_response.errors import GranularError
 
 from .words import Words
+from .words import words as thresholds
 
 #: What an interval means: none (one deterministic run); the event lies inside; 95 % of the bootstrap draws; the
 #: smallest to the largest value.
@@ -185,7 +186,7 @@ class Case(str):
         return case
 
 
-Measure = Callable[["Data", Words], Sequence[Test]]
+Measure = Callable[["Data"], Sequence[Test]]
 
 #: Whose sentence a claim judges.
 Source = Literal["paper", "literature", "hypothesis"]
@@ -223,11 +224,12 @@ class Claim:
 class Data:
     """Stored datasets by figure group; a missing one raises NotMeasured.
 
-    ``groups`` maps a figure group to its datasets by name, as ``store.read`` returns them.
+    ``groups`` maps a figure group to its datasets by name, as ``store.read`` returns them; ``words`` are the thresholds
+    under which they are judged.
     """
 
-    def __init__(self, groups: Mapping[str, Mapping[str, xr.Dataset]]) -> None:
-        self.groups = groups
+    def __init__(self, groups: Mapping[str, Mapping[str, xr.Dataset]], words: Words | None = None) -> None:
+        self.groups, self.words = groups, words or thresholds()
 
     def get(self, group: str, name: str) -> xr.Dataset:
         """Dataset ``name`` of ``group``."""

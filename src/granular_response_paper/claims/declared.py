@@ -17,7 +17,7 @@ A test has one of
 and may have ``per``, a number of the same kind by which it is divided, ``scale``, ``case`` (a value of what the text
 leaves open) or ``each`` (a test for each label of this coordinate). What else is measured has a function in the group's
 ``claims.py``, which ``numbers`` of the claim names, with its arguments if it has some. It is called with the data and
-the thresholds and yields for each case its name (a text or a :class:`Case`) and a number for each of the claim's tests,
+yields for each case its name (a text or a :class:`Case`) and a number for each of the claim's tests,
 None for none, or with its bound where the data say it.
 
 Every other test has a ``bound``, see :func:`bound`, and may have a ``unit`` and say ``what`` is measured, with ``{}``
@@ -110,7 +110,7 @@ def read(package: str) -> list[Claim]:
         numbers = said.pop("numbers", None)
         for one in tests:
             _check(f"{group}: {id}", one, declares=not numbers)
-        rows: Callable[[Data, Words], Numbers] = partial(_rows, group, tests)
+        rows: Callable[[Data], Numbers] = partial(_rows, group, tests)
         if numbers:
             ((name, given),) = numbers.items() if isinstance(numbers, dict) else [(numbers, {})]
             rows = partial(getattr(import_module(f"{package}.claims"), name), **given)
@@ -137,17 +137,16 @@ def _measured(
     group: str,
     what: str,
     tests: Sequence[Mapping[str, Any]],
-    rows: Callable[[Data, Words], Numbers],
+    rows: Callable[[Data], Numbers],
     data: Data,
-    words: Words,
 ) -> list[Test]:
     found = []
     try:
-        for case, *numbers in rows(data, words):
+        for case, *numbers in rows(data):
             for spec, number in zip(tests, numbers, strict=False):
                 if number is None:
                     continue
-                number, asked = number if isinstance(number, tuple) else (number, bound(spec["bound"], words))
+                number, asked = number if isinstance(number, tuple) else (number, bound(spec["bound"], data.words))
                 of, prepared = (case.of, case.prepared) if isinstance(case, Case) else ("", "")
                 name = spec.get("what", what).replace("{}", of)
                 number = number if isinstance(number, Quantity) else Quantity.exact(number)
@@ -158,11 +157,11 @@ def _measured(
     return found
 
 
-def _missing(what: str, data: Data, words: Words) -> list[Test]:
+def _missing(what: str, data: Data) -> list[Test]:
     raise NotMeasured(what)
 
 
-def _rows(group: str, tests: Sequence[Mapping[str, Any]], data: Data, words: Words) -> Numbers:
+def _rows(group: str, tests: Sequence[Mapping[str, Any]], data: Data) -> Numbers:
     """What declared tests measure: each one's number by itself, and the event's in other preparations."""
     for k, spec in enumerate(tests):
         before = [None] * k

@@ -22,7 +22,7 @@ from . import preparations, summary
 from .claim import Claim, Data, Quantity
 from .declared import TEXTS, read
 from .stored import OUTPUT, PARTS, ClaimsError
-from .verdict import MEANINGS, SCHEME, Entry, judge, key, rounded
+from .verdict import MEANINGS, SCHEME, Verdict, judge, key, rounded
 from .words import WORDS
 
 #: Sections of the paper, in order.
@@ -80,12 +80,12 @@ def _paths(folder: str | os.PathLike[str], collection: Collection) -> list[Path]
     return [Path(folder) / f"{group}.nc" for group in groups_read(collection)]
 
 
-def evaluate(data: Data, claims: Sequence[Claim]) -> list[Entry]:
+def evaluate(data: Data, claims: Sequence[Claim]) -> list[Verdict]:
     """The verdict on each claim."""
     return [judge(claim, data) for claim in claims]
 
 
-def document(entries: Sequence[Entry]) -> dict[str, Any]:
+def document(entries: Sequence[Verdict]) -> dict[str, Any]:
     """Everything about the verdicts, as it is stored; ``counts`` are scalars for ``dvc metrics show``."""
     counts = {
         part: {key(kind): sum(e.verdict == kind and part_of(e.claim) == part for e in entries) for kind in MEANINGS}
@@ -100,7 +100,7 @@ def document(entries: Sequence[Entry]) -> dict[str, Any]:
     }
 
 
-def _row(entry: Entry) -> dict[str, Any]:
+def _row(entry: Verdict) -> dict[str, Any]:
     claim = entry.claim
     return {
         **_named(claim, "id", "place", "paper", "source", "measured", "figures", "group"),

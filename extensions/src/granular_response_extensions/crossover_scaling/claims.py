@@ -5,7 +5,6 @@ from __future__ import annotations
 import xarray as xr
 
 from granular_response_paper.claims.claim import Data, Numbers, Quantity, needs
-from granular_response_paper.claims.words import Words
 
 #: How the sides are confined, in words.
 SIDES = {"walls": "between walls", "constant": "constant confinement", "as weight": "confined as weight"}
@@ -22,12 +21,12 @@ def _series(data: Data, event: str) -> list[tuple[str, xr.Dataset, Quantity]]:
     return list(zip(names, found, (Quantity.range(end[1:], end[0]) for end in ends), strict=True))
 
 
-def deep_and_shallow(data: Data, words: Words) -> Numbers:  # B8
+def deep_and_shallow(data: Data) -> Numbers:  # B8
     for name, _, power in _series(data, "crossover"):
         yield name, power
 
 
-def of_weight(data: Data, words: Words) -> Numbers:
+def of_weight(data: Data) -> Numbers:
     """B9, of the series in which the power is not that of the weight by choice of the confinement."""
     found = {
         f"{what}, {name}": power

@@ -10,7 +10,6 @@ import xarray as xr
 from granular_response.state import FloatArray
 from granular_response_paper.claims.bootstrap import over_brackets, over_realizations
 from granular_response_paper.claims.claim import Data, Numbers, Quantity, material, needs
-from granular_response_paper.claims.words import Words
 
 #: Realizations from which on they have an interval of confidence.
 FEWEST = 3
@@ -30,7 +29,7 @@ def _brackets(event: xr.Dataset) -> list[Quantity]:
     return [Quantity.bracket(*ends) for ends in zip(event["low"].values, event["high"].values, strict=True)]
 
 
-def ranges(data: Data, words: Words) -> Numbers:  # B2
+def ranges(data: Data) -> Numbers:  # B2
     events, found = data.get("hysteresis", "events"), {}
     for case in range(events.sizes["case"]):
         one = events.isel(case=case)
@@ -42,7 +41,7 @@ def ranges(data: Data, words: Words) -> Numbers:  # B2
     yield from found.items()
 
 
-def repeated(data: Data, words: Words) -> Numbers:
+def repeated(data: Data) -> Numbers:
     """B3: the part of the work that is lost again, and the change of the response."""
     loops = data.get("hysteresis", "loops")
     for case in range(loops.sizes["case"]):

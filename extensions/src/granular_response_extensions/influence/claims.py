@@ -6,10 +6,9 @@ import numpy as np
 
 from granular_response_paper.claims.bootstrap import over_realizations
 from granular_response_paper.claims.claim import Data, Numbers, Quantity, material, needs
-from granular_response_paper.claims.words import Words
 
 
-def saint_venant(data: Data, words: Words) -> Numbers:  # B1
+def saint_venant(data: Data) -> Numbers:  # B1
     study = data.get("influence", "saint_venant")
     for case in range(study.sizes["case"]):
         one = study.isel(case=case, separation=0)

@@ -10,10 +10,9 @@ import xarray as xr
 
 from granular_response_paper.claims.bootstrap import over_realizations
 from granular_response_paper.claims.claim import Data, Numbers, Quantity, material, needs
-from granular_response_paper.claims.words import Words
 
 
-def described(data: Data, words: Words, solid: str) -> Numbers:
+def described(data: Data, solid: str) -> Numbers:
     """B4, B5, in the highest packings of each case."""
     study = data.get("moduli", "packings")
     for case in range(study.sizes["case"]):
@@ -29,7 +28,7 @@ def _slabs(data: Data) -> dict[str, xr.Dataset]:
     return {f"friction {float(mu):g}": found.isel(slab=k, step=known[k]) for k, mu in enumerate(found["friction"])}
 
 
-def reach(data: Data, words: Words) -> Numbers:  # B27
+def reach(data: Data) -> Numbers:  # B27
     ratios = {}
     for name, slab in _slabs(data).items():
         crossover = Quantity.bracket(*slab["crossover"].values)
@@ -43,7 +42,7 @@ def reach(data: Data, words: Words) -> Numbers:  # B27
     yield from ratios.items()
 
 
-def incrementally_elastic(data: Data, words: Words) -> Numbers:  # B28
+def incrementally_elastic(data: Data) -> Numbers:  # B28
     found = {}
     for name, slab in _slabs(data).items():
         crossover = Quantity.bracket(*slab["crossover"].values)
@@ -56,7 +55,7 @@ def incrementally_elastic(data: Data, words: Words) -> Numbers:  # B28
     yield from sorted(found.items(), key=lambda one: not one[0].startswith("friction 0.2, up"))
 
 
-def peaks(data: Data, words: Words) -> Numbers:  # B29
+def peaks(data: Data) -> Numbers:  # B29
     for name, slab in _slabs(data).items():
         wrong = (slab["predicted_two_peaks"] != slab["two_peaks"]).sum("step")
         yield f"{name}, {slab.sizes['step']} forces", Quantity.range(wrong.values.ravel())

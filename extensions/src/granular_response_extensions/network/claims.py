@@ -7,7 +7,6 @@ import xarray as xr
 
 from granular_response_paper.claims.bootstrap import over_realizations
 from granular_response_paper.claims.claim import Case, Data, Numbers, Quantity
-from granular_response_paper.claims.words import Words
 
 
 def _means(data: Data, name: str, state: str) -> list[tuple[str, list[tuple[float, Quantity]]]]:
@@ -21,13 +20,13 @@ def _means(data: Data, name: str, state: str) -> list[tuple[str, list[tuple[floa
     return found
 
 
-def tail(data: Data, words: Words) -> Numbers:  # B11
+def tail(data: Data) -> Numbers:  # B11
     for state in ("rest", "loaded"):
         for delta, means in _means(data, "tail_variation", state):
             yield from ((Case(f"{delta}, {state}", f"{mu:g}"), found) for mu, found in means)
 
 
-def coordination(data: Data, words: Words) -> Numbers:
+def coordination(data: Data) -> Numbers:
     """B12: at the least friction and at the largest."""
     for delta, means in _means(data, "coordination_number", "rest"):
         (least, without), *_, (largest, full) = means
@@ -35,6 +34,6 @@ def coordination(data: Data, words: Words) -> Numbers:
         yield Case(delta, f"{largest:g}"), None, full
 
 
-def isostaticity(data: Data, words: Words) -> Numbers:  # B13
+def isostaticity(data: Data) -> Numbers:  # B13
     for delta, means in _means(data, "hyperstaticity", "rest"):
         yield from ((Case(delta, f"{mu:g}"), found) for mu, found in means if mu > 0.0)

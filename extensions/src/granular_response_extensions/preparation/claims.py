@@ -8,14 +8,13 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from granular_response_paper.claims.claim import Case, Data, Numbers, needs
-from granular_response_paper.claims.words import Words
 
 #: Fewest preparations that have a trend.
 FEWEST = 4
 EVENTS = {"linear_range": "end of the linear range", "first_opening": "first opening", "crossover": "two peaks"}
 
 
-def mobilized(data: Data, words: Words) -> Numbers:
+def mobilized(data: Data) -> Numbers:
     """B18, for each slab with :data:`FEWEST` preparations: the trend, and how forces without such contacts differ."""
     study = data.get("preparation", "mobilized")
     study = study.isel(case=study["polydispersity"].values == 0.0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import xarray as xr
 
 from granular_response_paper.claims.claim import Data, Numbers, Quantity, needs
-from granular_response_paper.claims.words import Words
 
 GROUP = "rolling_resistance"
 
@@ -22,14 +21,14 @@ def _held(data: Data, rolling: int) -> dict[str, xr.Dataset]:
     }
 
 
-def without_resistance(data: Data, words: Words) -> Numbers:  # B14
+def without_resistance(data: Data) -> Numbers:  # B14
     for name, one in _held(data, 0).items():
         needs(float(one["rolling_friction"]) == 0.0, "thresholds holds nothing without rolling resistance")
         yield f"the core, {name}", Quantity.bracket(float(one["low"]), float(one["high"])), None
         yield f"every disk, {name}", None, float(one["loose_disks"])
 
 
-def no_dip(data: Data, words: Words) -> Numbers:  # B15
+def no_dip(data: Data) -> Numbers:  # B15
     piles = data.get(GROUP, "piles").sel(case="resisting")
     for size in piles["layers"]:
         yield f"friction of Fig. 17, {int(size)} layers", float(piles["floor_dip"].sel(layers=size))
@@ -43,7 +42,7 @@ def _slabs(data: Data, name: str = "slabs") -> xr.Dataset:
     return found
 
 
-def small_load(data: Data, words: Words) -> Numbers:  # B16
+def small_load(data: Data) -> Numbers:  # B16
     response = _slabs(data)["floor_response"].isel(load=0)
     without = response.isel(rolling_friction=0)
     change = abs(response - without).max("floor_disk") / without.max("floor_disk")
@@ -51,7 +50,7 @@ def small_load(data: Data, words: Words) -> Numbers:  # B16
         yield f"friction {float(mu):g}", Quantity.range(change.sel(friction=mu).values[1:])
 
 
-def cosserat(data: Data, words: Words) -> Numbers:
+def cosserat(data: Data) -> Numbers:
     """B17: what is left of the squares, and the Cosserat length."""
     slabs, turned = (_slabs(data, name).isel(rolling_friction=slice(1, None)) for name in ("slabs", "torques"))
     loads = [(f"{load:g} mg", slabs.sel(load=load), [""]) for load in slabs["load"].values]

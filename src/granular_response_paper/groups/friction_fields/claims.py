@@ -6,13 +6,12 @@ import numpy as np
 
 from granular_response.observe.peaks import central_dip
 from granular_response_paper.claims.claim import Data, Numbers, at
-from granular_response_paper.claims.words import Words
 
 #: "Near the load": within this distance (mean radii). Pressure is compared where it exceeds this part of its maximum.
 NEAR, FAINT = 6.0, 0.1
 
 
-def two_sided(data: Data, words: Words) -> Numbers:
+def two_sided(data: Data) -> Numbers:
     """F13, on the lowest line of the grid, away from the side walls: one-sided contacts, and two-sided springs."""
     study = at(data.get("friction_fields", "stress"), friction=0.0).sortby("z").isel(z=0)
     x = study["x"].values
@@ -20,7 +19,7 @@ def two_sided(data: Data, words: Words) -> Numbers:
     yield "", *(central_dip(x, study[name].values, interior=inside) for name in ("stress_zz", "stress_zz_lattice"))
 
 
-def antisymmetric(data: Data, words: Words) -> Numbers:  # S3
+def antisymmetric(data: Data) -> Numbers:  # S3
     study = data.get("friction_fields", "stress")
     study = study.sel(friction=study["friction"] > 0.0)
     x, z = np.meshgrid(study["x"].values, study["z"].values)

@@ -10,7 +10,6 @@ import xarray as xr
 from granular_response.state import OPEN, SLIDING, FloatArray
 from granular_response_paper.claims import preparations
 from granular_response_paper.claims.claim import Data, Numbers, Quantity, at, first, needs, rise
-from granular_response_paper.claims.words import Words
 
 GROUP = "friction_linear_range"
 
@@ -37,7 +36,7 @@ def _frictions(data: Data) -> list[float]:
     return np.unique(data.get(GROUP, "response")["friction"].values).tolist()
 
 
-def linear_range(data: Data, words: Words) -> Numbers:
+def linear_range(data: Data) -> Numbers:
     """R1, per that without friction."""
     own = {part: {mu: _linear(data, mu, part) for mu in FRICTIONS} for part in TOLERANCES}
     rows = [(f"response {part:.0%} off", list(ends.values())) for part, ends in own.items()]
@@ -46,7 +45,7 @@ def linear_range(data: Data, words: Words) -> Numbers:
         yield case, *(end.per(without) for end in ends)
 
 
-def range_grows(data: Data, words: Words) -> Numbers:  # A1
+def range_grows(data: Data) -> Numbers:  # A1
     for name, frictions in (("frictions 0, 0.2 and 1", FRICTIONS), ("all frictions", _frictions(data))):
         for part in TOLERANCES:
             yield f"response {part:.0%} off, {name}", rise([_linear(data, mu, part) for mu in frictions])
@@ -57,7 +56,7 @@ def range_grows(data: Data, words: Words) -> Numbers:  # A1
             yield way, rise(ends)
 
 
-def smaller_anisotropy(data: Data, words: Words) -> Numbers:
+def smaller_anisotropy(data: Data) -> Numbers:
     """A2: growth and fall with friction."""
     axis = data.get(GROUP, "friction_axis").sortby("friction")
     largest = _curve(data, _frictions(data)[-1], "response_at_centre")
@@ -68,7 +67,7 @@ def smaller_anisotropy(data: Data, words: Words) -> Numbers:
         yield case, np.diff(size).max(), 1.0 - size[-1] / size[0]
 
 
-def elastic_without_friction(data: Data, words: Words) -> Numbers:  # F11
+def elastic_without_friction(data: Data) -> Numbers:  # F11
     curve = _curve(data, 0.0, "response_at_centre")
     until = data.event(GROUP, "first_opening", 0.0).low
     before = curve["response_at_centre"].values[curve["force"].values <= until]
@@ -89,7 +88,7 @@ def _slides(data: Data, force: float) -> tuple[FloatArray, FloatArray, FloatArra
     return (one["contact_status"].values == SLIDING)[touching], away[touching], level[touching]
 
 
-def far_from_the_load(data: Data, words: Words) -> Numbers:  # I1
+def far_from_the_load(data: Data) -> Numbers:  # I1
     for force in (5.0, 15.0):
         slides, away, _ = _slides(data, force)
         far = np.hypot(*away.T) > 20.0
@@ -98,19 +97,19 @@ def far_from_the_load(data: Data, words: Words) -> Numbers:  # I1
         yield f"per sliding contact, {force:g} mg", far[slides].sum() / max(slides.sum(), 1)
 
 
-def sliding_near(data: Data, words: Words) -> Numbers:  # R12
+def sliding_near(data: Data) -> Numbers:  # R12
     for radius, force in product((6.0, 10.0, 15.0), (3.0, 5.0, 10.0, 15.0)):
         slides, away, _ = _slides(data, force)
         needs(slides.any(), f"states_mu_0.2 holds no sliding contact under {force:g} mg")
         yield f"within {radius:g} R at {force:g} mg", (np.hypot(*away[slides].T) < radius).mean()
 
 
-def spreads_downward(data: Data, words: Words) -> Numbers:  # R13
+def spreads_downward(data: Data) -> Numbers:  # R13
     found = (_slides(data, force) for force in (2.0, 5.0, 10.0, 15.0))
     yield "", rise([Quantity.exact(-np.quantile(away[slides, 1], 0.1)) for slides, away, _ in found])
 
 
-def reorganized(data: Data, words: Words) -> Numbers:
+def reorganized(data: Data) -> Numbers:
     """R4c, in the region that has opened contacts: below the load, as far to each side as it is deep there."""
     parts = []
     for force in (20.0, 30.0):
@@ -129,12 +128,12 @@ def _jump(data: Data) -> tuple[xr.Dataset, int]:
     return runs, int(lost[0])
 
 
-def sharp(data: Data, words: Words) -> Numbers:  # R5b
+def sharp(data: Data) -> Numbers:  # R5b
     runs, first = _jump(data)
     yield "", np.diff(runs["asymmetry"].values)[first - 1]
 
 
-def sliding_drops(data: Data, words: Words) -> Numbers:  # R6a
+def sliding_drops(data: Data) -> Numbers:  # R6a
     runs, first = _jump(data)
     sliding = runs["mobilised_contacts"].transpose("force", "margin").values
     for margin, before, after in zip(runs["margin"].values, sliding[first - 1], sliding[first], strict=True):
@@ -142,14 +141,14 @@ def sliding_drops(data: Data, words: Words) -> Numbers:  # R6a
             yield f"within {margin:.0%}", after / before
 
 
-def network_asymmetric(data: Data, words: Words) -> Numbers:
+def network_asymmetric(data: Data) -> Numbers:
     """R6b: before, and the smallest part after."""
     runs, first = _jump(data)
     network = runs["network_asymmetry"].values
     yield "", network[first - 1], network[first:].min()
 
 
-def network_changes(data: Data, words: Words) -> Numbers:  # R6c
+def network_changes(data: Data) -> Numbers:  # R6c
     runs, first = _jump(data)
     states = data.get(GROUP, "large_force_states")
     states = states.assign_coords(force=states["force"])
@@ -158,7 +157,7 @@ def network_changes(data: Data, words: Words) -> Numbers:  # R6c
     yield "", (before != after).sum() / before.sum()
 
 
-def by_sliding(data: Data, words: Words) -> Numbers:  # R6d
+def by_sliding(data: Data) -> Numbers:  # R6d
     states = data.get(GROUP, "states_mu_1")
     force, status = states["force"].values, states["contact_status"].values
     rest, last = status[0], status[np.flatnonzero(force <= 90.0)[-1]]
@@ -167,7 +166,7 @@ def by_sliding(data: Data, words: Words) -> Numbers:  # R6d
     yield "", (last == SLIDING).sum() / opened
 
 
-def mirror_images(data: Data, words: Words) -> Numbers:
+def mirror_images(data: Data) -> Numbers:
     """R7. The paper's pair lies between 91 and 95 mg."""
     runs, first = _jump(data)
     after = runs.isel(force=slice(first, None))
@@ -180,7 +179,7 @@ def mirror_images(data: Data, words: Words) -> Numbers:
     yield "", min(apart, default=1.0)
 
 
-def similar_beyond(data: Data, words: Words) -> Numbers:  # R7b
+def similar_beyond(data: Data) -> Numbers:  # R7b
     runs, first = _jump(data)
     size, force = runs["asymmetry"].values, runs["force"].values
     far = np.flatnonzero(force >= 150.0)
@@ -189,7 +188,7 @@ def similar_beyond(data: Data, words: Words) -> Numbers:  # R7b
         yield f"{force[k]:g} mg", size[k] / size[first]
 
 
-def crossover_rises(data: Data, words: Words) -> Numbers:  # R9
+def crossover_rises(data: Data) -> Numbers:  # R9
     found = {}
     for mu in _frictions(data):
         curve = _curve(data, mu, "double_peaked")

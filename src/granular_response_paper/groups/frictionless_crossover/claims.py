@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from granular_response.state import FloatArray
 from granular_response_paper.claims.claim import Case, Data, Numbers, Quantity, needs
-from granular_response_paper.claims.words import Words
 
 GROUP = "frictionless_crossover"
 
@@ -36,11 +35,11 @@ def _open_regions(data: Data) -> list[tuple[float, NDArray[Any]]]:
     return found
 
 
-def horizontal(data: Data, words: Words) -> Numbers:  # F5a
+def horizontal(data: Data) -> Numbers:  # F5a
     yield "", min(share for share, _ in _open_regions(data))
 
 
-def teardrop(data: Data, words: Words) -> Numbers:  # F5b
+def teardrop(data: Data) -> Numbers:  # F5b
     widest = _open_regions(data)[-1][1]
     depth = data.get(GROUP, "response")["teardrop_depth"].values / ROW
     needs(len(widest) > 3, "no region of four rows that has not reached the floor")
@@ -64,7 +63,7 @@ def _slabs(data: Data, name: str) -> xr.Dataset:
     return study.isel(slab=np.isclose(study["normal_stiffness"].values, STIFFNESS))
 
 
-def teardrop_and_depth(data: Data, words: Words) -> Numbers:  # F6
+def teardrop_and_depth(data: Data) -> Numbers:  # F6
     slabs = _slabs(data, "regions")
     layers = slabs["layers"].values
     use = (slabs["reaches_floor"].values[0] == 0) & (slabs["teardrop_depth"].values[0] > 2.0 * ROW)
@@ -74,7 +73,7 @@ def teardrop_and_depth(data: Data, words: Words) -> Numbers:  # F6
             yield Case(f"{layers[k]:g} layers", f"{what} per that in {layers[0]:g}"), deep.per(thin)
 
 
-def deep_and_shallow(data: Data, words: Words) -> Numbers:  # F7
+def deep_and_shallow(data: Data) -> Numbers:  # F7
     found = {}
     for name in ("sizes", "widths"):
         slabs = _slabs(data, name)
@@ -100,14 +99,14 @@ def _between(data: Data) -> xr.Dataset:
     return study.isel(normal_stiffness=chosen)
 
 
-def stiffness_response(data: Data, words: Words) -> Numbers:  # F8
+def stiffness_response(data: Data) -> Numbers:  # F8
     study = _between(data)
     values = study["response_at_centre"].transpose("normal_stiffness", "force").values
     for force, low, high, last in zip(study["force"].values, values.min(0), values.max(0), values[-1], strict=True):
         yield f"{force:g} mg", (high - low) / abs(last)
 
 
-def stiffness_teardrop(data: Data, words: Words) -> Numbers:
+def stiffness_teardrop(data: Data) -> Numbers:
     """F9: what depth and width change by at high stiffness, and how the depth grows."""
     study = data.get(GROUP, "stiffness").sortby("normal_stiffness")
     high = study["normal_stiffness"].values >= 2000.0
@@ -118,7 +117,7 @@ def stiffness_teardrop(data: Data, words: Words) -> Numbers:
     yield "", *spread, ((depth[-1] - depth[0])[use] / ROW).max()
 
 
-def crossover_and_stiffness(data: Data, words: Words) -> Numbers:  # F10
+def crossover_and_stiffness(data: Data) -> Numbers:  # F10
     study = _between(data)
     by_dip = np.moveaxis(study["crossovers"].values, 1, 0)
     definitions = {"two peaks, each above the response at x = 0": study["crossover_bracket"].values}

@@ -7,7 +7,6 @@ import numpy as np
 from granular_response.state import FloatArray
 from granular_response_paper.claims.bootstrap import over_realizations
 from granular_response_paper.claims.claim import Data, Numbers, needs
-from granular_response_paper.claims.words import Words
 
 GROUP = "numerics"
 
@@ -15,7 +14,7 @@ GROUP = "numerics"
 STEP, ENERGY = 5e-4, 1e-13
 
 
-def damping(data: Data, words: Words) -> Numbers:  # N6
+def damping(data: Data) -> Numbers:  # N6
     study = data.get(GROUP, "damping").sortby("damping_ratio")
     stable = study["beeman_limit"].values >= STEP
     time = np.where(study["settled"].values > 0, study["relaxation_time"].values, np.inf)
@@ -24,7 +23,7 @@ def damping(data: Data, words: Words) -> Numbers:  # N6
     yield "", time[half][0] / time[stable].min()
 
 
-def disorder(data: Data, words: Words) -> Numbers:  # N7
+def disorder(data: Data) -> Numbers:  # N7
     study = data.get(GROUP, "disorder")
     stopped, finished = study["stopped"].values, study["finished"].values
 
@@ -36,7 +35,7 @@ def disorder(data: Data, words: Words) -> Numbers:  # N7
     yield "", over_realizations(np.arange(len(stopped)), difference)
 
 
-def needed(data: Data, words: Words) -> Numbers:  # N8
+def needed(data: Data) -> Numbers:  # N8
     study = data.get(GROUP, "stop_energy").sortby("stop_kinetic_energy")
     larger = study.isel(stop_kinetic_energy=study["stop_kinetic_energy"].values > 2.0 * ENERGY)
     needs(larger.sizes["stop_kinetic_energy"], "stop_energy holds no larger energy")

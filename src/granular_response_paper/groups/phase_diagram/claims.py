@@ -8,9 +8,10 @@ in every claim here; wider lattices are another preparation.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, pairwise, product
+from itertools import combinations, groupby, pairwise, product
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -20,7 +21,6 @@ from granular_response.scene.lattice import SlabPacking, touching_largest
 from granular_response.state import FloatArray
 from granular_response_paper.claims.bootstrap import LEVELS, of_draws, over_realizations, part_of
 from granular_response_paper.claims.claim import Bound, Case, Data, Numbers, Quantity, at, needs
-from granular_response_paper.claims.words import Words
 from granular_response_paper.survey.crossover import ABOVE, BELOW, FOUND, counted
 
 GROUP = "phase_diagram"
@@ -37,88 +37,81 @@ TOLERANCES = (0.01, 0.02, 0.05)
 #: How intervals over realizations are made.
 BOOTSTRAP = "bootstrap of realizations"
 
-#: Names a number: by the value of what the text leaves open, and what it is of.
-Label = Callable[..., Case]
 
+class Slab(NamedTuple):
+    """What a case is: its polydispersity, its initial lattice and its friction."""
 
-def _case(study: xr.Dataset, polydispersity: float, friction: float, start: str = USUAL) -> xr.Dataset:
-    """The case with these numbers. Raises NotMeasured if there is none."""
-    return at(study, polydispersity=polydispersity, friction=friction, lattice_constant=start)
+    polydispersity: float
+    start: str
+    friction: float
 
+    def of(self, study: xr.Dataset) -> xr.Dataset:
+        """The case of a study. Raises NotMeasured if there is none."""
+        return at(study, polydispersity=self.polydispersity, friction=self.friction, lattice_constant=self.start)
 
-def _every(study: xr.Dataset) -> list[tuple[float, str, float]]:
-    """Polydispersity, start and friction of every case: by start this project's first, then by their constants."""
-    columns = (study[name].values.tolist() for name in ("polydispersity", "lattice_constant", "friction"))
-    return sorted(zip(*columns, strict=True), key=lambda case: (case[0], case[1] != USUAL, *case[1:]))
+    @property
+    def title(self) -> str:
+        return f"polydispersity {self.polydispersity:g}, friction {self.friction:g}"
 
-
-def _disordered(study: xr.Dataset) -> list[tuple[float, str, float]]:
-    return [case for case in _every(study) if case[0] > 0.0]
-
-
-def _lines(study: xr.Dataset) -> dict[tuple[float, str], list[float]]:
-    """Frictions by polydispersity and start, of disordered cases."""
-    found: dict[tuple[float, str], list[float]] = {}
-    for delta, start, mu in _disordered(study):
-        found.setdefault((delta, start), []).append(mu)
-    return found
-
-
-def _disorder(polydispersity: float) -> str:
-    return f"polydispersity {polydispersity:g}"
+    def case(self, name: str | None = None, of: str = "") -> Case:
+        """A value of what the text leaves open, or another preparation if the lattice is wider than it need be."""
+        name = f"polydispersity {self.polydispersity:g}" if name is None else name
+        title = ", ".join(filter(None, (name, _title(self.start))))
+        wider = self.start != USUAL and float(self.start) > touching_largest(self.polydispersity)
+        return Case("" if wider else title, of, title if wider else "")
 
 
 def _title(start: str) -> str:
     return "largest disks touch at first" if start == USUAL else f"lattice constant {start}"
 
 
-def _label(start: str, polydispersity: float = 0.01) -> Label:
-    """Names of numbers of a start: one value of what the text leaves open, or another preparation if it is wider."""
-    wider = start != USUAL and float(start) > touching_largest(polydispersity)
-
-    def label(case: str = "", of: str = "") -> Case:
-        title = ", ".join(filter(None, (case, _title(start))))
-        return Case("" if wider else title, of, title if wider else "")
-
-    return label
+def _slabs(study: xr.Dataset, disordered: bool = True) -> list[Slab]:
+    """Every case: by start this project's first, then by their constants."""
+    columns = (study[name].values.tolist() for name in ("polydispersity", "lattice_constant", "friction"))
+    found = sorted(map(Slab, *columns), key=lambda slab: (slab.polydispersity, slab.start != USUAL, *slab[1:]))
+    return [slab for slab in found if (slab.polydispersity > 0.0) is disordered]
 
 
-def _cases(
-    data: Data, *names: str, friction: float | None = None, **labels: float
-) -> Iterator[tuple[Label, float, float, list[xr.Dataset]]]:
-    """Every case of disorder, or of those with one friction: names, polydispersity, friction, and its datasets."""
+def _lines(study: xr.Dataset) -> dict[tuple[float, str], list[Slab]]:
+    """Disordered cases with growing friction, by polydispersity and start."""
+    return {key: list(line) for key, line in groupby(_slabs(study), key=lambda slab: slab[:2])}
+
+
+def _cases(data: Data, *names: str, **labels: float) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
+    """Every case of disorder with its datasets."""
     studies = [at(data.get(GROUP, name), **labels) for name in names]
-    for delta, start, mu in _disordered(studies[0]):
-        if friction in (None, mu):
-            yield _label(start, delta), delta, mu, [_case(study, delta, mu, start) for study in studies]
+    yield from ((slab, [slab.of(study) for study in studies]) for slab in _slabs(studies[0]))
 
 
-def _by_start(study: xr.Dataset, *frictions: float) -> Iterator[tuple[Label, list[xr.Dataset]]]:
+def _by_start(study: xr.Dataset, *frictions: float) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
     """Starts of delta = 0.01 with their cases of these frictions."""
-    for (delta, start), there in _lines(study).items():
-        if np.isclose(delta, 0.01) and set(frictions) <= set(there):
-            yield _label(start), [_case(study, 0.01, mu, start) for mu in frictions]
+    for (delta, _), line in _lines(study).items():
+        slabs = [slab for slab in line if slab.friction in frictions]
+        if np.isclose(delta, 0.01) and len(slabs) == len(frictions):
+            yield slabs[0], [slab.of(study) for slab in slabs]
+
+
+def _samples(case: xr.Dataset) -> int:
+    return int(case["realizations"]) if "realizations" in case.variables else 1
 
 
 def _with_interval(case: xr.Dataset, name: str) -> Quantity:
     """A number of a case with 95 % of its bootstrap draws."""
     low, high = (float(at(case, level=level)[f"{name}_interval"]) for level in LEVELS)
-    samples = int(case["realizations"]) if "realizations" in case.variables else 1
-    return Quantity(float(case[name]), low, high, "confidence", BOOTSTRAP, samples)
+    return Quantity(float(case[name]), low, high, "confidence", BOOTSTRAP, _samples(case))
 
 
-def two_peaks_or_one(data: Data, words: Words) -> Numbers:
+def two_peaks_or_one(data: Data) -> Numbers:
     """D1. The paper shows one mean of each friction, so that what is asked is only that such ones are not rare."""
-    for label, cases in _by_start(at(data.get(GROUP, "starts"), width=NARROW), 0.0, 0.2):
-        yield label(), *(_tail(case, level) for case, level in zip(cases, LEVELS[::-1], strict=True))
+    for slab, cases in _by_start(at(data.get(GROUP, "starts"), width=NARROW), 0.0, 0.2):
+        yield slab.case(""), *(_tail(case, level) for case, level in zip(cases, LEVELS[::-1], strict=True))
 
 
 def _tail(case: xr.Dataset, level: float) -> Quantity:
     """A quantile of the dip of means of ``SHOWN`` realizations, with 95 % of its bootstrap draws."""
-    one = at(case, level=level)
+    one, method = at(case, level=level), f"quantile of means of {SHOWN}, bootstrap"
     low, high = one["dip_of_means_interval"].values.tolist()
-    method = f"quantile of means of {SHOWN}, bootstrap"
-    return Quantity(float(one["dip_of_means"]), low, high, "confidence", method, int(case["realizations"]))
+    return Quantity(float(one["dip_of_means"]), low, high, "confidence", method, _samples(case))
 
 
 @dataclass(frozen=True)
@@ -139,11 +132,10 @@ class Crossover:
         # at no force two peaks, or at all: what was looked at ends there
         low = 0.0 if kind == BELOW else min(max(low, 0.0), force)
         high = max(high, force) if kind == BELOW else high
-        samples = int(case["realizations"]) if "realizations" in case.variables else 1
         draws = case["draws"].values.astype(float)
         smallest, largest = (float(end) for end in case["limits"].values)
         least = np.where(draws == -np.inf, 0.0, np.where(draws == np.inf, largest, draws))
-        found = Quantity(force, low, high, "confidence", BOOTSTRAP, samples)
+        found = Quantity(force, low, high, "confidence", BOOTSTRAP, _samples(case))
         return cls(found, kind, least, np.where(draws == -np.inf, smallest, draws))
 
     def comparable(self, other: Crossover) -> bool:
@@ -159,20 +151,18 @@ class Crossover:
         return of_draws(ratio.value, (low, high), BOOTSTRAP, ratio.samples, "inverted_cdf")
 
 
-def _crossover(data: Data, words: Words, polydispersity: float, friction: float, start: str) -> Crossover:
+def _crossover(data: Data, slab: Slab) -> Crossover:
     """By the mean of the realizations; by the median one where packings collapse, so that the mean hangs on a few.
 
     A dip counts from the threshold of "visible" on.
     """
-    medians = _case(at(data.get(GROUP, "medians"), width=WIDE), polydispersity, friction, start)
+    medians = slab.of(at(data.get(GROUP, "medians"), width=WIDE))
     if int(medians["collapsed"]) > 0:
         return Crossover.of(medians)
-    study = data.get(GROUP, "crossovers")
-    if np.isclose(study.attrs.get("tolerance", words["visible"]), words["visible"]):
-        study = at(study, width=WIDE)
-    else:
-        study = at(data.get(GROUP, "definitions"), width=WIDE, tolerance=words["visible"])
-    return Crossover.of(_case(study, polydispersity, friction, start))
+    study, visible = data.get(GROUP, "crossovers"), data.words["visible"]
+    if np.isclose(study.attrs.get("tolerance", visible), visible):
+        return Crossover.of(slab.of(at(study, width=WIDE)))
+    return Crossover.of(slab.of(at(data.get(GROUP, "definitions"), width=WIDE, tolerance=visible)))
 
 
 def trend(line: Sequence[Crossover]) -> Quantity:
@@ -199,98 +189,95 @@ def _order(line: Sequence[Crossover]) -> tuple[Quantity, int]:
     return trend(rest if len(rest) > 1 else line), sum(step.high < 1.0 for step in steps)
 
 
-def rises_with_friction(data: Data, words: Words) -> Numbers:  # D3a
-    for (delta, start), frictions in _lines(data.get(GROUP, "crossovers")).items():
-        if len(frictions) > 1:
-            line = [_crossover(data, words, delta, mu, start) for mu in frictions]
-            yield _label(start, delta)(_disorder(delta)), *_order(line)
+def rises_with_friction(data: Data) -> Numbers:  # D3a
+    for line in _lines(data.get(GROUP, "crossovers")).values():
+        if len(line) > 1:
+            yield line[0].case(), *_order([_crossover(data, slab) for slab in line])
 
 
-def falls_with_disorder(data: Data, words: Words) -> Numbers:  # D3b
-    lines = _lines(data.get(GROUP, "crossovers"))
-    deltas = sorted({delta for delta, _ in lines}, reverse=True)
-    for start in (USUAL, LITERAL):
-        for mu in sorted(set.intersection(*(set(lines.get((delta, start), ())) for delta in deltas))):
-            line = [_crossover(data, words, delta, mu, start) for delta in deltas]
+def falls_with_disorder(data: Data) -> Numbers:  # D3b
+    slabs = _slabs(data.get(GROUP, "crossovers"))
+    deltas = sorted({slab.polydispersity for slab in slabs}, reverse=True)
+    for start, mu in product((USUAL, LITERAL), sorted({slab.friction for slab in slabs})):
+        wanted = [Slab(delta, start, mu) for delta in deltas]
+        if set(wanted) <= set(slabs):
+            line = [_crossover(data, slab) for slab in wanted]
             if any(after.comparable(before) for before, after in pairwise(line)) or start == LITERAL:
                 yield f"friction {mu:g}, {_title(start)}", *_order(line)
 
 
-def gradual(data: Data, words: Words) -> Numbers:  # D4
-    for label, delta, _, found in _cases(data, "shapes", "realizations", "crossovers", friction=1.0, width=WIDE):
-        case, single, crossover = found
-        if int(crossover["kind"]) == FOUND:
+def gradual(data: Data) -> Numbers:  # D4
+    for slab, (case, single, crossover) in _cases(data, "shapes", "realizations", "crossovers", width=WIDE):
+        if slab.friction == 1.0 and int(crossover["kind"]) == FOUND:
             dips, leans = (single[name].transpose("realization", "step").values for name in ("shape", "asymmetry"))
             steps = np.fmax.reduce(np.fmax(np.abs(np.diff(dips)), np.abs(np.diff(leans))), axis=1)
-            yield label(_disorder(delta), "mean"), _with_interval(case, "largest_step")
-            yield label(_disorder(delta), "median realization"), over_realizations(steps)
+            yield slab.case(of="mean"), _with_interval(case, "largest_step")
+            yield slab.case(of="median realization"), over_realizations(steps)
 
 
-def five_enough(data: Data, words: Words) -> Numbers:
+def five_enough(data: Data) -> Numbers:
     """D5, a statement on samples of five: it must hold in most of them, wherever the mean of all has a crossover.
 
     Where it has none up to the largest force, samples may have one beyond it.
     """
-    for label, delta, mu, (case,) in _cases(data, "crossovers", width=WIDE):
+    for slab, (case,) in _cases(data, "crossovers", width=WIDE):
         seen = replace(_with_interval(case, "seen"), method="samples of five, bootstrap")
         if int(case["kind"]) != BELOW:
-            seen = replace(seen, high=1.0) if int(case["kind"]) == ABOVE else seen
-            yield label(_disorder(delta), f"{mu:g}"), seen
+            yield slab.case(of=f"{slab.friction:g}"), replace(seen, high=1.0) if int(case["kind"]) == ABOVE else seen
 
 
-def below_lattice(data: Data, words: Words) -> Numbers:  # D6
-    for delta, start, mu in _disordered(data.get(GROUP, "crossovers")):
-        found, lattice = (_crossover(data, words, d, mu, s) for d, s in ((delta, start), (0.0, USUAL)))
+def below_lattice(data: Data) -> Numbers:  # D6
+    for slab in _slabs(data.get(GROUP, "crossovers")):
+        found, lattice = (_crossover(data, one) for one in (slab, Slab(0.0, USUAL, slab.friction)))
         if found.comparable(lattice):
-            yield _label(start, delta)(_disorder(delta), f"{mu:g}"), found.per(lattice)
+            yield slab.case(of=f"{slab.friction:g}"), found.per(lattice)
 
 
-def preparation(data: Data, words: Words) -> Numbers:  # D8
+def preparation(data: Data) -> Numbers:  # D8
     for mu in (0.0, 0.2):
-        usual, literal = (_crossover(data, words, 0.01, mu, start) for start in (USUAL, LITERAL))
+        usual, literal = (_crossover(data, Slab(0.01, start, mu)) for start in (USUAL, LITERAL))
         yield f"friction {mu:g}", literal.per(usual)
 
 
-def like_the_lattice(data: Data, words: Words) -> Numbers:
+def like_the_lattice(data: Data) -> Numbers:
     """D13. One peak under the smallest force, two under larger ones, at the frictions at which the lattice has both."""
     study = data.get(GROUP, "crossovers")
-    lattice = [mu for delta, start, mu in _every(study) if delta == 0.0 and start == USUAL]
-    both = [mu for mu in lattice if _crossover(data, words, 0.0, mu, USUAL).kind == FOUND]
-    for delta, start, mu in _disordered(study):
-        if mu in both:
-            found = _crossover(data, words, delta, mu, start).found
-            smallest, largest = _case(study, delta, mu, start)["limits"].values[-1].tolist()
-            case = _label(start, delta)(f"{_disorder(delta)}, friction {mu:g}", f"{mu:g}")
+    both = {one.friction for one in _slabs(study, disordered=False) if _crossover(data, one).kind == FOUND}
+    for slab in _slabs(study):
+        if slab.friction in both:
+            found = _crossover(data, slab).found
+            smallest, largest = slab.of(study)["limits"].values[-1].tolist()
+            case = slab.case(slab.title, f"{slab.friction:g}")
             yield case, (found, Bound(smallest, strict=True)), (found, Bound(most=largest))
 
 
-def without_contacts(data: Data, words: Words) -> Numbers:  # D18
-    for label, delta, _, (case,) in _cases(data, "shapes", friction=0.0, width=NARROW):
-        yield label(_disorder(delta)), _with_interval(case.isel(step=0), "shape")
+def without_contacts(data: Data) -> Numbers:  # D18
+    for slab, (case,) in _cases(data, "shapes", width=NARROW):
+        if slab.friction == 0.0:
+            yield slab.case(), _with_interval(case.isel(step=0), "shape")
 
 
 #: What is counted as contacts of a disk.
 COUNTED = {"contacts of disks": "", "walls counted": "_with_walls", "away from the boundaries": "_bulk"}
 
 
-def coordination(data: Data, words: Words, per: float = 1.0) -> Numbers:  # D7a, D14
-    for label, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
-        for name, kind in COUNTED.items():
-            yield label(name), over_realizations(case[f"coordination_number{kind}"].values / per, np.mean)
+def coordination(data: Data, per: float = 1.0) -> Numbers:  # D7a, D14
+    for (slab, (case,)), (name, kind) in product(_by_start(data.get(GROUP, "packings"), 0.0), COUNTED.items()):
+        yield slab.case(name), over_realizations(case[f"coordination_number{kind}"].values / per, np.mean)
 
 
-def missing_horizontal(data: Data, words: Words) -> Numbers:
+def missing_horizontal(data: Data) -> Numbers:
     """D7b, of the contacts of the ideal lattice, in which every disk touches its neighbours."""
     packing = SlabPacking().build()
     i, j = packing.neighbour_pairs().T  # type: ignore[union-attr]
     level = packing.row[i] == packing.row[j]
     ideal = {"horizontal": level.sum() / packing.n, "oblique": (~level).sum() / packing.n}
-    for label, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
+    for slab, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
         missing = {name: number - case[f"{name}_contacts"].values for name, number in ideal.items()}
-        yield label(), over_realizations(missing["horizontal"] / sum(missing.values()), np.mean)
+        yield slab.case(""), over_realizations(missing["horizontal"] / sum(missing.values()), np.mean)
 
 
-def _away(data: Data, words: Words) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _away(data: Data) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """(case, step) which forces are known to be far below the crossover at w = 6, and far above.
 
     A force inside the interval of its crossover is not known to be away from it; a bound has forces on one side alone.
@@ -298,14 +285,14 @@ def _away(data: Data, words: Words) -> tuple[NDArray[np.bool_], NDArray[np.bool_
     force = data.get(GROUP, "shapes")["applied_force"].transpose("case", "step").values
     crossovers = at(data.get(GROUP, "crossovers"), width=WIDE)
     low, high = (at(crossovers, level=level)["interval"].values[:, None] for level in LEVELS)
-    near, crossover = 1.0 + words["similar"], crossovers["force"].values[:, None]
+    near, crossover = 1.0 + data.words["similar"], crossovers["force"].values[:, None]
     kind = crossovers["kind"].values[:, None]
     below = (force < np.minimum(low, crossover / near)) & (kind != BELOW)
     above = (force > np.maximum(high, crossover * near)) & (kind != ABOVE)
     return below, above
 
 
-def resembles(data: Data, words: Words) -> Numbers:
+def resembles(data: Data) -> Numbers:
     """D9, at forces that are known to be away from the crossover of their case."""
     study = at(data.get(GROUP, "realizations"), width=WIDE)
     off = study["difference"].transpose("case", "realization", "step").values
@@ -313,24 +300,23 @@ def resembles(data: Data, words: Words) -> Numbers:
     for start in (USUAL, LITERAL):
         here = (study["polydispersity"].values > 0.0) & (constant == start)
         known = np.isfinite(off).any(axis=1) & here[:, None]
-        for side, away in zip(("below", "above"), _away(data, words), strict=True):
+        for side, away in zip(("below", "above"), _away(data), strict=True):
             typical = [np.nanmedian(off[case, :, step]) for case, step in np.argwhere(away & known)]
             if len(typical) > 2:
                 found = replace(over_realizations(typical), method="bootstrap of the median over cases and forces")
                 yield f"{side} the crossover, {_title(start)}", found
 
 
-def _at_15(data: Data, name: str) -> Iterator[tuple[Label, list[xr.Dataset]]]:
+def _at_15(data: Data, name: str) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
     """By start: delta = 0.01 under 15 mg at friction 0 and at 0.2, w = 3."""
     study = at(data.get(GROUP, name), width=NARROW).assign(applied=data.get(GROUP, "shapes")["applied_force"])
-    for label, cases in _by_start(study, 0.0, 0.2):
-        yield label, [one.isel(step=int(np.flatnonzero(np.isclose(one["applied"].values, 15.0))[0])) for one in cases]
+    for slab, cases in _by_start(study, 0.0, 0.2):
+        yield slab, [one.isel(step=int(np.flatnonzero(np.isclose(one["applied"].values, 15.0))[0])) for one in cases]
 
 
-def fluctuations(data: Data, words: Words) -> Numbers:  # D10
-    for label, cases in _at_15(data, "shapes"):
-        without, full = (_with_interval(case, "spread") for case in cases)
-        yield label(), without.per(full)
+def fluctuations(data: Data) -> Numbers:  # D10
+    for slab, (without, full) in _at_15(data, "shapes"):
+        yield slab.case(""), _with_interval(without, "spread").per(_with_interval(full, "spread"))
 
 
 def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quantity:
@@ -349,19 +335,19 @@ def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quan
     return of_draws(part(without, full, 20000), drawn, method, number)
 
 
-def evident(data: Data, words: Words) -> Numbers:  # D11
-    least = 1.0 - words["holds"]
-    for label, cases in _at_15(data, "realizations"):
+def evident(data: Data) -> Numbers:  # D11
+    least = 1.0 - data.words["holds"]
+    for slab, cases in _at_15(data, "realizations"):
         without, full = (case["shape"].values[np.isfinite(case["shape"].values)] for case in cases)
-        yield label(of=f"{least:.0%}"), evident_samples(without, full, least)
+        yield slab.case("", f"{least:.0%}"), evident_samples(without, full, least)
 
 
-def collapses(data: Data, words: Words, polydispersity: float | None = None, friction: float | None = None) -> Numbers:
+def collapses(data: Data, **of: float) -> Numbers:
     """D12, D16: the part of the packings that collapse along their load paths, of all cases or of one of them."""
-    for label, delta, mu, (one,) in _cases(data, "realizations", friction=friction):
-        if polydispersity in (None, delta):
-            part = part_of(np.isfinite(one["collapse_force"].values[: int(one["realizations"])]))
-            yield label(f"{_disorder(delta)}, friction {mu:g}"), part
+    for slab, (one,) in _cases(data, "realizations"):
+        if of.items() <= slab._asdict().items():
+            hits = np.isfinite(one["collapse_force"].values[: int(one["realizations"])])
+            yield slab.case(slab.title), part_of(hits)
 
 
 #: Names of what is off in the linear range.
@@ -433,23 +419,25 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
     return of_draws(value / number, (low / number, high / number), "Jonckheere's statistic, bootstrap", samples)
 
 
-def shorter_range(data: Data, words: Words) -> Numbers:  # D2
+def shorter_range(data: Data) -> Numbers:  # D2
     study = data.get(GROUP, "linear_range")
-    for (delta, start), frictions in _lines(study).items():
-        for mu, tolerance in product(frictions if np.isclose(delta, 0.01) else (), TOLERANCES):
-            ends, lattice = (linear_ends(_case(study, *case), tolerance) for case in ((0.01, mu, start), (0.0, mu)))
-            yield _label(start)(f"friction {mu:g}", f"{tolerance:.0%}"), shorter(ends, lattice[0])
+    for slab, tolerance in product(_slabs(study), TOLERANCES):
+        if np.isclose(slab.polydispersity, 0.01):
+            lattice = slab._replace(polydispersity=0.0, start=USUAL)
+            ends, whole = (linear_ends(one.of(study), tolerance) for one in (slab, lattice))
+            yield slab.case(f"friction {slab.friction:g}", f"{tolerance:.0%}"), shorter(ends, whole[0])
 
 
-def shorter_with_disorder(data: Data, words: Words) -> Numbers:
+def shorter_with_disorder(data: Data) -> Numbers:
     """A5, by the response as a whole, since that at x = 0 is near zero without friction."""
     study = data.get(GROUP, "linear_range")
     lines = _lines(study)
     for start in (USUAL, LITERAL):
         deltas = [delta for delta, one in lines if one == start]
-        for mu, tolerance in product(lines[deltas[-1], start] if deltas else (), TOLERANCES):
-            cases = [_case(study, 0.0, mu), *(_case(study, delta, mu, start) for delta in deltas)]
-            ends = [linear_ends(case, tolerance, PROFILE) for case in cases]
+        for slab, tolerance in product(lines[deltas[-1], start] if deltas else (), TOLERANCES):
+            mu = slab.friction
+            cases = [Slab(0.0, USUAL, mu), *(Slab(delta, start, mu) for delta in deltas)]
+            ends = [linear_ends(one.of(study), tolerance, PROFILE) for one in cases]
             lattice, least = (linear_end(one) for one in ends[:2])
             case = Case(f"friction {mu:g}, {tolerance:.0%} off, {_title(start)}", f"{deltas[0]:g}")
             yield case, lattice.per(least), order_of(ends[1:]) if len(deltas) > 1 else None

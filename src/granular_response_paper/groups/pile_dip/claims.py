@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from granular_response_paper.claims.claim import Data, Numbers
-from granular_response_paper.claims.words import Words
 
 
-def regions(data: Data, words: Words) -> Numbers:
+def regions(data: Data) -> Numbers:
     """P3: with friction per without, and the aspect of the one per the other's."""
     study = data.get("pile_dip", "piles")
     ratios = {

@@ -5,17 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from granular_response_paper.claims.claim import Data, Numbers, at
-from granular_response_paper.claims.words import Words
 
 
-def nearly_symmetrical(data: Data, words: Words) -> Numbers:  # D15
+def nearly_symmetrical(data: Data) -> Numbers:  # D15
     few = at(data.get("polydisperse_averages", "averages"), width=6.0)
     mean = few["mean_of_few"].transpose("case", "step", "x").values[few["polydispersity"].values > 0.0]
     with np.errstate(invalid="ignore"):
         yield "", np.nanmin(np.abs(mean - mean[..., ::-1]).max(axis=-1) / mean.max(axis=-1))
 
 
-def preferred_directions(data: Data, words: Words) -> Numbers:
+def preferred_directions(data: Data) -> Numbers:
     """D17, of the first case of each polydispersity."""
     study = data.get("polydisperse_averages", "packings")
     lattice = np.radians([0.0, 60.0, 120.0, 180.0])

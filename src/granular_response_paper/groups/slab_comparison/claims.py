@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from granular_response_paper.claims.claim import Case, Data, Numbers, needs
-from granular_response_paper.claims.words import Words
 from granular_response_paper.records import alike
 
 
-def large_systems(data: Data, words: Words) -> Numbers:
+def large_systems(data: Data) -> Numbers:
     """A4: the difference in the deepest slab, and per that in the thinnest."""
     cases = alike(data.get("slab_comparison", "slabs"), "slab", "friction", "floor", "gravity", "disks_per_layer")
     for (mu, floor, gravity, wide), slabs in cases.items():

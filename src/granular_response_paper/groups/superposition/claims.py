@@ -6,7 +6,6 @@ import numpy as np
 
 from granular_response_paper.claims.bootstrap import over_realizations, part_of
 from granular_response_paper.claims.claim import Case, Data, Numbers, at, needs
-from granular_response_paper.claims.words import Words
 
 GROUP = "superposition"
 
@@ -15,26 +14,26 @@ LINEAR = 0.4
 ERRORS = {"floor forces": "floor_error_largest", "all contact forces": "contact_error_largest"}
 
 
-def superposition(data: Data, words: Words, force: float, word: str) -> Numbers:
+def superposition(data: Data, force: float, word: str) -> Numbers:
     """U1, U3: packings in which no error at any distance is larger."""
     study = at(data.get(GROUP, "errors"), force=force)
     for case, name in ERRORS.items():
         worst = np.nanmax(study[name].transpose("realization", "distance").values, axis=1)
-        yield case, part_of(worst <= words[word])
+        yield case, part_of(worst <= data.words[word])
 
 
-def linear_range(data: Data, words: Words) -> Numbers:
+def linear_range(data: Data) -> Numbers:
     """U2: ends below the largest and above the smallest force that is about the paper's."""
     study = data.get(GROUP, "linear_range")
     until, beyond = study["linear_until"].values, study["nonlinear_from"].values
     # a path that does not end is beyond all others
     ends = np.where(np.isfinite(beyond), 0.5 * (until + beyond), np.inf)
-    low, high = ((1.0 + sign * words["about"]) * LINEAR for sign in (-1.0, 1.0))
+    low, high = ((1.0 + sign * data.words["about"]) * LINEAR for sign in (-1.0, 1.0))
     yield Case(of=f"{high:g}"), part_of(ends < high), None
     yield Case(of=f"{low:g}"), None, part_of(ends > low)
 
 
-def falls_with_depth(data: Data, words: Words) -> Numbers:  # U4
+def falls_with_depth(data: Data) -> Numbers:  # U4
     study = at(data.get(GROUP, "errors"), force=1.0).sortby("gap")
     error = study["row_error"].transpose("distance", "realization", "gap").values
     needs(error.shape[2] > 1, "errors holds one depth")

@@ -6,12 +6,11 @@ from contextlib import suppress
 
 from granular_response_paper.claims import preparations
 from granular_response_paper.claims.claim import Data, NotMeasured, Numbers, Quantity
-from granular_response_paper.claims.words import Words
 
 EVENT = "loss_of_symmetry_path"
 
 
-def loss_of_symmetry(data: Data, words: Words) -> Numbers:  # R5a
+def loss_of_symmetry(data: Data) -> Numbers:  # R5a
     brackets = data.get("symmetry_breaking", "brackets")
     columns = (brackets[name].values.tolist() for name in ("low", "high", "ramp_time", "time_step"))
     for low, high, ramp, step in zip(*columns, strict=True):

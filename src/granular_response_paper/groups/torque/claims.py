@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from granular_response_paper.claims.claim import Data, Numbers, needs
-from granular_response_paper.claims.words import Words
 
 GROUP = "torque"
 
@@ -13,7 +12,7 @@ GROUP = "torque"
 NEAR, FAR = 6.0, 9.0
 
 
-def near_the_load(data: Data, words: Words) -> Numbers:  # T1b
+def near_the_load(data: Data) -> Numbers:  # T1b
     rings = data.get(GROUP, "reach").sortby("torque").isel(torque=-1)
     near, far = rings["ring_outer"].values <= NEAR, rings["ring_inner"].values >= FAR
     study, disks = (data.get(GROUP, name).sortby("torque") for name in ("stress", "torques"))
