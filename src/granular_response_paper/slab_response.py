@@ -23,7 +23,9 @@ from granular_response.state import Event as PathEvent
 from granular_response.state import State
 from granular_response.store.result import certificates_dataset, common_candidates, states_dataset
 from granular_response.store.variables import RADII, WEIGHTS, variable
-from granular_response.studies import MARGINS, NARROW, Happening, LoadPath, Measures
+from granular_response.studies import Happening, LoadPath, Measures
+from granular_response.studies.measures import MARGINS
+from granular_response.studies.path import NARROW
 from granular_response_paper.records import column, record, table, variables
 
 #: The parts of a state that a picture of its contact network and its response need.

@@ -150,7 +150,6 @@ SIGNATURES = {
     "studies.reaches_floor": "(measures)",
     "studies.third_peak": "(measures)",
     "studies.two_peaks": "(measures)",
-    "studies.wall_margin": "(width)",
     "sweep": (
         "(scene, axes, measure=floor_response, *, load_factors=None, workers=None, scheduler=None,"
         " checkpoint=None, progress=True)"

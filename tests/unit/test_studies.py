@@ -12,8 +12,6 @@ from granular_response.observe.widths import half_maximum_width
 from granular_response.state import OPEN, STICKING
 from granular_response.state import Event as PathEvent
 from granular_response.studies import (
-    EXACT,
-    NARROW,
     EventNotBracketed,
     Happening,
     LoadPath,
@@ -26,6 +24,7 @@ from granular_response.studies import (
     reaches_floor,
 )
 from granular_response.studies import path as paths
+from granular_response.studies.path import EXACT, NARROW
 from granular_response_paper.slab_response import Scalars
 
 UNIT_LOAD = [{"disk": "top-centre", "force": [0.0, -1.0]}]

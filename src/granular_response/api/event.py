@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from functools import partial
 from numbers import Real
 from typing import Any
 
@@ -115,9 +113,7 @@ def find_event(
             bracket = _first(solve(base, load_factors=[high], progress=False), kind, where, low)
         else:
             asked = happened if callable(happened) else lambda result: bool(_events(result, happened, where))
-            says = _Asked(asked, report, 2 + _halvings(high - low, tolerance))
-            search = _along_load if key == "load" else partial(_along_key, key)
-            bracket = replace(search(base, says, low, high, tolerance), evaluations=says.done)
+            bracket = _searched(base, asked, key, low, high, tolerance, report)
         if report:
             report(bracket.evaluations, bracket.evaluations, "event")
     return bracket
@@ -158,45 +154,38 @@ def _first(result: Result, kind: str, where: Callable[[Event], bool] | None, low
     return Bracket(low=begin, high=end, at_low=False, evaluations=1)
 
 
-@dataclass
-class _Asked:
-    """What is asked of results, and how often it has been."""
+def _searched(
+    base: Scene,
+    happened: Callable[[Result], bool],
+    key: str,
+    low: float,
+    high: float,
+    tolerance: float,
+    report: Progress | None,
+) -> Bracket:
+    """By bisection; along the load among the events of the path first, each looked at from both sides."""
+    total = 2 + _halvings(high - low, tolerance)
+    known: dict[float, bool] = {}
+    path: LoadPath | None = None
 
-    happened: Callable[[Result], bool]
-    report: Progress | None
-    total: int  #: expected
-    done: int = 0
+    def says(value: float) -> bool:
+        if value not in known:
+            if report:
+                report(len(known), max(total, len(known) + 1), "event")
+            one = vouched(path.solution(value)) if path else solve(base.updated({key: value}), progress=False)
+            known[value] = bool(happened(one))
+        return known[value]
 
-    def __call__(self, solved: Callable[[], Result]) -> bool:
-        if self.report:
-            self.report(self.done, max(self.total, self.done + 1), "event")
-        result = solved()
-        self.done += 1
-        return bool(self.happened(result))
-
-
-def _along_key(key: str, base: Scene, says: _Asked, low: float, high: float, tolerance: float) -> Bracket:
-    return bisect_event(
-        lambda value: says(lambda: solve(base.updated({key: value}), progress=False)), low, high, tolerance
-    )
-
-
-def _along_load(base: Scene, says: _Asked, low: float, high: float, tolerance: float) -> Bracket:
-    """Among the events of the path first, each looked at from both sides, then by bisection."""
-    first = solve(base, load_factors=[low], progress=False)
-    path, known = LoadPath.from_solution(_solution(first)), {low: says(lambda: first)}
-    at_low = known[low]
-
-    def at(factor: float) -> bool:
-        if factor not in known:
-            known[factor] = says(lambda: vouched(path.solution(factor)))
-        return known[factor]
-
-    if at(high) == at_low:
-        raise EventNotBracketed(unchanged(at_low, low, high))
-    changed = Happening(lambda state: at(state.load_factor) != at_low, "what is asked for has changed")
-    beside = BESIDE / path.problem.load_size
-    return Bracket(*path.first([low, high], changed, tolerance=tolerance, beside=beside), at_low, says.done)
+    if key != "load":
+        return bisect_event(says, low, high, tolerance)
+    if report:
+        report(0, total, "event")
+    path = LoadPath.from_solution(_solution(solve(base, load_factors=[low, high], progress=False)))
+    if says(low) == says(high):
+        raise EventNotBracketed(unchanged(says(low), low, high))
+    changed = Happening(lambda state: says(state.load_factor) != says(low), "what is asked for has changed")
+    ends = path.first([low, high], changed, tolerance=tolerance, beside=BESIDE / path.problem.load_size)
+    return Bracket(*ends, says(low), len(known))
 
 
 def _halvings(width: float, least: float) -> int:

@@ -19,40 +19,9 @@ True
 """
 
 from .brackets import Bracket, EventNotBracketed, bisect_event, first_change, linear_end
-from .measures import (
-    LINEARITY,
-    MARGINS,
-    Measures,
-    first_opening,
-    leaves_linear_range,
-    loses_symmetry,
-    reaches_floor,
-    third_peak,
-    two_peaks,
-    wall_margin,
-)
-from .path import EXACT, NARROW, Happening, LoadPath, by_motion, lost
+from .measures import Measures, first_opening, leaves_linear_range, loses_symmetry, reaches_floor, third_peak, two_peaks
+from .path import Happening, LoadPath, by_motion, lost
 
-__all__ = [
-    "EXACT",
-    "LINEARITY",
-    "MARGINS",
-    "NARROW",
-    "Bracket",
-    "EventNotBracketed",
-    "Happening",
-    "LoadPath",
-    "Measures",
-    "bisect_event",
-    "by_motion",
-    "first_change",
-    "first_opening",
-    "leaves_linear_range",
-    "linear_end",
-    "loses_symmetry",
-    "lost",
-    "reaches_floor",
-    "third_peak",
-    "two_peaks",
-    "wall_margin",
-]
+__all__ = ["Bracket", "EventNotBracketed", "Happening", "LoadPath", "Measures", "bisect_event", "by_motion"]
+__all__ += ["first_change", "first_opening", "leaves_linear_range", "linear_end", "loses_symmetry", "lost"]
+__all__ += ["reaches_floor", "third_peak", "two_peaks"]

@@ -32,13 +32,7 @@ REACHES_FLOOR = "the region of opened contacts below the load contains a contact
 
 
 def wall_margin(width: float) -> float:
-    """Distance from the side walls within which no peak is looked for: ten radii, less in a narrow slab.
-
-    Examples
-    --------
-    >>> gr.studies.wall_margin(120.0)
-    10.0
-    """
+    """Distance from the side walls within which no peak is looked for: ten radii, less in a narrow slab."""
     return min(10.0, 0.2 * width)
 
 

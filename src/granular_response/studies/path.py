@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..scene import Packing, Scene
+from ..solvers.equilibrium import check_overlaps
 from ..solvers.path import follow
 from ..solvers.problem import Problem
 from ..solvers.solution import Solution, loaded_states
@@ -126,12 +127,17 @@ class LoadPath:
         return [self.known[force] for force in forces]
 
     def solution(self, force: float) -> Solution:
-        """The state under ``force`` and those from which it was found, as what they are: a solution of the scene."""
+        """A solution of the scene: the state under ``force`` and those from which it was found.
+
+        Raises as :meth:`through`.
+        """
         self.at(force)
         way = [force]
         while below := self.below[way[0]]:
             way.insert(0, below)
         scene = self.scene.updated({"protocol.load_factors": way})
+        for one in way:
+            check_overlaps(self.problem, self.known[one])
         return Solution(scene, replace(self.problem, scene=scene), self.rest, tuple(self.known[f] for f in way))
 
     def first(

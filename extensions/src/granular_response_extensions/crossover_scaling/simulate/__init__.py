@@ -28,6 +28,7 @@ from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.studies import Happening, LoadPath, Measures, by_motion
 from granular_response.studies.measures import FIRST_OPENING, REACHES_FLOOR, TWO_PEAKS
+from granular_response.studies.path import NARROW
 from granular_response_extensions.crossover_scaling.parameters import Parameters
 from granular_response_extensions.crossover_scaling.simulate.series import Slab, packings, power_table, slabs
 from granular_response_extensions.surveyed import measured
@@ -89,7 +90,7 @@ def compute(
         state = path.at(forces[-1])
         left = [what for what in left if not what.happened(state)]
     states = path.through(forces)
-    width = studies.NARROW if scene.contact.friction else tolerance
+    width = NARROW if scene.contact.friction else tolerance
     brackets = np.array([path.first(forces, what, width) for what in asked])
     regions = [measures.region(state) for state in states]
     # exact without friction, where all contacts go on as they are, but for the overlaps' effect on directions

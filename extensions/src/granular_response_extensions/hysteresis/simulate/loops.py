@@ -23,8 +23,8 @@ from granular_response.solvers.solution import loaded_states
 from granular_response.solvers.work import slid, stored, work
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS
-from granular_response.studies import LINEARITY, Happening, LoadPath, Measures, bisect_event, by_motion
-from granular_response.studies.measures import FIRST_OPENING
+from granular_response.studies import Happening, LoadPath, Measures, bisect_event, by_motion
+from granular_response.studies.measures import FIRST_OPENING, LINEARITY
 from granular_response_paper.records import column, record
 
 EVENTS = {

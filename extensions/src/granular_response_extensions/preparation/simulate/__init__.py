@@ -24,6 +24,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.taps import tapped
 from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS
+from granular_response.studies.measures import MARGINS
 from granular_response.sweeps.rest import rest_state
 from granular_response_extensions.preparation.parameters import Parameters
 from granular_response_paper import slab_response as slab
@@ -45,7 +46,7 @@ class Prepared:
     wall_friction: float = column("coefficient of friction of walls")
 
 
-#: Counted in a slab at rest, for each of ``studies.MARGINS``.
+#: Counted in a slab at rest, for each of ``MARGINS``.
 LIMITED = "contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit"
 
 
@@ -134,7 +135,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     response = response.assign(table([one.rest for one in cases], "case").variables)
     response = response.assign_coords(axes(force=(forces, f"applied force {WEIGHTS}")))
     events = slab.events_dataset([event for one in cases for event in one.events])
-    names = axes(name=(AGAINST, "event"), margin=(studies.MARGINS, "fraction below the Coulomb limit"))
+    names = axes(name=(AGAINST, "event"), margin=(MARGINS, "fraction below the Coulomb limit"))
     mobilized = table([one.mobilized for one in every], "case")
     datasets = {
         "response": response.assign_coords(_prepared(cases, "case")),
