@@ -16,7 +16,7 @@ from scipy.stats import binom
 
 from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response.store import files as store
-from granular_response_paper.claims import declared, preparations, summary, table
+from granular_response_paper.claims import declared, preparations, table
 from granular_response_paper.claims import stored as stored_table
 from granular_response_paper.claims.bootstrap import RARE, over_brackets, over_realizations, part_of
 from granular_response_paper.claims.claim import Bound, Claim, Data, NotMeasured, Quantity, Test, at, rise
@@ -969,7 +969,7 @@ def other_ways(data):
 def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path, good):
     """It has the layout of the dataset ``events``, and says what it was made from."""
     store.write(tmp_path / "preparation.nc", good["preparation"], {"group": "preparation", "parameters": "ways: []"})
-    path = summary.write(tmp_path / "preparation.nc", tmp_path / "extensions" / "summary.nc")
+    path = preparations.write(tmp_path / "preparation.nc", tmp_path / "extensions" / "summary.nc")
     made = store.read_attributes(path)
     assert made["source"] == "preparation.nc" and made["parameters"] == "ways: []" and len(made["source_sha256"]) == 64
     data = table.collect(tmp_path / "none", path)
@@ -978,7 +978,7 @@ def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path
     assert table.collect(tmp_path / "none", tmp_path / "none.nc").groups == {}
     store.write(tmp_path / "other.nc", pile_study(), {"group": "pile_dip"})
     with pytest.raises(NotMeasured, match="no events of the group preparation"):
-        summary.write(tmp_path / "other.nc", tmp_path / "summary.nc")
+        preparations.write(tmp_path / "other.nc", tmp_path / "summary.nc")
 
 
 def test_the_readme_quotes_the_stored_table():

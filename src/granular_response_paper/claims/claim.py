@@ -288,6 +288,8 @@ def first(curve: xr.Dataset, name: str, happened: ArrayLike) -> Quantity:
     return Quantity.bracket(*ends)
 
 
-def material(case: xr.Dataset) -> str:
-    """A case of a study in words."""
-    return f"polydispersity {float(case['polydispersity']):g}, friction {float(case['friction']):g}"
+def materials(study: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+    """The cases of a study, by polydispersity and friction."""
+    for k in range(study.sizes["case"]):
+        one = study.isel(case=k)
+        yield f"polydispersity {float(one['polydispersity']):g}, friction {float(one['friction']):g}", one

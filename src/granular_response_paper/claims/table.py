@@ -18,7 +18,7 @@ from granular_response.store import atomic
 from granular_response.store import files as store
 
 from ..registry import PAPER, Collection, collection_of, group_path
-from . import preparations, summary
+from . import preparations
 from .claim import Claim, Data, Quantity
 from .declared import TEXTS, read
 from .stored import OUTPUT, PARTS, ClaimsError
@@ -63,7 +63,7 @@ def groups_read(collection: Collection) -> list[str]:
 
 def collect(
     folder: str | os.PathLike[str] = "data",
-    others: str | os.PathLike[str] = summary.OUTPUT,
+    others: str | os.PathLike[str] = preparations.OUTPUT,
     collection: Collection = PAPER,
 ) -> Data:
     """The stored datasets that claims read, and the summary of ``others``, preparations that are not the paper's.
@@ -135,7 +135,7 @@ def _interval(quantity: Quantity | None) -> dict[str, Any]:
 def write(
     output: str | os.PathLike[str] = OUTPUT,
     folder: str | os.PathLike[str] = "data",
-    others: str | os.PathLike[str] = summary.OUTPUT,
+    others: str | os.PathLike[str] = preparations.OUTPUT,
     keep: Sequence[str | os.PathLike[str]] = (),
     collection: Collection = PAPER,
 ) -> dict[str, Any]:

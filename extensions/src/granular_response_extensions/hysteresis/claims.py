@@ -9,7 +9,7 @@ import xarray as xr
 
 from granular_response.state import FloatArray
 from granular_response_paper.claims.bootstrap import over_brackets, over_realizations
-from granular_response_paper.claims.claim import Data, Numbers, Quantity, material, needs
+from granular_response_paper.claims.claim import Data, Numbers, Quantity, materials, needs
 
 #: Realizations from which on they have an interval of confidence.
 FEWEST = 3
@@ -30,26 +30,23 @@ def _brackets(event: xr.Dataset) -> list[Quantity]:
 
 
 def ranges(data: Data) -> Numbers:  # B2
-    events, found = data.get("hysteresis", "events"), {}
-    for case in range(events.sizes["case"]):
-        one = events.isel(case=case)
-        linear, reversible = (_brackets(one.sel(event=name)) for name in ("linear_range", "reversible_range"))
+    found = {}
+    for name, one in materials(data.get("hysteresis", "events")):
+        linear, reversible = (_brackets(one.sel(event=event)) for event in ("linear_range", "reversible_range"))
         there = [k for k, end in enumerate(linear) if np.isfinite(end.low)]  # realizations that are
         if any(linear[k].happens for k in there):
-            found[material(one)] = over_packings([reversible[k].per(linear[k]) for k in there])
+            found[name] = over_packings([reversible[k].per(linear[k]) for k in there])
     needs(found, "events holds no end of a linear range")
     yield from found.items()
 
 
 def repeated(data: Data) -> Numbers:
     """B3: the part of the work that is lost again, and the change of the response."""
-    loops = data.get("hysteresis", "loops")
-    for case in range(loops.sizes["case"]):
-        one = loops.isel(case=case)
-        one = one.isel(turn=int(np.flatnonzero(np.isfinite(one["force"].values))[-1]))
+    for name, case in materials(data.get("hysteresis", "loops")):
+        one = case.isel(turn=int(np.flatnonzero(np.isfinite(case["force"].values))[-1]))
         lost = (one["slid_again"] + one["crossed_again"]).values / one["work"].values
         numbers = (_of_realizations(values) for values in (lost, one["floor_repeated"].values))
-        yield f"{material(one)}, {float(one['force']):g} mg", *numbers
+        yield f"{name}, {float(one['force']):g} mg", *numbers
 
 
 def _of_realizations(values: FloatArray) -> Quantity:

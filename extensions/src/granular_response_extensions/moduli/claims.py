@@ -9,16 +9,15 @@ import numpy as np
 import xarray as xr
 
 from granular_response_paper.claims.bootstrap import over_realizations
-from granular_response_paper.claims.claim import Data, Numbers, Quantity, material, needs
+from granular_response_paper.claims.claim import Data, Numbers, Quantity, materials, needs
 
 
 def described(data: Data, solid: str) -> Numbers:
     """B4, B5, in the highest packings of each case."""
-    study = data.get("moduli", "packings")
-    for case in range(study.sizes["case"]):
-        one = study.isel(case=case, size=int(np.nanargmax(study["layers"].values[case])), smoothing=0)
+    for name, case in materials(data.get("moduli", "packings")):
+        one = case.isel(size=int(np.nanargmax(case["layers"].values)), smoothing=0)
         found = over_realizations(one["difference"].sel(solid=solid).values, np.mean)
-        yield f"{material(one)}, {float(one['layers']):g} layers", found
+        yield f"{name}, {float(one['layers']):g} layers", found
 
 
 def _slabs(data: Data) -> dict[str, xr.Dataset]:
