@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 from scipy.stats import spearmanr
 
-from granular_response_paper.claims.claim import Case, Data, Numbers, needs
+from granular_response_paper.claims.claim import Case, Data, Numbers
 
 #: Fewest preparations that have a trend.
 FEWEST = 4
@@ -19,7 +19,6 @@ def mobilized(data: Data) -> Numbers:
     study = data.get("preparation", "mobilized")
     study = study.isel(case=study["polydispersity"].values == 0.0)
     slabs = list(zip(study["wall_friction"].values.tolist(), study["friction"].values.tolist(), strict=True))
-    found = False
     for (event, text), margin in product(EVENTS.items(), study["margin"].values.tolist()):
         for slab in dict.fromkeys(slabs):
             alike = study.isel(case=[one == slab for one in slabs]).sel(name=event, margin=margin)
@@ -27,7 +26,6 @@ def mobilized(data: Data) -> Numbers:
             free = force[part == 0.0]
             if np.isnan(force).any() or len(force) < FEWEST or np.ptp(part) == 0.0 or len(free) < 2:
                 continue
-            where, found = f"friction {slab[1]:g}{', rough walls' if slab[0] else ''}", True
+            where = f"friction {slab[1]:g}{', rough walls' if slab[0] else ''}"
             case = Case(f"{text}, contacts within {margin:.0%} of the limit", where)
             yield case, spearmanr(part, force).statistic, free.max() / free.min()
-    needs(found, f"mobilized holds no slab with {FEWEST} preparations")
