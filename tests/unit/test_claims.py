@@ -722,6 +722,42 @@ def test_what_is_declared_wrongly_is_refused(tmp_path):
             declared._check("group: F1", wrong)
 
 
+def test_a_function_yields_a_number_for_each_test(tmp_path, monkeypatch):
+    """Which says for what case it is, what the number is of and which preparation, and may have its own bound."""
+    package = tmp_path / "example_of_claims"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "claims.py").write_text(
+        "from granular_response_paper.claims.claim import Bound, Case, needs\n"
+        "def numbers(data, factor):\n"
+        "    yield 'one', 2.0 * factor, None\n"
+        "    yield Case('two', of='friction 1', prepared='slowly'), 3.0, (4.0, Bound(5.0))\n"
+        "def less(data):\n"
+        "    yield '', 1.0\n"
+        "def lacks(data):\n"
+        "    needs(False, 'no states')\n"
+        "    yield '', 1.0\n"
+    )
+    claim = "F1: {place: I, paper: A., measured: m, %s}"
+    tests = "tests: [{what: 'size, {}', unit: mg, bound: {at least: 1}}, {bound: {at most: 9}}]"
+
+    def made(numbers):
+        (package / "claims.yaml").write_text(claim % f"{tests}, numbers: {numbers}")
+        return declared.read("example_of_claims")[0]
+
+    monkeypatch.syspath_prepend(tmp_path)
+    one, two, three = made("{numbers: {factor: 4}}").measure(Data({}))
+    assert (one.what, one.case, one.found.value, one.unit, one.prepared) == ("size, ", "one", 8.0, "mg", "")
+    assert (two.what, two.case, two.prepared) == ("size, friction 1", "two", "slowly")
+    assert (three.what, three.bound) == ("m", Bound(5.0))
+    with pytest.raises(ValueError, match="zip"):
+        made("less").measure(Data({}))
+    with pytest.raises(NotMeasured, match=r"^data/example_of_claims.nc: no states$"):
+        made("lacks").measure(Data({}))
+    with pytest.raises(declared.DeclaredError, match="F1: numbers: more, must be a function"):
+        made("more")
+
+
 def test_a_number_says_its_method_and_how_many_packings_it_has(good):
     rows = {row["id"]: row["tests"] for row in table.document(table.evaluate(Data(good), EVERY))["table"]}
     assert rows["F2"][0]["method"] == "both ends of the bracket" and rows["F2"][0]["samples"] == 1

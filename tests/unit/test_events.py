@@ -278,6 +278,12 @@ def test_an_event_along_a_key():
         (("open", 0.0, 1.0), {}, ValueError, r"^kind = 'open': must be opens or"),
         (("opens", -0.5, 1.0), {}, ValueError, r"^low = -0.5: must be 0 or greater"),
         ((bool, 0.1, 1.0), {"where": bool}, ValueError, r"^where: is asked of events, must be left out"),
+        (
+            (bool, 0.1, 1e9),
+            {},
+            gr.SceneError,
+            r"^loads\[0\].force: 6e\+09 mg at the largest load",
+        ),
         ((bool, 0.1, 1.0), {"tolerance": 0.0}, ValueError, r"^tolerance = 0.0: must be a finite number greater than 0"),
         (("opens", 0.0, 1e-5), {}, EventNotBracketed, r"^no event 'opens' between load factors 0 and 1e-05$"),
         (

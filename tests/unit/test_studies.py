@@ -53,6 +53,7 @@ def test_states_are_found_from_the_one_below_and_once(path, calls):
     path = LoadPath(path.scene, path.problem, path.rest)
     path.through([0.2, 0.4, 1.0])
     path.at(0.7)
+    assert path.solution(0.7).load_factors == (0.2, 0.4, 0.7)
     path.at(0.4)
     path.through([0.3, 0.4, 1.0, 1.2])
     assert calls == [(0.0, [0.2, 0.4, 1.0]), (0.4, [0.7]), (0.2, [0.3]), (1.0, [1.2])]

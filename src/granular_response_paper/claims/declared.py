@@ -113,7 +113,10 @@ def read(package: str) -> list[Claim]:
         rows: Callable[[Data], Numbers] = partial(_rows, group, tests)
         if numbers:
             ((name, given),) = numbers.items() if isinstance(numbers, dict) else [(numbers, {})]
-            rows = partial(getattr(import_module(f"{package}.claims"), name), **given)
+            function = getattr(import_module(f"{package}.claims"), name, None)
+            if function is None:
+                raise DeclaredError(f"{group}: {id}: numbers: {name}, must be a function of the group's claims.py")
+            rows = partial(function, **given)
         missing = said.pop("missing", None)
         measure = partial(_missing, missing) if missing else partial(_measured, group, said["measured"], tests, rows)
         figures = tuple(said.pop("figures", _figures(said["place"])))
@@ -143,7 +146,7 @@ def _measured(
     found = []
     try:
         for case, *numbers in rows(data):
-            for spec, number in zip(tests, numbers, strict=False):
+            for spec, number in zip(tests, numbers, strict=True):
                 if number is None:
                     continue
                 number, asked = number if isinstance(number, tuple) else (number, bound(spec["bound"], data.words))
@@ -164,22 +167,23 @@ def _missing(what: str, data: Data) -> list[Test]:
 def _rows(group: str, tests: Sequence[Mapping[str, Any]], data: Data) -> Numbers:
     """What declared tests measure: each one's number by itself, and the event's in other preparations."""
     for k, spec in enumerate(tests):
-        before = [None] * k
+        before, after = [None] * k, [None] * (len(tests) - k - 1)
         if "each" in spec:
             dimension, source = spec["each"], spec.get("value") or spec["trend"]
             labels = _where(data.get(group, source.rpartition(".")[0]), spec)[dimension].values.tolist()
             needs(labels, f"no {dimension} is stored in that range")
             for label in labels:
                 name = label if isinstance(label, str) else f"{dimension.replace('_', ' ')} {label:g}"
-                yield name, *before, _number(group, {**spec, "at": {**spec.get("at", {}), dimension: label}}, data)
+                one = {**spec, "at": {**spec.get("at", {}), dimension: label}}
+                yield name, *before, _number(group, one, data), *after
             continue
         if spec.get("prepared") != "only":
-            yield spec.get("case", ""), *before, _number(group, spec, data)
+            yield spec.get("case", ""), *before, _number(group, spec, data), *after
         if "prepared" in spec:
             frictions = [one["friction"] for one in (spec, spec.get("per")) if one]
             own = {frictions[-1]: _number(group, spec["per"], data)} if "per" in spec else {}
             for way, ends in preparations.along(data, spec["event"], frictions, own):
-                yield way, *before, ends[0].per(ends[1]) if "per" in spec else ends[0]
+                yield way, *before, ends[0].per(ends[1]) if "per" in spec else ends[0], *after
 
 
 def _number(group: str, spec: Mapping[str, Any], data: Data) -> Quantity:
