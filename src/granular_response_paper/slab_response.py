@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from granular_response import studies
 from granular_response.observe import network, peaks
 from granular_response.observe.widths import half_maximum_width
 from granular_response.scene import Packing
@@ -104,21 +103,6 @@ def locate(
     """Where on a path each of what is ``asked`` happens first, by its name; see :meth:`LoadPath.first`."""
     friction = path.scene.contact.friction
     return [Event(name, friction, *path.first(forces, what, width), what.definition) for name, what in asked.items()]
-
-
-def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[str, Happening]:
-    """What is looked for along a load path, by name.
-
-    ``smallest`` is the state under the smallest force; ``asymmetry`` is that from which symmetry is lost.
-    """
-    return {
-        "first_opening": studies.first_opening(measures),
-        "linear_range": studies.leaves_linear_range(measures, smallest),
-        "crossover": studies.two_peaks(measures),
-        "reaches_floor": studies.reaches_floor(measures),
-        "third_peak": studies.third_peak(measures),
-        "loss_of_symmetry_path": studies.loses_symmetry(measures, asymmetry),
-    }
 
 
 @record

@@ -143,12 +143,10 @@ SIGNATURES = {
     "studies.by_motion": "(state)",
     "studies.first_change": "(values, happened)",
     "studies.first_opening": "(measures, anywhere=False)",
-    "studies.leaves_linear_range": "(measures, smallest)",
+    "studies.happenings": "(measures, smallest, asymmetry)",
     "studies.linear_end": "(force, response, tolerance)",
-    "studies.loses_symmetry": "(measures, asymmetry)",
     "studies.lost": "(states)",
     "studies.reaches_floor": "(measures)",
-    "studies.third_peak": "(measures)",
     "studies.two_peaks": "(measures)",
     "sweep": (
         "(scene, axes, measure=floor_response, *, load_factors=None, workers=None, scheduler=None,"

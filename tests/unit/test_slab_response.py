@@ -6,14 +6,13 @@ from small_scenes import scene
 
 from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response.state import Event as PathEvent
-from granular_response.studies import LoadPath, Measures
+from granular_response.studies import LoadPath, Measures, happenings
 from granular_response_paper.groups.symmetry_breaking.simulate import copies
 from granular_response_paper.records import table
 from granular_response_paper.slab_response import (
     Event,
     Lost,
     events_dataset,
-    happenings,
     locate,
     measured,
     measured_dataset,

@@ -2,10 +2,9 @@
 
 A :class:`LoadPath` holds the states of a scene along its load, each found from the one below it. :class:`Measures` says
 what is measured on these states, a :class:`Happening` what is looked for along the path, and :meth:`LoadPath.first` at
-which load it happens first. Happenings of the paper are made by :func:`first_opening`, :func:`reaches_floor`,
-:func:`two_peaks`, :func:`third_peak`, :func:`leaves_linear_range` and :func:`loses_symmetry`. Along anything but the
-load, such as the friction, :func:`bisect_event` narrows an event down. Units are the reduced ones: mean radii, and mean
-disk weights for forces.
+which load it happens first. :func:`happenings` has those of the paper. Along anything but the load, such as the
+friction, :func:`bisect_event` narrows an event down. Units are the reduced ones: mean radii, and mean disk weights for
+forces.
 
 Examples
 --------
@@ -19,9 +18,8 @@ True
 """
 
 from .brackets import Bracket, EventNotBracketed, bisect_event, first_change, linear_end
-from .measures import Measures, first_opening, leaves_linear_range, loses_symmetry, reaches_floor, third_peak, two_peaks
+from .measures import Measures, first_opening, happenings, reaches_floor, two_peaks
 from .path import Happening, LoadPath, by_motion, lost
 
 __all__ = ["Bracket", "EventNotBracketed", "Happening", "LoadPath", "Measures", "bisect_event", "by_motion"]
-__all__ += ["first_change", "first_opening", "leaves_linear_range", "linear_end", "loses_symmetry", "lost"]
-__all__ += ["reaches_floor", "third_peak", "two_peaks"]
+__all__ += ["first_change", "first_opening", "happenings", "linear_end", "lost", "reaches_floor", "two_peaks"]

@@ -162,41 +162,29 @@ def two_peaks(measures: Measures) -> Happening:
     return Happening(measures.double_peaked, TWO_PEAKS)
 
 
-def third_peak(measures: Measures) -> Happening:
-    """A response with two peaks has a third one between them.
+def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[str, Happening]:
+    """What happens along a load path of the paper's slabs, by name.
+
+    ``linear_range``: the response at x = 0 is off that in the ``smallest`` loaded state by more than :data:`LINEARITY`
+    of it. ``third_peak``: a response with two peaks has another one between them. ``loss_of_symmetry_path``: the
+    response and its mirror image differ by more than ``asymmetry`` of the largest response.
 
     Examples
     --------
     >>> path = gr.studies.LoadPath.of(result.scene)
-    >>> gr.studies.third_peak(gr.studies.Measures(path)).happened(path.at(0.001))
-    False
-    """
-    text = "the double-peaked floor response has a further peak at x = 0"
-    return Happening(lambda state: measures.third_peak(state) > 0.0, text)
-
-
-def leaves_linear_range(measures: Measures, smallest: State) -> Happening:
-    """The response at x = 0 is off that in the ``smallest`` loaded state by more than :data:`LINEARITY` of it.
-
-    Examples
-    --------
-    >>> path = gr.studies.LoadPath.of(result.scene)
-    >>> gr.studies.leaves_linear_range(gr.studies.Measures(path), path.at(0.001)).happened(path.at(0.001))
-    False
+    >>> sought = gr.studies.happenings(gr.studies.Measures(path), path.at(0.001), 0.1)
+    >>> [name for name, what in sought.items() if what.happened(path.at(0.001))]
+    []
     """
     linear, force = measures.centre(smallest), abs(smallest.load_factor)
-    text = f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {force:g}"
-    return Happening(lambda state: abs(measures.centre(state) / linear - 1.0) > LINEARITY, text)
-
-
-def loses_symmetry(measures: Measures, asymmetry: float) -> Happening:
-    """The response and its mirror image differ by more than ``asymmetry`` of the largest response.
-
-    Examples
-    --------
-    >>> path = gr.studies.LoadPath.of(result.scene)
-    >>> gr.studies.loses_symmetry(gr.studies.Measures(path), 0.1).happened(path.at(0.001))
-    False
-    """
-    text = f"along the load path, the asymmetry of the floor response exceeds {asymmetry:g}"
-    return Happening(lambda state: measures.asymmetry(state) > asymmetry, text, in_turn=True)
+    off = f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {force:g}"
+    third = "the double-peaked floor response has a further peak at x = 0"
+    exceeds = f"along the load path, the asymmetry of the floor response exceeds {asymmetry:g}"
+    return {
+        "first_opening": first_opening(measures),
+        "linear_range": Happening(lambda state: abs(measures.centre(state) / linear - 1.0) > LINEARITY, off),
+        "crossover": two_peaks(measures),
+        "reaches_floor": reaches_floor(measures),
+        "third_peak": Happening(lambda state: measures.third_peak(state) > 0.0, third),
+        "loss_of_symmetry_path": Happening(lambda state: measures.asymmetry(state) > asymmetry, exceeds, in_turn=True),
+    }

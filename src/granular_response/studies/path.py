@@ -162,8 +162,8 @@ class LoadPath:
         --------
         >>> path = gr.studies.LoadPath.of(result.scene)
         >>> states = path.through([0.1, 1.0, 4.0])
-        >>> off = gr.studies.leaves_linear_range(gr.studies.Measures(path), states[0])
-        >>> low, high = path.first([0.1, 1.0, 4.0], off)
+        >>> sought = gr.studies.happenings(gr.studies.Measures(path), states[0], 0.1)
+        >>> low, high = path.first([0.1, 1.0, 4.0], sought["linear_range"])
         >>> low < high < 4.0
         True
         """

@@ -96,7 +96,7 @@ def compute(
     states, measures = path.through(forces), studies.Measures(path)
     touching = float(path.rest.pairs.touching.sum())
     rest = Rest(touching, measures.confinement, np.array(measures.mobilised(path.rest)))
-    events = slab.locate(path, forces, slab.happenings(measures, states[0], asymmetry))
+    events = slab.locate(path, forces, studies.happenings(measures, states[0], asymmetry))
     packing, high = scene.packing.model_dump(), {event.name: event.high for event in events}
     if packing["polydispersity"]:
         high["crossover"] = np.nan

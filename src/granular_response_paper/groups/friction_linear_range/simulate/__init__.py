@@ -50,7 +50,7 @@ def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = No
     """
     path = studies.LoadPath.of(scene)
     states, measures = path.through(forces), studies.Measures(path)
-    asked = slab.happenings(measures, states[0], asymmetry) if asymmetry else {}
+    asked = studies.happenings(measures, states[0], asymmetry) if asymmetry else {}
     asked = {name: what for name, what in asked.items() if keep or name in ("first_opening", "linear_range")}
     if asked and keep:
         asked["first_opening_anywhere"] = studies.first_opening(measures, anywhere=True)
