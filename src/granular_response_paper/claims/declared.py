@@ -8,17 +8,15 @@ A test has one of
     second column, or ``prepared: only`` if nothing else is looked at;
 ``value``
     ``dataset.variable``, at the labels ``at`` or where coordinates lie in ``where``; ``over`` reduces what is left,
-    dimension by dimension (``max``, ``min``, ``first``, ``last``, ``mean`` and ``median`` with the interval of the
-    bootstrap over realizations, ``interval`` with the stored ends along that dimension, ``range`` of all entries,
-    ``average`` without an interval); with ``unlike``, another one, their largest difference per its largest value;
+    dimension by dimension (``max``, ``min``, ``average``, ``first``, ``last``, or ``interval`` with the stored ends);
+    with ``unlike``, another one, their largest difference per its largest value;
 ``trend``
     the same, smallest ratio of neighbours along the dimension ``along`` (``falling: true`` turns it round);
 
-and may have ``per``, a number of the same kind by which it is divided, ``scale``, ``case`` (a value of what the text
-leaves open) or ``each`` (a test for each label of this coordinate). What else is measured has a function in the group's
-``claims.py``, which ``numbers`` of the claim names, with its arguments if it has some. It is called with the data and
-yields for each case its name (a text or a :class:`Case`) and a number for each of the claim's tests,
-None for none, or with its bound where the data say it.
+and may have ``per``, a number of the same kind by which it is divided, ``scale`` and ``case`` (a value of what the text
+leaves open). What else is measured has a function in the group's ``claims.py``, which ``numbers`` of the claim names,
+with its arguments if it has some. It is called with the data and yields for each case its name (a text or a
+:class:`Case`) and a number for each of the claim's tests, None for none, or with its bound where the data say it.
 
 Every other test has a ``bound``, see :func:`bound`, and may have a ``unit`` and say ``what`` is measured, with ``{}``
 for what a :class:`Case` is of. A claim may say what is ``missing`` in place of tests.
@@ -41,7 +39,7 @@ from granular_response.errors import GranularError
 from granular_response.scene import text as yaml
 
 from . import preparations
-from .bootstrap import RARE, over_realizations
+from .bootstrap import RARE
 from .claim import Bound, Case, Claim, Data, NotMeasured, Numbers, Quantity, Test, at, needs, rise
 from .words import WORDS, Words
 
@@ -50,7 +48,7 @@ TEXTS = "claims.yaml"
 
 _KINDS = ("event", "value", "trend")
 _KEYS = {*_KINDS, "table", "friction", "prepared", "at", "where", "over", "along", "falling", "per", "scale", "unit"}
-_KEYS |= {"case", "each", "bound", "what", "group", "unlike"}
+_KEYS |= {"case", "bound", "what", "group", "unlike"}
 
 #: By the kind of a bound: its ends, from its number v and the threshold t of its term.
 _ENDS: dict[str, Callable[[Any, float], Sequence[float]]] = {
@@ -168,15 +166,6 @@ def _rows(group: str, tests: Sequence[Mapping[str, Any]], data: Data) -> Numbers
     """What declared tests measure: each one's number by itself, and the event's in other preparations."""
     for k, spec in enumerate(tests):
         before, after = [None] * k, [None] * (len(tests) - k - 1)
-        if "each" in spec:
-            dimension, source = spec["each"], spec.get("value") or spec["trend"]
-            labels = _where(data.get(group, source.rpartition(".")[0]), spec)[dimension].values.tolist()
-            needs(labels, f"no {dimension} is stored in that range")
-            for label in labels:
-                name = label if isinstance(label, str) else f"{dimension.replace('_', ' ')} {label:g}"
-                one = {**spec, "at": {**spec.get("at", {}), dimension: label}}
-                yield name, *before, _number(group, one, data), *after
-            continue
         if spec.get("prepared") != "only":
             yield spec.get("case", ""), *before, _number(group, spec, data), *after
         if "prepared" in spec:
@@ -220,18 +209,14 @@ def _selected(group: str, spec: Mapping[str, Any], source: str, data: Data) -> x
 
 def _reduced(values: xr.DataArray, spec: Mapping[str, Any]) -> Quantity:
     for dimension, how in spec.get("over", {}).items():
-        if how in ("mean", "median"):
-            return over_realizations(values.values.reshape(-1), getattr(np, how))
         if how == "interval":
             value, low, high = values.values.tolist()
             return Quantity(value, low, high, "confidence", "bootstrap of the mean")
-        if how == "range":
-            return Quantity.range(values.values.reshape(-1))
         if how in ("first", "last"):
             values = values.isel({dimension: 0 if how == "first" else -1})
         elif how in _SIMPLE:
             values = values.reduce(_SIMPLE[how], dimension)
         else:
-            raise DeclaredError(f"over {dimension}: {how}, must be first, last, mean, median, {', '.join(_SIMPLE)}")
+            raise DeclaredError(f"over {dimension}: {how}, must be first, last, interval, {', '.join(_SIMPLE)}")
     needs(values.size == 1, f"{values.name}: {values.size} numbers in place of one")
     return Quantity.exact(float(values.values.reshape(-1)[0]))

@@ -38,7 +38,7 @@ def along(
     whatever came before. Dashpots are the paper's. There is nothing without the summary.
     """
     found = {mu: _events(data, event, mu) for mu in frictions if mu > 0.0}
-    for way in found[max(found)]:
+    for way in found[max(found)] if found else ():
         if way != OWN and all(way in brackets for brackets in found.values()):
             yield Case(prepared=way), [found[mu][way] if mu in found else (own or {})[mu] for mu in frictions]
 
