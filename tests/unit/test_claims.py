@@ -704,12 +704,12 @@ def test_bounds_are_declared_by_terms_or_numbers(bound, least, most):
 
 
 def test_what_is_declared_wrongly_is_refused(tmp_path):
-    with pytest.raises(declared.DeclaredError, match="bound roughly: must be"):
+    with pytest.raises(stored_table.ClaimsError, match="bound roughly: must be"):
         declared.bound({"roughly": 20}, words())
     assert declared.bound({"more than": 0, "word": "visible"}, words()) == Bound(0.0, word="visible", strict=True)
     assert declared.bound({"at least": "rare"}, words()) == Bound(RARE)
     for wrong, message in (({"bound": {}}, "needs one of"), ({"event": "a", "sizes": 1}, "unknown key sizes")):
-        with pytest.raises(declared.DeclaredError, match=message):
+        with pytest.raises(stored_table.ClaimsError, match=message):
             declared._check("group: F1", wrong)
 
 
@@ -745,7 +745,7 @@ def test_a_function_yields_a_number_for_each_test(tmp_path, monkeypatch):
         made("less").measure(Data({}))
     with pytest.raises(NotMeasured, match=r"^data/example_of_claims.nc: no states$"):
         made("lacks").measure(Data({}))
-    with pytest.raises(declared.DeclaredError, match="F1: numbers: more, must be a function"):
+    with pytest.raises(stored_table.ClaimsError, match="F1: numbers: more, must be a function"):
         made("more")
 
 

@@ -186,12 +186,6 @@ class Case(str):
         return case
 
 
-Measure = Callable[["Data"], Sequence[Test]]
-
-#: Whose sentence a claim judges.
-Source = Literal["paper", "literature", "hypothesis"]
-
-
 @dataclass(frozen=True)
 class Claim:
     """A sentence, where it stands, and the function that makes its tests from stored data.
@@ -205,11 +199,11 @@ class Claim:
     place: str
     paper: str
     measured: str
-    measure: Measure = field(repr=False)
+    measure: Callable[[Data], Sequence[Test]] = field(repr=False)
     group: str = ""
     here: str = ""
     figures: tuple[int, ...] = ()
-    source: Source = "paper"
+    source: Literal["paper", "literature", "hypothesis"] = "paper"  #: whose sentence it is
     modal: bool = False
     derivation: bool = False
     disorder: bool = False

@@ -35,12 +35,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from granular_response.errors import GranularError
 from granular_response.scene import text as yaml
 
 from . import preparations
 from .bootstrap import RARE
 from .claim import Bound, Case, Claim, Data, NotMeasured, Numbers, Quantity, Test, at, needs, rise
+from .stored import ClaimsError
 from .words import WORDS, Words
 
 #: Beside a group's ``claims.py``.
@@ -70,10 +70,6 @@ _ENDS |= dict.fromkeys(WORDS, lambda v, t: ((1.0 - t) * v, (1.0 + t) * v))
 _SIMPLE: dict[str, Callable[..., Any]] = {"max": np.max, "min": np.min, "average": np.mean}
 
 
-class DeclaredError(GranularError):
-    """A claim that is not declared as it must be. The message is one line."""
-
-
 def bound(what: Mapping[str, Any], words: Words) -> Bound:
     """The bound of a test, with a number or the threshold t of a qualitative term.
 
@@ -81,11 +77,11 @@ def bound(what: Mapping[str, Any], words: Words) -> Bound:
     one at or above the event; ``lower by``, ``higher by`` and ``hardly lower by`` compare a ratio with 1 -+ t; ``same
     size`` asks for one from 1 / (1 + t) to 1 + t, ``order of magnitude`` for 10 on the logarithmic scale. The others
     say what they are, and ``rare`` is one in forty. ``times`` and ``plus`` scale and shift both ends, ``word`` names
-    the term on which a number hangs. Raises DeclaredError for another key.
+    the term on which a number hangs. Raises ClaimsError for another key.
     """
     (kind, of), *_ = what.items()
     if kind not in _ENDS:
-        raise DeclaredError(f"bound {kind}: must be one of {', '.join(_ENDS)}")
+        raise ClaimsError(f"bound {kind}: must be one of {', '.join(_ENDS)}")
     of = RARE if of == "rare" else of
     word = of if isinstance(of, str) else kind if kind in WORDS else "about" if kind == "sampled" else ""
     t = words[word] if word else 0.0
@@ -99,7 +95,7 @@ def read(package: str) -> list[Claim]:
 
     ``claims.yaml`` has of each the ``place`` in the paper, the ``paper``'s sentence, what is ``measured``, and if they
     are not the usual: ``here``, ``figures`` (those that the place names), ``source``, ``modal``, ``derivation``,
-    ``disorder``, ``remark``; and its ``test`` or ``tests``. Raises DeclaredError for a test that is not declared as it
+    ``disorder``, ``remark``; and its ``test`` or ``tests``. Raises ClaimsError for a test that is not declared as it
     must be.
     """
     group, found = package.rpartition(".")[2], []
@@ -113,7 +109,7 @@ def read(package: str) -> list[Claim]:
             ((name, given),) = numbers.items() if isinstance(numbers, dict) else [(numbers, {})]
             function = getattr(import_module(f"{package}.claims"), name, None)
             if function is None:
-                raise DeclaredError(f"{group}: {id}: numbers: {name}, must be a function of the group's claims.py")
+                raise ClaimsError(f"{group}: {id}: numbers: {name}, must be a function of the group's claims.py")
             rows = partial(function, **given)
         missing = said.pop("missing", None)
         measure = partial(_missing, missing) if missing else partial(_measured, group, said["measured"], tests, rows)
@@ -129,9 +125,9 @@ def _figures(place: str) -> tuple[int, ...]:
 
 def _check(name: str, test: Mapping[str, Any], declares: bool = True) -> None:
     if unknown := set(test) - _KEYS:
-        raise DeclaredError(f"{name}: unknown key {', '.join(sorted(unknown))}, must be of {', '.join(sorted(_KEYS))}")
+        raise ClaimsError(f"{name}: unknown key {', '.join(sorted(unknown))}, must be of {', '.join(sorted(_KEYS))}")
     if sum(kind in test for kind in _KINDS) != declares:
-        raise DeclaredError(f"{name}: a test needs one of {', '.join(_KINDS)}, or its claim the numbers of a function")
+        raise ClaimsError(f"{name}: a test needs one of {', '.join(_KINDS)}, or its claim the numbers of a function")
 
 
 def _measured(
@@ -217,6 +213,6 @@ def _reduced(values: xr.DataArray, spec: Mapping[str, Any]) -> Quantity:
         elif how in _SIMPLE:
             values = values.reduce(_SIMPLE[how], dimension)
         else:
-            raise DeclaredError(f"over {dimension}: {how}, must be first, last, interval, {', '.join(_SIMPLE)}")
+            raise ClaimsError(f"over {dimension}: {how}, must be first, last, interval, {', '.join(_SIMPLE)}")
     needs(values.size == 1, f"{values.name}: {values.size} numbers in place of one")
     return Quantity.exact(float(values.values.reshape(-1)[0]))
