@@ -17,7 +17,7 @@ from timing import write
 from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state
-from granular_response_paper.slab_response import LoadPath, Measures
+from granular_response.studies import LoadPath, Measures
 
 #: layers and disks in the bottom row: both odd or both even, so that the load is in the middle
 SLABS = [(15, 61), (30, 122), (60, 242), (120, 482), (240, 962)]

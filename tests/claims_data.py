@@ -13,14 +13,29 @@ X = np.linspace(-60.0, 60.0, 61)
 STARTS = ["touching-largest", "2.0"]
 
 
-def dataset(coords=None, **variables):
-    """A dataset that can be stored: every variable has its labels."""
-    made = xr.Dataset(
-        {name: value if isinstance(value, tuple) else ((), value) for name, value in variables.items()}, coords=coords
-    )
+def dataset(coords=None, sizes=None, **variables):
+    """A dataset that can be stored: every variable has its labels.
+
+    Variables are a number, or their dimensions ("case step") and values, which are broadcast to the sizes of labels and
+    to further ``sizes``.
+    """
+    labels = {name: one if isinstance(one, tuple) else (name, one) for name, one in (coords or {}).items()}
+    sizes = {dimension: len(values) for dimension, values in labels.values()} | (sizes or {})
+    made = {}
+    for name, one in variables.items():
+        dims, values = one if isinstance(one, tuple) else ((), one)
+        dims, values = dims.split() if isinstance(dims, str) else dims, np.asarray(values)
+        own = dict(zip(reversed(dims), reversed(values.shape), strict=False))
+        made[name] = (dims, np.broadcast_to(values, [sizes.get(dim, own.get(dim, 1)) for dim in dims]).copy())
+    made = xr.Dataset(made, coords=labels)
     for name, one in made.variables.items():
         one.attrs = {"long_name": str(name), "units": "1"}
     return made
+
+
+def over(dims, **values):
+    """Variables along the same dimensions."""
+    return {name: (dims, one) for name, one in values.items()}
 
 
 def by_row(dimension, names, rows):
@@ -33,118 +48,96 @@ def events(*rows):
     return dataset(**by_row("event", "name friction low high", rows))
 
 
-def by_friction(*rows):
-    return ("friction", "force"), np.stack([np.broadcast_to(row, FORCES.shape) for row in rows]).astype(float)
-
-
 #: An elastic response.
 ELASTIC = 0.07 * np.exp(-((X / 20.0) ** 2))
 
 
-#: Forces of the stored states, and names of the sizes of the open region.
+#: Forces of the stored states.
 STATES = (0.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 30.0)
-SIZES = ("opened_contacts", "teardrop_depth", "teardrop_width")
+
+#: Between which forces everything happens, by friction.
+COMES = {
+    "first_opening": {0.0: (0.67, 0.69), 0.2: (3.9, 3.92), 1.0: (5.6, 5.62)},
+    "linear_range": {0.0: (0.88, 0.9), 0.2: (5.4, 5.5), 1.0: (7.2, 7.3)},
+    "crossover": {0.0: (3.0, 3.1), 0.2: (20.1, 20.2), 1.0: (90.0, np.nan)},
+    "reaches_floor": {0.0: (3.5, 3.6), 0.2: (19.0, 19.1), 1.0: (10.9, 11.0)},
+    "third_peak": {0.0: (50.0, np.nan), 0.2: (38.0, 38.1), 1.0: (50.0, np.nan)},
+}
 
 
 def friction_study():
-    floor = [3.5, 19.0, 10.9]
-    depth = [np.minimum(24.0, 24.0 * FORCES / f) for f in (3.5, 19.0, 19.0)]
-    opened = np.round(10.0 * FORCES)
-    response = dataset(
-        {"friction": [0.0, 0.2, 1.0], "force": FORCES, "x": ("floor_disk", X)},
+    opened = np.round(10.0 * FORCES) * np.array([[1.0], [0.2], [0.2]])
+    double = ELASTIC * (1.0 + 0.5 * (FORCES > 20.0) * np.array([[0.0], [1.0], [0.0]]))[:, :, None]
+    response = {
         # one per cent off at these forces, five at five times as much
-        response_at_centre=by_friction(*(0.07 * (1.0 - 0.01 * FORCES / end) for end in (0.9, 5.5, 7.5))),
-        double_peaked=by_friction(FORCES > 3.0, FORCES > 20.1, 0.0),
-        central_dip=by_friction(0.01 * (FORCES - 2.0), 0.01 * (FORCES - 19.2), -0.05),
-        half_maximum_width=by_friction(28.0, 28.0, 28.0 - 0.1 * FORCES),
-        peak_height=by_friction(0.07, 0.07, 0.07),
-        third_peak_prominence=by_friction(0.0, 0.1 * (FORCES > 38.0), 0.0),
-        teardrop_depth=by_friction(*depth),
-        teardrop_width=by_friction(*depth),
-        reaches_floor=by_friction(*(f < FORCES for f in floor)),
-        opened_contacts=by_friction(opened, 0.2 * opened, 0.2 * opened),
-        floor_response=(
-            ("friction", "force", "floor_disk"),
-            ELASTIC * (1.0 + 0.5 * (FORCES > 20.0) * np.array([[0.0], [1.0], [0.0]]))[:, :, None],
-        ),
-    )
+        "response_at_centre": 0.07 * (1.0 - 0.01 * FORCES / np.array([[0.9], [5.5], [7.5]])),
+        "double_peaked": (np.array([[3.0], [20.1], [np.inf]]) < FORCES).astype(float),
+        "half_maximum_width": 28.0 - 0.1 * FORCES * np.array([[0.0], [0.0], [1.0]]),
+        "third_peak_prominence": 0.1 * (FORCES > 38.0) * np.array([[0.0], [1.0], [0.0]]),
+        "opened_contacts": opened,
+    }
     one_side = np.where(X > 0.0, 0.08, 0.01)
-    profiles = np.stack([np.exp(-((X / 20.0) ** 2)) * 0.07] * 2 + [one_side, one_side[::-1]])
-    profiles = np.concatenate([profiles, profiles[-1:], profiles[-1:]])
-    large = dataset(
-        {"force": [90.0, 91.0, 93.0, 95.0, 150.0, 500.0], "x": ("floor_disk", X), "margin": [0.01, 0.05]},
-        asymmetry=("force", [0.001, 0.001, 1.5, 1.5, 1.2, 1.0]),
-        asymmetry_sign=("force", [1, 1, 1, -1, -1, -1]),
-        network_asymmetry=("force", [0.0, 0.0] + [0.02] * 4),
-        mobilised_contacts=(("force", "margin"), np.array([[10, 20]] * 2 + [[1, 2]] * 4)),
-        floor_response=(("force", "floor_disk"), profiles),
-    )
+    profiles = np.stack([ELASTIC, ELASTIC, one_side] + [one_side[::-1]] * 3)
+    large = {
+        "asymmetry": [0.001, 0.001, 1.5, 1.5, 1.2, 1.0],
+        "asymmetry_sign": [1, 1, 1, -1, -1, -1],
+        "network_asymmetry": [0.0, 0.0] + [0.02] * 4,
+    }
+    forces = [90.0, 91.0, 93.0, 95.0, 150.0, 500.0]
     away = np.array([0.8, 0.3, 0.1, 0.05, 0.0])[:, None]
-    axis = dataset(
-        {"friction": [0.0, 0.1, 0.2, 1.0, 2.0]},
-        central_dip=("friction", [0.9, 0.5, -0.01, -0.03, -0.03]),
-        sliding_contacts=("friction", [0.0, 300.0, 200.0, 100.0, 50.0]),
-        floor_response=(("friction", "floor_disk"), (1.0 - away) * ELASTIC),
-        **{n: ("friction", [110.0, 80.0, 40.0, 20.0, 0.0]) for n in SIZES},
-    )
+    axis = {
+        "central_dip": [0.9, 0.5, -0.01, -0.03, -0.03],
+        "sliding_contacts": [0.0, 300.0, 200.0, 100.0, 50.0],
+        "opened_contacts": [110.0, 80.0, 40.0, 20.0, 0.0],
+    }
     # a column of disks below the loaded one, whose contacts slide one after the other, and three disks beside it
     column = np.stack([np.zeros(14), -2.0 * np.arange(14.0)], axis=1)
     beside = column[3:6] + np.array([2.0, 0.0])
     slides = np.zeros((len(STATES), 16), bool)
     for force, upper, level in zip(STATES, (0, 1, 2, 2, 3, 5, 1, 3), (0, 0, 0, 0, 0, 0, 3, 1), strict=True):
         slides[STATES.index(force), :upper] = slides[STATES.index(force), 13 : 13 + level] = True
-    states = dataset(
-        {"force": ("state", list(STATES))},
-        position=(("state", "disk", "axis"), np.stack([np.concatenate([column, beside])] * len(STATES))),
-        contact_disk=("contact", [*range(13), 3, 4, 5]),
-        contact_partner=("contact", [*range(1, 14), 14, 15, 16]),
-        contact_status=(("state", "contact"), np.where(slides, SLIDING, STICKING)),
-        loaded_disk=((), 0),
-    )
-    few = np.full((2, 8), STICKING)
-    few[1, 0], few[1, 1:5] = OPEN, SLIDING
-    status = np.full((7, 8), STICKING)
-    status[3:, :6] = OPEN
+    few, status = np.full((2, 8), STICKING), np.full((7, 8), STICKING)
+    few[1, 0], few[1, 1:5], status[3:, :6] = OPEN, SLIDING, OPEN
     table = events(
-        ("first_opening", 0.0, 0.67, 0.69),
-        ("first_opening", 0.2, 3.9, 3.92),
-        ("first_opening", 1.0, 5.6, 5.62),
-        ("linear_range", 0.0, 0.88, 0.9),
-        ("linear_range", 0.2, 5.4, 5.5),
-        ("linear_range", 1.0, 7.2, 7.3),
-        ("first_opening_anywhere", 0.0, 0.66, 0.68),
-        ("first_opening_anywhere", 0.2, 3.8, 3.82),
-        ("first_opening_anywhere", 1.0, 5.5, 5.52),
-        ("crossover", 0.0, 3.0, 3.1),
-        ("crossover", 0.2, 20.1, 20.2),
-        ("crossover", 1.0, 90.0, np.nan),
-        ("reaches_floor", 0.0, 3.5, 3.6),
-        ("reaches_floor", 0.2, 19.0, 19.1),
-        ("reaches_floor", 1.0, 10.9, 11.0),
-        ("third_peak", 0.2, 38.0, 38.1),
+        *((name, mu, *ends) for name, by_friction in COMES.items() for mu, ends in by_friction.items()),
+        *(("first_opening_anywhere", mu, low, low + 0.02) for mu, low in ((0.0, 0.66), (0.2, 3.8), (1.0, 5.5))),
         ("friction_crossover", np.nan, 0.15, 0.16),
     )
     return {
-        "response": response,
-        "large_forces": large,
-        "large_force_states": dataset(
-            {"force": ("state", [0.0, *large["force"].values])}, contact_status=(("state", "contact"), status)
+        "response": dataset(
+            {"friction": [0.0, 0.2, 1.0], "force": FORCES},
+            **over("friction force", **response),
+            floor_response=("friction force floor_disk", double),
         ),
-        "friction_axis": axis,
-        "states_mu_0.2": states,
-        "states_mu_1": dataset({"force": ("state", [0.0, 90.0])}, contact_status=(("state", "contact"), few)),
+        "large_forces": dataset(
+            {"force": forces, "margin": [0.01, 0.05]},
+            **over("force", **large),
+            mobilised_contacts=("force margin", [[10, 20]] * 2 + [[1, 2]] * 4),
+            floor_response=("force floor_disk", profiles),
+        ),
+        "large_force_states": dataset({"force": ("state", [0.0, *forces])}, contact_status=("state contact", status)),
+        "friction_axis": dataset(
+            {"friction": [0.0, 0.1, 0.2, 1.0, 2.0]},
+            **over("friction", **axis),
+            floor_response=("friction floor_disk", (1.0 - away) * ELASTIC),
+        ),
+        "states_mu_0.2": dataset(
+            {"force": ("state", list(STATES))},
+            position=("state disk axis", np.concatenate([column, beside])),
+            contact_disk=("contact", [*range(13), 3, 4, 5]),
+            contact_partner=("contact", [*range(1, 14), 14, 15, 16]),
+            contact_status=("state contact", np.where(slides, SLIDING, STICKING)),
+            loaded_disk=0,
+        ),
+        "states_mu_1": dataset({"force": ("state", [0.0, 90.0])}, contact_status=("state contact", few)),
         "events": table,
         "events_equal_rows": table.copy(deep=True),
     }
 
 
 def breaking_study():
-    brackets = dataset(
-        low=("event", [91.2, 91.5]),
-        high=("event", [92.0, 92.5]),
-        ramp_time=("event", [20.0, 100.0]),
-        time_step=("event", [5e-4, 5e-4]),
-    )
+    names = "low high ramp_time time_step"
+    brackets = dataset(**by_row("event", names, [(91.2, 92.0, 20.0, 5e-4), (91.5, 92.5, 100.0, 5e-4)]))
     return {"brackets": brackets, "equal_rows": events(("loss_of_symmetry", 1.0, 91.1, 91.9))}
 
 
@@ -152,37 +145,25 @@ def preparation_study():
     """Gravity at once, grown slowly and without friction first; in each, events where the claims want them."""
     ways = [("at-once", 100.0, 0.5), ("slow", 20.0, 0.5), ("frictionless", 100.0, 0.5), ("at-once", 100.0, 0.25)]
     cases = [(0.0, 0.0, ways[0]), *((mu, 0.0, way) for mu in (0.2, 1.0) for way in ways), (1.0, 1.0, ways[0])]
-    comes = {
-        "first_opening": {0.0: (0.67, 0.69), 0.2: (3.9, 3.92), 1.0: (5.6, 5.62)},
-        "linear_range": {0.0: (0.88, 0.9), 0.2: (5.4, 5.5), 1.0: (7.2, 7.3)},
-        "crossover": {0.0: (3.0, 3.1), 0.2: (20.1, 20.2), 1.0: (90.0, np.nan)},
-        "reaches_floor": {0.0: (3.5, 3.6), 0.2: (19.0, 19.1), 1.0: (10.9, 11.0)},
-        "third_peak": {0.0: (50.0, np.nan), 0.2: (38.0, 38.1), 1.0: (50.0, np.nan)},
-        "loss_of_symmetry_path": {0.0: (50.0, np.nan), 0.2: (50.0, np.nan), 1.0: (91.2, 92.0)},
-    }
-
-    def labels(dimension, rows):
-        names = "friction wall_friction gravity ramp_time damping_ratio"
-        return by_row(dimension, names, [(friction, wall, *way) for friction, wall, way in rows])
-
-    rows = [(case, name) for case in cases for name in comes]
-    rough = np.array([0.5 if case[1] else 1.0 for case, _ in rows])  # beside rough walls everything comes sooner
-    table = dataset(
-        name=("event", [name for _, name in rows]),
-        low=("event", rough * [comes[name][case[0]][0] for case, name in rows]),
-        high=("event", rough * [comes[name][case[0]][1] for case, name in rows]),
-        **labels("event", [case for case, _ in rows]),
-    )
+    comes = COMES | {"loss_of_symmetry_path": {0.0: (50.0, np.nan), 0.2: (50.0, np.nan), 1.0: (91.2, 92.0)}}
+    rows = [  # beside rough walls everything comes sooner
+        (name, *(np.array(by_friction[mu]) * (0.5 if wall else 1.0)), mu, wall, *way)
+        for mu, wall, way in cases
+        for name, by_friction in comes.items()
+    ]
     # four preparations of one slab: the more mobilized contacts, the sooner everything happens
-    part = np.array([0.0, 0.0, 0.3, 0.6])
-    mobilized = dataset(
-        {"name": ["linear_range", "first_opening", "crossover"], "margin": [0.01, 0.05]},
-        mobilized_part=(("case", "margin"), np.stack([part, part], axis=1)),
-        force=(("case", "name"), np.outer([10.0, 9.0, 2.0, 1.0], [1.0, 2.0, 3.0])),
-        **{name: ("case", np.full(4, value)) for name, value in {
-            "polydispersity": 0.0, "friction": 0.2, "wall_friction": 0.0}.items()},
-    )  # fmt: skip
-    return {"events": table, "mobilized": mobilized}
+    slab = over("case", polydispersity=[0.0] * 4, friction=[0.2] * 4, wall_friction=[0.0] * 4)
+    return {
+        "events": dataset(
+            **by_row("event", "name low high friction wall_friction gravity ramp_time damping_ratio", rows)
+        ),
+        "mobilized": dataset(
+            {"name": ["linear_range", "first_opening", "crossover"], "margin": [0.01, 0.05]},
+            mobilized_part=("case margin", [[0.0], [0.0], [0.3], [0.6]]),
+            force=("case name", np.outer([10.0, 9.0, 2.0, 1.0], [1.0, 2.0, 3.0])),
+            **slab,
+        ),
+    }
 
 
 def ratio_study():
@@ -194,7 +175,7 @@ def ratio_study():
             {"stiffness_ratio": ratio},
             double_peaked=("stiffness_ratio", [1, 1, 1, 0, 0, 0, 0, 0]),
             response_at_centre=("stiffness_ratio", centre),
-            floor_response=(("stiffness_ratio", "floor_disk"), centre[:, None] * np.exp(-((X / 20.0) ** 2))),
+            floor_response=("stiffness_ratio floor_disk", centre[:, None] * np.exp(-((X / 20.0) ** 2))),
             sliding_contacts=("stiffness_ratio", np.zeros(8)),
         ),
         "elastic": dataset({"rotations": ["suppressed", "free"]}, root=("rotations", [0.2915, 3.0 / 11.0])),
@@ -203,28 +184,25 @@ def ratio_study():
 
 def fields_study():
     x, z = np.arange(-40.0, 41.0, 2.0), np.arange(0.0, 21.0, 2.0)
-    grid = ("friction", "z", "x")
-    ones = np.ones((3, z.size, x.size))
-    dipped = profile(np.array([0.5, -0.1, -0.1])[:, None], x)[:, None] + 0.0 * ones
+    dipped = profile(np.array([0.5, -0.1, -0.1])[:, None], x)[:, None]
+    by_friction = {
+        "misalignment": [0.1, 20.0, 30.0],
+        "axis_angle": [30.0, 12.0, 3.0],
+        "axis_share": [0.02, 0.09, 0.12],
+        "distance_to_lattice": [0.5, 0.1, 0.04],
+        "antisymmetric_near": [0.0, 0.01, 0.03],
+        "antisymmetric_near_mean": [0.0, 0.01, 0.02],
+    }
     return {
         "stress": dataset(
             {"friction": [0.0, 0.2, 1.0], "x": x, "z": z},
-            misalignment=("friction", [0.1, 20.0, 30.0]),
-            axis_angle=("friction", [30.0, 12.0, 3.0]),
-            axis_share=("friction", [0.02, 0.09, 0.12]),
-            distance_to_lattice=("friction", [0.5, 0.1, 0.04]),
-            antisymmetric_near=("friction", [0.0, 0.01, 0.03]),
-            antisymmetric_near_mean=("friction", [0.0, 0.01, 0.02]),
-            stress_xx=(grid, ones),
-            stress_zz=(grid, dipped),
-            stress_zz_lattice=(("z", "x"), dipped[1]),
-            stress_xz=(grid, 0.03 * ones),
-            stress_zx=(grid, -0.03 * ones),
+            **over("friction", **by_friction),
+            **over("friction z x", stress_xx=1.0, stress_zz=dipped, stress_xz=0.03, stress_zx=-0.03),
+            stress_zz_lattice=("z x", dipped[1]),
             load_height=20.0,
         ),
         "profiles": dataset(
-            {"friction": [0.0, 1.0], "row": [2.5, 9.5]},
-            axis_magnitude=(("friction", "row"), np.array([[0.2, 0.2], [1.0, 0.995]])),
+            {"friction": [0.0, 1.0]}, axis_magnitude=("friction row", np.array([[0.2, 0.2], [1.0, 0.995]]))
         ),
     }
 
@@ -245,130 +223,83 @@ def pile_study():
 
 
 def torque_study():
-    dims = ("torque", "ring")
-    near_only = np.array([[0.0, 0.0, 0.0], [0.9, 0.7, 0.01]])
-    reach = dataset(
-        {"torque": [0.0, 5.0], "ring_inner": ("ring", [0.0, 3.0, 9.0]), "ring_outer": ("ring", [3.0, 6.0, 12.0])},
-        force_change=(dims, near_only),
-        stress_change=(dims, near_only),
-        antisymmetric_change=(dims, near_only),
-    )
+    turned = {"torque": [0.0, 5.0]}
+    near_only = [[0.0, 0.0, 0.0], [0.9, 0.7, 0.01]]
+    rings = over("ring", ring_inner=[0.0, 3.0, 9.0], ring_outer=[3.0, 6.0, 12.0])
+    changes = dict.fromkeys(("force_change", "stress_change", "antisymmetric_change"), near_only)
     x, z = np.arange(0.0, 41.0, 2.0), np.arange(0.0, 21.0, 2.0)
     away = np.hypot(*np.meshgrid(x - 20.0, z - 20.0))
     change = np.stack([np.zeros_like(away), np.exp(-((away / 4.0) ** 2))])
-    grid = ("torque", "z", "x")
-    stress = dataset(
-        {"torque": [0.0, 5.0], "x": x, "z": z},
-        stress_xx=(grid, change),
-        stress_xz=(grid, change),
-        stress_zx=(grid, -change),
-        stress_zz=(grid, change),
-    )
-    disks = dataset(
-        {"torque": [0.0, 5.0]},
-        position=(("torque", "disk", "axis"), np.full((2, 1, 2), 20.0)),
-        loaded_disk=0,
-    )
-    return {"reach": reach, "stress": stress, "torques": disks}
-
-
-def comparison_study():
+    stress = {"stress_xx": change, "stress_xz": change, "stress_zx": -change, "stress_zz": change}
     return {
-        "slabs": dataset(
-            distance=("slab", [0.02, 0.002, 0.03, 0.001]),
-            layers=("slab", [5, 40, 5, 20]),
-            friction=("slab", [0.0, 0.0, 1.0, 1.0]),
-            floor=("slab", ["smooth", "smooth", "rough", "rough"]),
-            gravity=("slab", ["at-once"] * 4),
-            disks_per_layer=("slab", [8, 8, 8, 8]),
-        )
+        "reach": dataset({**turned, **rings}, **over("torque ring", **changes)),
+        "stress": dataset({**turned, "x": x, "z": z}, **over("torque z x", **stress)),
+        "torques": dataset(turned, {"disk": 1, "axis": 2}, position=("torque disk axis", 20.0), loaded_disk=0),
     }
 
 
+def comparison_study():
+    names = "distance layers friction floor gravity disks_per_layer"
+    rows = [(0.02, 5, 0.0, "smooth"), (0.002, 40, 0.0, "smooth"), (0.03, 5, 1.0, "rough"), (0.001, 20, 1.0, "rough")]
+    return {"slabs": dataset(**by_row("slab", names, [(*row, "at-once", 8) for row in rows]))}
+
+
 def numerics_study():
-    grid = {"friction": [0.0, 0.2], "stop_kinetic_energy": [1e-9, 1e-13]}
-    errors = np.array([[0.1, 1e-3], [0.1, 1e-4]])
-    dims = ("friction", "stop_kinetic_energy")
+    error = [[0.1, 1e-3], [0.1, 1e-4]]
+    damping = by_row(
+        "damping_ratio",
+        "relaxation_time settled beeman_limit",
+        [(120.0, 1, 2e-3), (70.0, 1, 1e-3), (40.0, 1, 5.1e-4), (45.0, 1, 3e-4), (50.0, 1, 2e-4)],
+    )
+    means = over("realization x", stopped=[1.001, 2.002, 1.0], finished=[1.0, 2.0, 1.0])
     return {
-        "stop_energy": dataset(grid, rest_error=(dims, errors), loaded_error=(dims, errors)),
-        "restart": dataset({"load": [0.0, 4.0]}, kinetic_energy=(("load", "reading"), np.full((2, 3), 1e-28))),
+        "stop_energy": dataset(
+            {"friction": [0.0, 0.2], "stop_kinetic_energy": [1e-9, 1e-13]},
+            **over("friction stop_kinetic_energy", rest_error=error, loaded_error=error),
+        ),
+        "restart": dataset(sizes={"load": 2, "reading": 3}, kinetic_energy=("load reading", 1e-28)),
         "at_rest": dataset(network_fixed_steps=6000.0, sliding_contacts=0.0, loose_disks=0.0),
         "swing": dataset(
-            {"stop_rule": ["instantaneous", "envelope"]},
-            mean_acceleration=(("stop_rule", "reading"), np.full((2, 3), 1e-6)),
-            kinetic_energy=(("stop_rule", "reading"), np.full((2, 3), 1e-13)),
+            {"stop_rule": ["instantaneous", "envelope"]}, {"reading": 3}, mean_acceleration=("stop_rule reading", 1e-6)
         ),
-        "disorder": dataset(
-            {"x": [-1.0, 0.0, 1.0]},
-            stopped=(("realization", "x"), np.tile([1.001, 2.002, 1.0], (12, 1))),
-            finished=(("realization", "x"), np.tile([1.0, 2.0, 1.0], (12, 1))),
-        ),
+        "disorder": dataset(sizes={"realization": 12}, **means),
         "time_step": dataset({"time_step": [5e-4, 2.5e-4]}, difference=("time_step", [0.0, 1e-5])),
         "integrators": dataset({"integrator": ["beeman", "gear"]}, difference=("integrator", [0.0, 1e-6])),
-        "damping": dataset(
-            {"damping_ratio": [0.1, 0.2, 0.5, 0.8, 1.0]},
-            relaxation_time=("damping_ratio", [120.0, 70.0, 40.0, 45.0, 50.0]),
-            settled=("damping_ratio", [1, 1, 1, 1, 1]),
-            beeman_limit=("damping_ratio", [2e-3, 1e-3, 5.1e-4, 3e-4, 2e-4]),
-        ),
+        "damping": dataset({"damping_ratio": [0.1, 0.2, 0.5, 0.8, 1.0]}, **damping),
     }
 
 
 def frictionless_study():
-    forces = np.array([1.0, 2.9, 3.3])
+    forces = [1.0, 2.9, 3.3]
     # a lattice of one open column: two disks in each row, one row above the other
     rows = [8, 7, 7, 6, 6, 6, 5]
     first = 2 * np.arange(len(rows))
-    position = np.array(
-        [p for k, row in enumerate(rows) for p in ([4.0 * k, row * 3**0.5], [4.0 * k + 2.0, row * 3**0.5])]
-    )
-    depths = {"layers": ("slab", [15, 30, 15, 30]), "normal_stiffness": ("slab", [3000.0, 3000.0, 1e5, 1e5])}
-    wide = np.array([[30.0, 40.0, 50.0], [29.0, 39.0, 49.0]] * 2)
-    crossover = (("slab", "bracket"), np.array([[3.0, 3.1], [6.0, 6.1]] * 2))
-    stiffness = [500.0, 1000.0, 2000.0, 3000.0, 1e5]
-    axes = ("normal_stiffness", "force")
-    size = np.array([[20.0, 30.0, 50.0]] + [[40.0, 60.0, 90.0]] * 4)
+    position = [p for k, row in enumerate(rows) for p in ([4.0 * k, row * 3**0.5], [4.0 * k + 2.0, row * 3**0.5])]
+    slabs = over("slab", layers=[15, 30, 15, 30], normal_stiffness=[3000.0, 3000.0, 1e5, 1e5])
+    wide = [[30.0, 40.0, 50.0], [29.0, 39.0, 49.0]] * 2
+    crossing = over("slab bracket", crossover_bracket=[[3.0, 3.1], [6.0, 6.1]] * 2) | over("slab", open_at_rest=0)
+    labels = {"force": forces, "normal_stiffness": [500.0, 1000.0, 2000.0, 3000.0, 1e5], "dip": [0.0, 0.01]}
+    size, along = [[20.0, 30.0, 50.0]] + [[40.0, 60.0, 90.0]] * 4, "normal_stiffness force"
     return {
         "events": events(("crossover", 0.0, 3.0, 3.1), ("teardrop_reaches_floor", 0.0, 3.5, 3.6)),
-        "response": dataset(
-            {"force": forces},
-            central_dip=("force", [-0.1, -0.05, 0.1]),
-            teardrop_depth=("force", [1.0, 5.0, 12.0]),
-            reaches_floor=("force", [0, 0, 0]),
-        ),
+        "response": dataset(teardrop_depth=("force", [1.0, 5.0, 12.0])),
         "states": dataset(
-            {"force": forces},
-            teardrop=(("force", "contact"), np.ones((3, len(rows)), int)),
-            position=(("force", "disk", "axis"), np.stack([position] * 3)),
-            contact_disk=("contact", first),
-            contact_partner=("contact", first + 1),
+            sizes={"force": 3, "contact": len(rows)},
+            teardrop=("force contact", 1),
+            position=("force disk axis", position),
+            **over("contact", contact_disk=first, contact_partner=first + 1),
         ),
-        "sizes": dataset(
-            {"force": forces, **depths},
-            disks_per_row=("slab", [61, 122, 61, 122]),
-            crossover_bracket=crossover,
-            open_at_rest=("slab", [0] * 4),
-        ),
+        "sizes": dataset(slabs, disks_per_row=("slab", [61, 122, 61, 122]), **crossing),
         "regions": dataset(
-            {"force": forces, **depths},
-            teardrop_depth=(("slab", "force"), wide),
-            teardrop_width=(("slab", "force"), wide),
-            reaches_floor=(("slab", "force"), np.zeros((4, 3), int)),
+            slabs, {"force": 3}, **over("slab force", teardrop_depth=wide, teardrop_width=wide, reaches_floor=0)
         ),
-        "widths": dataset(
-            depths,
-            disks_per_row=("slab", [61, 62, 61, 62]),
-            crossover_bracket=crossover,
-            open_at_rest=("slab", [0] * 4),
-        ),
+        "widths": dataset(slabs, disks_per_row=("slab", [61, 62, 61, 62]), **crossing),
         "stiffness": dataset(
-            {"force": forces, "normal_stiffness": stiffness, "dip": [0.0, 0.01]},
-            response_at_centre=(axes, np.array([[0.05] * 3, [0.0693] * 3, [0.07] * 3, [0.07] * 3, [0.07] * 3])),
-            teardrop_depth=(axes, size),
-            teardrop_width=(axes, size),
-            reaches_floor=(axes, np.zeros((5, 3), int)),
-            crossover_bracket=(("normal_stiffness", "bracket"), np.tile([3.0, 3.03], (5, 1))),
-            crossovers=(("normal_stiffness", "dip", "bracket"), np.tile([3.0, 3.03], (5, 2, 1))),
+            labels,
+            **over(along, teardrop_depth=size, teardrop_width=size, reaches_floor=0),
+            response_at_centre=(along, [[0.05], [0.0693], [0.07], [0.07], [0.07]]),
+            crossover_bracket=("normal_stiffness bracket", [3.0, 3.03]),
+            crossovers=("normal_stiffness dip bracket", [3.0, 3.03]),
         ),
     }
 
@@ -395,113 +326,93 @@ def phases_study():
     rng = np.random.default_rng(0)
     grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 9.0], [0.5, 2.0, 4.0], [2.5, 12.0]]
     force = np.array([f for row in grid for f in row])
-    interval = np.stack([0.95 * force, force, 1.05 * force], axis=-1)
-    draws = force[:, None] * DRAWS
     mu, delta = cases["friction"][1], cases["polydispersity"][1]
     n, few = len(mu), 8
     dip = np.where(mu == 0.0, 0.8, -0.05)
-    levels = {"width": [3.0, 6.0], "level": [0.025, 0.5, 0.975]}
-    spread = dip[:, None, None] + np.array([-0.02, 0.0, 0.02]) + np.zeros((1, 3, 1))
-    steps = np.array([0.1, 15.0, 300.0])
-    scatter = np.where(mu == 0.0, 0.005, 0.001)[:, None] + np.zeros((1, 3))
+    labels = {**cases, "width": [3.0, 6.0], "level": [0.025, 0.5, 0.975]}
+    number = {"realizations": ("case", [few] * n)}
+    dips = dip[:, None] + np.array([-0.02, 0.0, 0.02])
+    scatter = np.where(mu == 0.0, 0.005, 0.001)[:, None]
     each = 0.05 * rng.standard_normal((n, few, 3)) + dip[:, None, None]
-    contacts = np.where(delta[:, None] == 0.0, 6.0, 4.25 + 0.01 * rng.standard_normal((n, few)))
+    ideal = delta[:, None] == 0.0
+    contacts = np.where(ideal, 6.0, 4.25 + 0.01 * rng.standard_normal((n, few)))
     crossovers = {
-        "force": (("width", "case"), np.stack([force] * 2)),
-        "kind": (("width", "case"), np.zeros((2, force.size), int)),
-        "interval": (("width", "case", "level"), np.stack([interval] * 2)),
-        "draws": (("width", "case", "draw"), np.stack([draws] * 2)),
-        "limits": (("width", "case", "end"), np.tile([0.01, 400.0], (2, n, 1))),
+        "force": ("width case", force),
+        "kind": ("width case", 0),
+        "interval": ("width case level", force[:, None] * [0.95, 1.0, 1.05]),
+        "draws": ("width case draw", force[:, None] * DRAWS),
+        "limits": ("width case end", [0.01, 400.0]),
     }
-    seen = {"seen": (("width", "case"), np.full((2, n), 0.9))}
-    seen["seen_interval"] = (("width", "case", "level"), np.tile([0.8, 0.9, 0.95], (2, n, 1)))
-    tolerances = [0.005, 0.02]
-    definitions = {
-        name: ((*dims[:2], "tolerance", *dims[2:]), np.repeat(values[:, :, None], 2, axis=2))
+    # by each of two further tolerances the same
+    by_tolerance = {
+        name: (dims.replace("case", "case tolerance"), np.asarray(values)[:, None] if np.ndim(values) else values)
         for name, (dims, values) in crossovers.items()
         if name != "limits"
     }
     ends = np.array([4.0, 1.0, 0.5, 0.25])
-    linear = np.array([[d, m] for d in (0.0, 0.01, 0.1, 0.25) for m in (0.0, 0.2)])
+    linear = [(d, m, STARTS[0]) for d in (0.0, 0.01, 0.1, 0.25) for m in (0.0, 0.2)]
     small = np.array([0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0])
     # packings differ by a few per cent in where they leave the linear range
     apart = 1.0 + 0.05 * rng.standard_normal((len(linear), few, 1))
     away = np.maximum(0.0, small / (apart * np.repeat(ends, 2)[:, None, None]) - 1.0)
     return {
         "crossovers": dataset(
-            {**cases, **levels, "realizations": ("case", [few] * n)}, **crossovers, **seen
+            labels | number,
+            **crossovers,
+            seen=("width case", 0.9),
+            seen_interval=("width case level", [0.8, 0.9, 0.95]),
         ).assign_attrs(tolerance=0.01),
-        "medians": dataset({**cases, **levels}, **crossovers, collapsed=("case", np.where(delta == 0.25, 3, 0))),
-        "definitions": dataset(
-            {**cases, **levels, "tolerance": tolerances}, **definitions, limits=crossovers["limits"]
-        ),
+        "medians": dataset(labels, **crossovers, collapsed=("case", np.where(delta == 0.25, 3, 0))),
+        "definitions": dataset(labels | {"tolerance": [0.005, 0.02]}, **by_tolerance, limits=crossovers["limits"]),
         "shapes": dataset(
-            {**cases, **levels, "number": [5, 15]},
-            applied_force=(("case", "step"), np.tile(steps, (force.size, 1))),
-            shape=(("width", "case", "step"), np.stack([dip[:, None] + np.zeros((1, 3))] * 2)),
-            shape_interval=(("width", "case", "step", "level"), np.stack([spread] * 2)),
-            two_peaked_means=(
-                ("width", "case", "step", "number"),
-                np.tile(np.where(dip > 0.01, 0.99, 0.01)[:, None, None], (2, 1, 3, 2)),
+            labels,
+            {"step": 3},
+            applied_force=("case step", [0.1, 15.0, 300.0]),
+            **over("width case step", shape=dip[:, None], spread=scatter),
+            **over(
+                "width case step level",
+                shape_interval=dips[:, None],
+                spread_interval=scatter[..., None] * [0.9, 1.0, 1.1],
             ),
-            spread=(("width", "case", "step"), np.stack([scatter] * 2)),
-            spread_interval=(
-                ("width", "case", "step", "level"), np.stack([scatter[..., None] * np.array([0.9, 1.0, 1.1])] * 2)
-            ),
-            largest_step=(("width", "case"), np.full((2, n), 0.1)),
-            largest_step_interval=(("width", "case", "level"), np.tile([0.08, 0.1, 0.12], (2, n, 1))),
+            largest_step=("width case", 0.1),
+            largest_step_interval=("width case level", [0.08, 0.1, 0.12]),
         ),
         "realizations": dataset(
-            {**cases, **levels, "realizations": ("case", [few] * n)},
-            collapse_force=(("case", "realization"), np.tile(np.where(np.arange(few) < 4, 20.0, np.nan), (n, 1))),
-            shape=(("width", "case", "realization", "step"), np.stack([each] * 2)),
-            asymmetry=(("width", "case", "realization", "step"), np.full((2, n, few, 3), 0.1)),
-            difference=(("width", "case", "realization", "step"), np.full((2, n, few, 3), 0.2)),
+            labels | number,
+            {"realization": few, "step": 3},
+            collapse_force=("case realization", np.where(np.arange(few) < 4, 20.0, np.nan)),
+            **over("width case realization step", shape=each, asymmetry=0.1, difference=0.2),
         ),
         "starts": dataset(
-            {**cases, **levels, "realizations": ("case", [few] * n)},
-            dip=(("width", "case"), np.stack([dip] * 2)),
-            dip_interval=(("width", "case", "level"), np.stack([spread[:, 0]] * 2)),
-            dip_of_means=(("width", "case", "level"), np.stack([spread[:, 0]] * 2)),
-            dip_of_means_interval=(
-                ("width", "case", "level", "end"), np.stack([spread[:, 0, :, None] + [-0.01, 0.01]] * 2)
-            ),
+            labels | number,
+            dip_of_means=("width case level", dips),
+            dip_of_means_interval=("width case level end", dips[..., None] + [-0.01, 0.01]),
         ),
         "packings": dataset(
             cases,
-            coordination_number=(("case", "realization"), contacts),
-            coordination_number_with_walls=(("case", "realization"), contacts),
-            coordination_number_bulk=(("case", "realization"), contacts),
-            horizontal_contacts=(("case", "realization"), np.where(delta[:, None] == 0.0, 0.9, 0.3 * contacts / 4.25)),
-            oblique_contacts=(("case", "realization"), np.where(delta[:, None] == 0.0, 1.85, 1.7 * contacts / 4.25)),
+            **over(
+                "case realization",
+                **dict.fromkeys([f"coordination_number{kind}" for kind in ("", "_with_walls", "_bulk")], contacts),
+                horizontal_contacts=np.where(ideal, 0.9, 0.3 * contacts / 4.25),
+                oblique_contacts=np.where(ideal, 1.85, 1.7 * contacts / 4.25),
+            ),
         ),
         "linear_range": dataset(
-            {
-                "polydispersity": ("case", linear[:, 0]),
-                "friction": ("case", linear[:, 1]),
-                "lattice_constant": ("case", [STARTS[0]] * len(linear)),
-            },
-            response_at_centre=(("case", "realization", "step"), 0.07 * (1.0 - 0.1 * away)),
-            profile_change=(("case", "realization", "step"), 0.1 * away),
-            applied_force=(("case", "step"), np.tile(small, (len(linear), 1))),
+            by_row("case", "polydispersity friction lattice_constant", linear),
+            **over("case realization step", response_at_centre=0.07 * (1.0 - 0.1 * away), profile_change=0.1 * away),
+            applied_force=("case step", small),
         ),
-    }  # fmt: skip
+    }
 
 
 def means_study():
     """Symmetrical means of five, and contacts along the directions of the lattice."""
-    angle = np.radians(np.arange(2.5, 180.0, 5.0))
-    density = 1.0 + np.cos(6.0 * angle)
-    cases = {"polydispersity": ("case", [0.1, 0.25]), "friction": ("case", [0.0, 0.0])}
-    x = np.linspace(-10.0, 10.0, 21)
+    angle, x = np.radians(np.arange(2.5, 180.0, 5.0)), np.linspace(-10.0, 10.0, 21)
+    cases = over("case", polydispersity=[0.1, 0.25], friction=[0.0, 0.0])
     return {
-        "averages": dataset(
-            {"width": [6.0], **cases},
-            mean_of_few=(("width", "case", "step", "x"), np.broadcast_to(np.exp(-(x**2)), (1, 2, 3, 21))),
-        ),
+        "averages": dataset({"width": [6.0], **cases}, mean_of_few=("width case step x", np.exp(-(x**2)))),
         "packings": dataset(
-            {**cases, "angle": angle},
-            contact_angle_density=(("case", "realization", "angle"), np.broadcast_to(density, (2, 4, angle.size))),
+            {**cases, "angle": angle}, contact_angle_density=("case realization angle", 1.0 + np.cos(6.0 * angle))
         ),
     }
 
@@ -510,18 +421,14 @@ def superposition_study():
     rng = np.random.default_rng(0)
     error = np.array([0.01, 0.1]) * rng.uniform(0.8, 1.2, (8, 2, 1))
     rows = np.array([0.1, 0.05, 0.02]) * rng.uniform(0.9, 1.1, (8, 2, 2, 1))
-    dims = ("realization", "distance", "force")
+    ends = over("realization", linear_until=np.linspace(0.35, 0.4, 8), nonlinear_from=np.linspace(0.4, 0.45, 8))
     return {
         "errors": dataset(
             {"force": [0.2, 1.0], "distance": [4.0, 8.0], "gap": [1.0, 3.0, 5.0]},
-            floor_error_largest=(dims, error),
-            contact_error_largest=(dims, error),
-            row_error=((*dims, "gap"), rows),
+            **over("realization distance force", floor_error_largest=error, contact_error_largest=error),
+            row_error=("realization distance force gap", rows),
         ),
-        "linear_range": dataset(
-            linear_until=("realization", np.linspace(0.35, 0.4, 8)),
-            nonlinear_from=("realization", np.linspace(0.4, 0.45, 8)),
-        ),
+        "linear_range": dataset(**ends),
     }
 
 
@@ -529,7 +436,7 @@ def sensitivity_study():
     """Responses by the linear law and by the power 3/2, a tenth of the largest apart."""
     one = dataset(
         {"variant": ["reference", "hertz"]},
-        floor_response=(("variant", "floor_disk"), np.stack([ELASTIC, 1.1 * ELASTIC])),
+        floor_response=("variant floor_disk", np.stack([ELASTIC, 1.1 * ELASTIC])),
         largest_difference=("variant", np.array([0.0, 0.1 * ELASTIC.max()])),
     )
     return {"mu_0.2": one, "mu_1": one}
@@ -540,22 +447,18 @@ def hysteresis_study():
     low = np.full((2, 3, 2), np.nan)
     low[0, 0] = [4.0, 4.1]
     low[1] = [[0.5, 0.5], [0.6, 0.58], [0.55, 0.6]]
-    materials = {"polydispersity": ("case", [0.0, 0.1]), "friction": ("case", [0.2, 0.2])}
-    along = ("case", "realization", "turn")
+    materials = over("case", polydispersity=[0.0, 0.1], friction=[0.2, 0.2])
     nothing = np.where(np.isfinite(low), 1e-4, np.nan)
     return {
         "events": dataset(
             materials | {"event": ["linear_range", "reversible_range"]},
-            low=(("case", "realization", "event"), low),
-            high=(("case", "realization", "event"), 1.02 * low),
+            **over("case realization event", low=low, high=1.02 * low),
         ),
         "loops": dataset(
             materials,
-            force=(("case", "turn"), [[1.0, 15.0], [3.0, np.nan]]),
-            work=(along, np.where(np.isfinite(low), 1.0, np.nan)),
-            slid_again=(along, nothing),
-            crossed_again=(along, 0.0 * nothing),
-            floor_repeated=(along, nothing),
+            force=("case turn", [[1.0, 15.0], [3.0, np.nan]]),
+            **over("case realization turn", work=1e4 * nothing, slid_again=nothing, floor_repeated=nothing),
+            crossed_again=("case realization turn", 0.0 * nothing),
         ),
     }
 
@@ -564,121 +467,86 @@ def influence_study():
     power = np.full((2, 4, 1, 3), np.nan)
     power[0, 0] = [1.98, 1.97, 1.99]  # a lattice: one realization, and the range over the fits
     power[1] = np.array([1.86, 1.9, 1.92, 1.94])[:, None, None]
-    return {
-        "saint_venant": dataset(
-            {"polydispersity": ("case", [0.0, 0.1]), "friction": ("case", [0.0, 0.2])},
-            exponent=(("case", "realization", "separation", "fit"), power),
-        )
-    }
+    cases = over("case", polydispersity=[0.0, 0.1], friction=[0.0, 0.2])
+    return {"saint_venant": dataset(cases, exponent=("case realization separation fit", power))}
 
 
 def scaling_study():
     """Powers 2 of the layers with and without friction, and a series of widths that no claim reads."""
-    ends = np.array([2.0, 1.95, 2.05])
-    exponent = np.broadcast_to(ends, (3, 3, 3)).copy()
-    return {
-        "powers": dataset(
-            {
-                "series": ["walls", "friction", "width"],
-                "friction": ("series", [0.0, 0.2, 0.0]),
-                "varied": ("series", ["layers", "layers", "disks_per_layer"]),
-                "confined": ("series", ["walls", "as weight", "constant"]),
-                "event": ["first_opening", "crossover", "reaches_floor"],
-                "end": ["value", "least", "largest"],
-            },
-            exponent=(("series", "event", "end"), exponent),
-            extrapolated=(("series", "event", "end"), 1e4 * exponent),
-        ).assign_attrs(layers=1000.0)
-    }
+    series = by_row(
+        "series",
+        "friction varied confined",
+        [(0.0, "layers", "walls"), (0.2, "layers", "as weight"), (0.0, "disks_per_layer", "constant")],
+    )
+    labels = {**series, "event": ["first_opening", "crossover", "reaches_floor"]}
+    powers = dataset(labels, exponent=("series event end", [2.0, 1.95, 2.05]))
+    return {"powers": powers.assign_attrs(layers=1000.0)}
 
 
 def moduli_study():
     """Two cases with friction and one without."""
-    difference = np.full((3, 2, 4, 4, 2), np.nan)
-    spread = np.array([-0.004, 0.0, 0.002, 0.004])[:, None, None]
-    difference[:, 0] = 0.3
-    difference[:, 1] = 0.03 + spread
+    difference = np.full((2, 4, 1, 1), 0.3)
+    difference[1] = 0.03 + np.array([-0.004, 0.0, 0.002, 0.004])[:, None, None]
+    cases = over("case", polydispersity=[0.1, 0.25, 0.1], friction=[0.2, 0.2, 0.0])
     return {
         "packings": dataset(
-            {
-                "polydispersity": ("case", [0.1, 0.25, 0.1]),
-                "friction": ("case", [0.2, 0.2, 0.0]),
-                "solid": ["affine", "suppressed", "free", "isotropic"],
-            },
-            layers=(("case", "size"), np.array([[8.0, 16.0]] * 3)),
-            difference=(("case", "size", "realization", "solid", "smoothing"), difference),
+            {**cases, "solid": ["affine", "suppressed", "free", "isotropic"]},
+            {"smoothing": 2},
+            layers=("case size", [8.0, 16.0]),
+            difference=("case size realization solid smoothing", difference),
         )
     }
 
 
 def network_study():
     """Isostatic packings with exponential forces."""
-    spread = np.array([-0.02, 0.0, 0.01, 0.02])
-
-    def along(values):
-        return ("polydispersity", "friction", "realization", "state"), (
-            np.array(values, float)[None, :, None, None] + spread[:, None] + np.zeros((2, 1, 1, 2))
-        )
-
+    spread = np.array([-0.02, 0.0, 0.01, 0.02])[:, None]
     labels = {"polydispersity": [0.1, 0.25], "friction": [0.0, 0.2, 1.0], "state": ["rest", "loaded"]}
-    return {
-        "statistics": dataset(
-            labels,
-            tail_variation=along([1.0, 1.0, 0.95]),
-            coordination_number=along([4.0, 3.5, 3.1]),
-            hyperstaticity=along([0.0, 0.05, 0.03]),
-        )
+    means = {
+        "tail_variation": [1.0, 1.0, 0.95],
+        "coordination_number": [4.0, 3.5, 3.1],
+        "hyperstaticity": [0.0, 0.05, 0.03],
     }
+    each = {name: np.array(values)[:, None, None] + spread for name, values in means.items()}
+    return {"statistics": dataset(labels, **over("polydispersity friction realization state", **each))}
 
 
 def rolling_study():
     """Piles that rolling resistance alone holds, and a Cosserat slab."""
     piles = {"layers": [5, 11], "rolling_friction": [0.0, 0.3], "ramp": [0.0, 30.0]}
-    dims, ends = tuple(piles), np.array([[0.95], [0.1]])
     slabs = {"friction": [0.2, 1.0], "rolling_friction": [0.0, 0.5], "load": [0.5, 10.0]}
-    torques = {**slabs, "torque": slabs["load"]}
-    del torques["load"]
-    fits = {"unexplained": 0.05, "length": 3.0, "decay_unexplained": 0.05, "decay_length": 3.0}
-    response = np.array([0.1, 0.2, 0.1]) * np.array([1.0, 1.2])[:, None, None]
+    ends, response = np.array([[0.95], [0.1]]), np.array([0.1, 0.2, 0.1]) * np.array([1.0, 1.2])[:, None, None]
+    turns = slabs | {"torque": slabs["load"]}
+    fits, along = {"unexplained": 0.05, "length": 3.0}, "friction rolling_friction"
+    turned = fits | {f"decay_{name}": value for name, value in fits.items()}
     return {
         "thresholds": dataset(
-            piles,
-            low=(dims, np.broadcast_to(ends, (2, 2, 2))),
-            high=(dims, np.broadcast_to(ends + 0.02, (2, 2, 2))),
-            floor_dip=(dims, np.full((2, 2, 2), -0.01)),
-            loose_disks=(dims, np.full((2, 2, 2), 2.0)),
+            piles, **over(" ".join(piles), low=ends, high=ends + 0.02, floor_dip=-0.01, loose_disks=2.0)
         ),
         "piles": dataset(
-            {"layers": [5, 11], "case": ["supported", "free", "resisting"]},
-            floor_dip=(("layers", "case"), np.full((2, 3), -0.01)),
+            {"layers": [5, 11], "case": ["supported", "free", "resisting"]}, floor_dip=("layers case", -0.01)
         ),
-        "slabs": dataset(
-            slabs,
-            floor_response=((*slabs, "floor_disk"), np.broadcast_to(response, (2, 2, 2, 3))),
-            unexplained=(tuple(slabs), np.full((2, 2, 2), 0.05)),
-            length=(tuple(slabs), np.full((2, 2, 2), 3.0)),
-        ),
-        "torques": dataset(torques, **{fit: (tuple(torques), np.full((2, 2, 2), of)) for fit, of in fits.items()}),
+        "slabs": dataset(slabs, floor_response=(f"{along} load floor_disk", response), **over(f"{along} load", **fits)),
+        "torques": dataset(turns, **over(f"{along} torque", **turned)),
     }
 
 
 def loaded_study():
     """A region of r < 0 that reaches the floor at the crossover, in an incrementally elastic slab."""
     peaks = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])
-    fits = ("slab", "step", "width", "loads")
-
-    def each(values):
-        return fits, np.broadcast_to(np.array(values, float)[..., None, None], (2, 3, 2, 2)).copy()
-
+    reach = np.array([[0.5, 0.8, 1.0], [0.0, 0.1, 0.2]])
     return {
         "slabs": dataset(
-            {"friction": ("slab", [0.2, 1.0]), "width": [1.0, 2.0], "loads": ["body", "surface"]},
-            force=(("slab", "step"), np.array([[10.0, 19.0, 21.0]] * 2)),
-            crossover=(("slab", "end"), np.array([[20.0, 20.0], [21.0, np.nan]])),
-            reach=each([[0.5, 0.8, 1.0], [0.0, 0.1, 0.2]]),
-            difference=each(np.full((2, 3), 0.05)),
-            two_peaks=(("slab", "step"), peaks),
-            predicted_two_peaks=each(peaks),
+            {"friction": ("slab", [0.2, 1.0]), "width": [1.0, 2.0]},
+            {"loads": 2, "step": 3},
+            **over("slab step", force=[10.0, 19.0, 21.0], two_peaks=peaks),
+            crossover=("slab end", [[20.0, 20.0], [21.0, np.nan]]),
+            **over(
+                "slab step width loads",
+                reach=reach[..., None, None],
+                difference=0.05,
+                predicted_two_peaks=peaks[..., None, None],
+            ),
         )
     }
 
@@ -691,25 +559,26 @@ def experiments_study():
     loads += [("deep", force, 90.0) for force in (3.0, 1.5)]
     coordinates = by_row("case", "packing force_applied angle_applied", loads)
     near, deep = (coordinates["packing"][1] == name for name in ("nearly equal", "deep"))
-
-    def estimates(values):
-        return ("case", "estimate"), np.multiply.outer(np.broadcast_to(values, len(loads)), [1.0, 0.99, 1.01])
-
-    power = np.where(deep, 1.0, 0.5)[:, None, None, None] * np.ones((2, 1, 3))
-    packings = dataset(coordinates, moved=(("case", "realization"), np.full((len(loads), 20), 0.1)))
-    packings.attrs["largest_move"] = 2.0
+    estimates = {
+        "chain": 60.0,
+        "contrast": np.where(near, 2.0, 1.1),
+        "vertical": 1.5,
+        "strongest": coordinates["angle_applied"][1],
+        "dip": 0.01,
+    }
+    each = {name: np.asarray(value)[..., None] * [1.0, 0.99, 1.01] for name, value in estimates.items()}
+    packings = dataset(coordinates, {"realization": 20}, moved=("case realization", 0.1))
+    labels = {"definition": ["half_maximum", "half_force"], "estimate": ["mean", "low", "high"], "depth": [5.0, 10.0]}
     return {
-        "packings": packings,
+        "packings": packings.assign_attrs(largest_move=2.0),
         "means": dataset(
-            coordinates | {"definition": ["half_maximum", "half_force"], "estimate": ["mean", "low", "high"],
-                           "depth": [5.0, 10.0]},
-            chain=estimates(60.0), contrast=estimates(np.where(near, 2.0, 1.1)), vertical=estimates(1.5),
-            strongest=estimates(coordinates["angle_applied"][1]), dip=estimates(0.01),
-            power=(("case", "definition", "fit", "estimate"), power),
-            slope=(("case", "definition", "estimate"), power[:, :, 0]),
-            stress=(("case", "depth", "x", "estimate"), np.ones((len(loads), 2, 3, 3))),
+            coordinates | labels,
+            {"x": 3},
+            **over("case estimate", **each),
+            power=("case definition fit estimate", np.where(deep, 1.0, 0.5)[:, None, None, None]),
+            stress=("case depth x estimate", 1.0),
         ),
-    }  # fmt: skip
+    }
 
 
 def everything():

@@ -6,9 +6,9 @@ import reduced
 
 from granular_response.observe.stress import contact_forces, line_forces
 from granular_response.state import FLOOR
+from granular_response.studies import LoadPath
 from granular_response_extensions.experiments import simulate
 from granular_response_extensions.experiments.parameters import Parameters
-from granular_response_paper.slab_response import LoadPath
 
 
 def test_lines_bear_the_load(datasets):

@@ -5,8 +5,8 @@ import pytest
 import xarray as xr
 
 from granular_response_extensions.influence import simulate
-from granular_response_extensions.influence.claims import CLAIMS
 from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.table import claims_of
 from granular_response_paper.claims.verdict import judge
 
 
@@ -42,4 +42,4 @@ def test_the_claim_follows_the_powers(lattice, disordered, verdict):
             "friction": ("case", [0.0, 0.2]),
         }
     )
-    assert judge(CLAIMS[0], Data({"influence": {"saint_venant": study}})).verdict == verdict
+    assert judge(claims_of("influence")[0], Data({"influence": {"saint_venant": study}})).verdict == verdict

@@ -5,6 +5,7 @@ import pytest
 import reduced
 
 from granular_response.scene import Scene
+from granular_response.studies import LoadPath, Measures
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
@@ -14,7 +15,6 @@ from granular_response_extensions.moduli.simulate import response
 from granular_response_extensions.moduli.simulate.loaded import loads, respond
 from granular_response_extensions.moduli.simulate.solid import Solid, fitted, triangles
 from granular_response_paper.parameters import UNIT_LOAD
-from granular_response_paper.slab_response import LoadPath, Measures
 
 
 def test_packings_that_relax_are_softer(datasets):

@@ -5,10 +5,10 @@ import pytest
 import reduced
 
 from granular_response.observe import network
+from granular_response.studies import LoadPath
 from granular_response_extensions.network import simulate
 from granular_response_extensions.network.parameters import Parameters
 from granular_response_paper.ensembles.realizations import ensemble_scene
-from granular_response_paper.slab_response import LoadPath
 
 
 def test_distributions_are_normalised(datasets):

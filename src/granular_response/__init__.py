@@ -4,8 +4,9 @@
 ``Scene.from_arrays``), ``Contact`` and ``Wall`` laws, ``Load`` and ``Protocol``. ``solve`` settles and loads it, and a
 ``Result`` holds what came of it: states, certificates, events, floor response, contacts, stress. ``plot`` draws it,
 ``open_result`` reads a stored one, ``sweep`` solves a scene with many values of its keys, ``find_event`` finds where
-something happens, ``theory`` has predictions to compare with. What goes wrong with a scene, a file or a solution is a
-``GranularError``; a wrong argument of a call may be a ValueError, TypeError or IndexError, as its docstring says.
+something happens, ``studies`` has load paths of slabs, ``theory`` predictions to compare with. What goes wrong with a
+scene, a file or a solution is a ``GranularError``; a wrong argument of a call may be a ValueError, TypeError or
+IndexError, as its docstring says.
 
 What stands in ``__all__`` is the public namespace. It keeps its names and meanings, and is loaded on first use;
 everything below it may change from version to version.

@@ -1,5 +1,6 @@
 # The public names, each from its module: what type checkers read, and what __init__.py looks up.
 from . import plot as plot
+from . import studies as studies
 from . import theory as theory
 from .api.event import find_event as find_event
 from .api.event_table import Events as Events
@@ -20,8 +21,6 @@ from .api.sweep import sweep as sweep
 from .errors import GranularError as GranularError
 from .errors import SolveError as SolveError
 from .machine.threads import using as threads
-from .observe.events import Bracket as Bracket
-from .observe.events import EventNotBracketed as EventNotBracketed
 from .plot.pictures import PictureError as PictureError
 from .scene import ArrayPacking as Arrays
 from .scene import Contact as Contact
@@ -49,6 +48,8 @@ from .store.export import ExportError as ExportError
 from .store.export import export as export
 from .store.files import StoreError as StoreError
 from .store.result import ResultError as ResultError
+from .studies.brackets import Bracket as Bracket
+from .studies.brackets import EventNotBracketed as EventNotBracketed
 from .sweeps.errors import SweepError as SweepError
 from .sweeps.tasks import map_tasks as map_tasks
 

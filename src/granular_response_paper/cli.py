@@ -118,8 +118,8 @@ def claims(
     ] = None,
 ) -> None:
     """Compare the claims with the stored datasets."""
+    from .claims import preparations as kept
     from .claims import stored, table
-    from .claims import summary as kept
 
     loaded()
     one = collection(name)
@@ -145,7 +145,7 @@ def summary(
     output: Annotated[Path | None, output_option(help="Summary (netCDF); extensions/summary.nc if not given.")] = None,
 ) -> None:
     """Write what the claims read of other preparations of the slab: the forces of its events."""
-    from .claims import summary as writing
+    from .claims import preparations as writing
 
     loaded()
     typer.echo(str(writing.write(data or writing.SOURCE, output or writing.OUTPUT)))

@@ -21,7 +21,7 @@ from granular_response.store import files as store
 from granular_response.store.files import StoreError
 from granular_response_paper import cli as paper
 from granular_response_paper.archive import crate
-from granular_response_paper.claims import summary
+from granular_response_paper.claims import preparations
 
 TABLE = "packing: {kind: file, path: disks.nc, width: 6}\ncontact: {friction: 0.0}\n"
 #: For each command that writes: arguments, and those of its inputs that an output can be confused with.
@@ -52,7 +52,7 @@ def inputs(tmp_path_factory) -> Path:
     for name in ("data", "figures", "theory"):
         (folder / name).mkdir()
     store.write(folder / "data" / "torque.nc", xr.Dataset())
-    events = xr.Dataset({name: ("event", ["first_opening"]) for name in summary.COLUMNS})
+    events = xr.Dataset({name: ("event", ["first_opening"]) for name in preparations.COLUMNS})
     for name, one in events.variables.items():
         one.attrs = {"long_name": name, "units": "1"}
     store.write(folder / "preparation.nc", {"events": events}, {"group": "preparation"})

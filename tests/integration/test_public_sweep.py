@@ -11,8 +11,8 @@ from places import ROOT
 
 import granular_response as gr
 from granular_response.api import sweep as sweeping
-from granular_response.observe.events import EventNotBracketed
 from granular_response.scene import SceneError
+from granular_response.studies import EventNotBracketed
 from granular_response.sweeps.errors import SweepError
 
 SCENE = gr.Scene().updated({"packing.layers": 4, "packing.disks_per_row": 9, "contact.friction": 0.0})

@@ -21,8 +21,8 @@ from granular_response.observe.floor import floor_force
 from granular_response.scene import Load, Scene, SceneError
 from granular_response.solvers.solution import Solution, solve_scene
 from granular_response.state import State
+from granular_response.studies import lost
 from granular_response_paper.records import column, record
-from granular_response_paper.slab_response import lost
 
 #: Certified: in balance and stable. Uncertified: the scene asked for no static finish, and the certificate says what
 #: is left. The others are errors of one line: which, is stored beside.

@@ -18,8 +18,8 @@ from granular_response.solvers.energy import minimise
 from granular_response.solvers.equilibrium import finish
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states, rest_state
+from granular_response.studies import lost
 from granular_response_paper.records import column, record
-from granular_response_paper.slab_response import lost
 
 
 @record

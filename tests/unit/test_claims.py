@@ -16,11 +16,11 @@ from scipy.stats import binom
 
 from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response.store import files as store
-from granular_response_paper.claims import bounds, declared, preparations, summary, table
+from granular_response_paper.claims import declared, preparations, table
 from granular_response_paper.claims import stored as stored_table
 from granular_response_paper.claims.bootstrap import RARE, over_brackets, over_realizations, part_of
-from granular_response_paper.claims.claim import Bound, Claim, Data, NotMeasured, Quantity, Test, at
-from granular_response_paper.claims.verdict import MEANINGS, SCHEME, Entry, elsewhere_of, judge, verdict_of
+from granular_response_paper.claims.claim import Bound, Claim, Data, NotMeasured, Quantity, Test, at, rise
+from granular_response_paper.claims.verdict import MEANINGS, SCHEME, Verdict, elsewhere_of, judge, verdict_of
 from granular_response_paper.claims.words import WORDS, words
 from granular_response_paper.groups.frictionless_crossover.claims import size_in_steps
 from granular_response_paper.groups.phase_diagram.claims import (
@@ -572,7 +572,7 @@ def test_verdicts_follow_from_the_cases():
     # numbers of one case must hold together
     assert verdict_of([a_test(*YES), a_test(*NO)]) == "not supported"
     assert verdict_of([a_test(*YES), a_test(*OPEN_)]) == "cannot tell"
-    said = {"id": "F1", "place": "I", "paper": "", "measured": "", "measure": lambda data, words: []}
+    said = {"id": "F1", "place": "I", "paper": "", "measured": "", "measure": lambda data: []}
     assert verdict_of(cases(YES), Claim(**said, derivation=True)) == "derivation"
     assert verdict_of(cases(NO), Claim(**said, derivation=True)) == "not supported"
     assert verdict_of(cases(NO), Claim(**said, modal=True)) == "not seen"
@@ -590,20 +590,20 @@ def test_the_second_column_follows_from_other_preparations_alone():
 
 def test_a_row_lists_its_cases_and_preparations():
     tests = [a_test(*YES, case="slow"), a_test(*NO, case="fast"), a_test(*NO, prepared="otherwise")]
-    claim = Claim("F1", "I", "", "", lambda data, words: tests, here="From {0} to {1}.")
+    claim = Claim("F1", "I", "", "", lambda data: tests, here="From {0} to {1}.")
     entry = judge(claim, Data({}))
     assert entry.here == "From 1.5 (1 to 2) to 2.55 (2.1 to 3)."
     assert entry.cases == "Supported for: slow. Not supported for: fast."
     assert entry.preparations == "Fails: otherwise." and (entry.verdict, entry.elsewhere) == ("in part", "no")
-    assert Entry(claim, "supported", tuple(tests[:1])).cases == ""
+    assert Verdict(claim, "supported", tuple(tests[:1])).cases == ""
 
 
 def test_a_star_marks_verdicts_that_hang_on_a_threshold():
     """Of "about", a quarter: within an eighth, a quarter and a half of 20."""
 
     def star(force):
-        def measure(data, words):
-            return [Test("force", Quantity.exact(force), bounds.near(words, "about", 20.0))]
+        def measure(data):
+            return [Test("force", Quantity.exact(force), declared.bound({"about": 20}, data.words))]
 
         return judge(Claim("F1", "I", "", "", measure), Data({})).star
 
@@ -627,7 +627,7 @@ def test_strict_bounds_leave_out_their_ends():
 
 def test_sampled_events_lie_at_most_a_term_below_the_papers_force():
     def outcome(low, high):
-        return bounds.sampled(words(), 10.0).outcome(Quantity.bracket(low, high))
+        return declared.bound({"sampled": 10}, words()).outcome(Quantity.bracket(low, high))
 
     assert outcome(7.5, 10.0) == "yes"
     assert outcome(7.4, 7.6) == outcome(9.9, 10.1) == "cannot tell"
@@ -636,8 +636,9 @@ def test_sampled_events_lie_at_most_a_term_below_the_papers_force():
 
 def test_orders_use_the_smallest_step():
     up = [Quantity.bracket(1.0, 1.1), Quantity.bracket(2.0, 2.1), Quantity.bracket(3.0, NAN)]
-    assert bounds.rises("force", up).outcome == "yes" and bounds.rises("force", up[:2][::-1]).outcome == "no"
-    assert bounds.rises("force", [*up[:2], Quantity.bracket(2.0, 2.2)]).outcome == "cannot tell"
+    assert rise(up).low > 1.0 > rise(up[:2][::-1]).high
+    steady = rise([*up[:2], Quantity.bracket(2.0, 2.2)])
+    assert steady.low < 1.0 < steady.high
 
 
 STUDY = dataset(
@@ -649,18 +650,23 @@ STUDY = dataset(
 #: What a claims.yaml may declare, and the numbers that it must give.
 DECLARED = [
     ({"value": "study.size", "at": {"friction": 0.2, "kind": "b"}}, [(6.0, 6.0)]),
-    ({"value": "study.size", "at": {"kind": "b"}, "each": "friction"}, [(2.0, 2.0), (6.0, 6.0), (3.0, 3.0)]),
     ({"value": "study.size", "over": {"friction": "max", "kind": "min"}}, [(4.0, 4.0)]),
     ({"value": "study.size", "at": {"kind": "a"}, "over": {"friction": "last"}, "scale": 0.5}, [(2.0, 2.0)]),
     (
-        {"value": "study.size", "at": {"kind": "a"}, "where": {"friction": [0.1, 2]}, "over": {"friction": "range"}},
-        [(2.0, 4.0)],
+        {"value": "study.size", "at": {"kind": "a"}, "where": {"friction": [0, 0.5]}, "over": {"friction": "last"}},
+        [(2.0, 2.0)],
     ),
     ({"value": "study.ends", "at": {"friction": 0}, "over": {"estimate": "interval"}}, [(1.0, 3.0)]),
     ({"trend": "study.size", "along": "friction", "at": {"kind": "a"}}, [(2.0, 2.0)]),
     ({"trend": "study.size", "along": "friction", "at": {"kind": "b"}, "falling": True}, [(1 / 3, 1 / 3)]),
     ({"event": "opens", "friction": 0.2}, [(1.0, 1.5)]),
     ({"event": "opens", "friction": 0.2, "per": {"event": "opens", "friction": 1}}, [(0.25, 0.5)]),
+    ({"event": "opens", "at": {"side": "rough"}}, [(3.0, 4.0)]),
+    (
+        {"value": "study.size", "at": {"friction": 0.2}, "unlike": {"value": "study.size", "at": {"friction": 1}}},
+        [(0.75, 0.75)],
+    ),
+    ({"value": "study.size", "at": {"kind": "b"}, "over": {"friction": "average"}}, [(11 / 3, 11 / 3)]),
 ]
 
 
@@ -671,18 +677,11 @@ def test_a_declared_test_measures_what_it_says(spec, ends):
         friction=("event", [0.2, 1.0]),
         low=("event", [1.0, 3.0]),
         high=("event", [1.5, 4.0]),
+        side=("event", ["smooth", "rough"]),
     )
     data = Data({"group": {"study": STUDY, "events": table_}})
-    made = declared._measured("group", "number", [{**spec, "bound": {"at least": 0}}], data, words())
-    np.testing.assert_allclose([(one.found.low, one.found.high) for one in made], ends)
-    if "each" in spec:
-        assert [one.case for one in made] == ["friction 0", "friction 0.2", "friction 1"]
-
-
-def test_a_declared_mean_has_the_interval_of_the_bootstrap():
-    spec = {"value": "study.each", "at": {"friction": 1}, "over": {"realization": "mean"}, "bound": {"at least": 0}}
-    (made,) = declared._measured("group", "number", [spec], Data({"group": {"study": STUDY}}), words())
-    assert made.found == over_realizations([1.0, 2.0, 3.0, 2.0], np.mean)
+    rows = list(declared._rows("group", [spec], data))
+    np.testing.assert_allclose([(found.low, found.high) for _, found in rows], ends)
 
 
 @pytest.mark.parametrize(
@@ -692,22 +691,62 @@ def test_a_declared_mean_has_the_interval_of_the_bootstrap():
         ({"at least": "marked"}, 0.5, math.inf), ({"lower by": "marked"}, -math.inf, 0.5),
         ({"higher by": "marked"}, 1.5, math.inf),
         ({"hardly lower by": "slightly"}, 0.75, math.inf), ({"between": [1, 2]}, 1.0, 2.0),
-        ({"less than": 1}, -math.inf, 1.0),
+        ({"less than": 1}, -math.inf, 1.0), ({"same size": "similar"}, 1.0 / 1.5, 1.5),
+        ({"order of magnitude": "almost"}, 5.0, 20.0), ({"about": 0.25, "plus": 4}, 4.1875, 4.3125),
+        ({"at most": "about", "times": 0.02, "plus": 0.02}, -math.inf, 0.025),
     ],
 )  # fmt: skip
 def test_bounds_are_declared_by_terms_or_numbers(bound, least, most):
-    made = bounds.declared(bound, words())
-    assert (made.least, made.most) == (least, most)
-    (kind,) = bound
+    made = declared.bound(bound, words())
+    assert (made.least, made.most) == pytest.approx((least, most))
+    kind, *_ = bound
     assert made.strict == (kind == "less than") and bool(made.word) == (kind not in ("between", "less than"))
 
 
 def test_what_is_declared_wrongly_is_refused(tmp_path):
-    with pytest.raises(bounds.DeclaredError, match="bound roughly: must be"):
-        bounds.declared({"roughly": 20}, words())
+    with pytest.raises(stored_table.ClaimsError, match="bound roughly: must be"):
+        declared.bound({"roughly": 20}, words())
+    assert declared.bound({"more than": 0, "word": "visible"}, words()) == Bound(0.0, word="visible", strict=True)
+    assert declared.bound({"at least": "rare"}, words()) == Bound(RARE)
     for wrong, message in (({"bound": {}}, "needs one of"), ({"event": "a", "sizes": 1}, "unknown key sizes")):
-        with pytest.raises(bounds.DeclaredError, match=message):
+        with pytest.raises(stored_table.ClaimsError, match=message):
             declared._check("group: F1", wrong)
+
+
+def test_a_function_yields_a_number_for_each_test(tmp_path, monkeypatch):
+    """Which says for what case it is, what the number is of and which preparation, and may have its own bound."""
+    package = tmp_path / "example_of_claims"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "claims.py").write_text(
+        "from granular_response_paper.claims.claim import Bound, Case, needs\n"
+        "def numbers(data, factor):\n"
+        "    yield 'one', 2.0 * factor, None\n"
+        "    yield Case('two', of='friction 1', prepared='slowly'), 3.0, (4.0, Bound(5.0))\n"
+        "def less(data):\n"
+        "    yield '', 1.0\n"
+        "def lacks(data):\n"
+        "    needs(False, 'no states')\n"
+        "    yield '', 1.0\n"
+    )
+    claim = "F1: {place: I, paper: A., measured: m, %s}"
+    tests = "tests: [{what: 'size, {}', unit: mg, bound: {at least: 1}}, {bound: {at most: 9}}]"
+
+    def made(numbers):
+        (package / "claims.yaml").write_text(claim % f"{tests}, numbers: {numbers}")
+        return declared.read("example_of_claims")[0]
+
+    monkeypatch.syspath_prepend(tmp_path)
+    one, two, three = made("{numbers: {factor: 4}}").measure(Data({}))
+    assert (one.what, one.case, one.found.value, one.unit, one.prepared) == ("size, ", "one", 8.0, "mg", "")
+    assert (two.what, two.case, two.prepared) == ("size, friction 1", "two", "slowly")
+    assert (three.what, three.bound) == ("m", Bound(5.0))
+    with pytest.raises(ValueError, match="zip"):
+        made("less").measure(Data({}))
+    with pytest.raises(NotMeasured, match=r"^data/example_of_claims.nc: no states$"):
+        made("lacks").measure(Data({}))
+    with pytest.raises(stored_table.ClaimsError, match="F1: numbers: more, must be a function"):
+        made("more")
 
 
 def test_a_number_says_its_method_and_how_many_packings_it_has(good):
@@ -887,7 +926,7 @@ def test_a_median_of_brackets_holds_what_is_not_known_of_each():
 def test_every_term_is_used_and_no_other(good):
     used = {test.bound.word for entry in table.evaluate(Data(good), EVERY) for test in entry.tests}
     assert used - {""} == set(WORDS)
-    assert words("about", 2.0)["about"] == 2.0 * WORDS["about"].bound
+    assert words("about", 2.0)["about"] == 2.0 * WORDS["about"][0]
     with pytest.raises(KeyError):
         words("roughly", 2.0)
 
@@ -950,19 +989,23 @@ def test_the_counts_in_words(good):
     assert f"Under another preparation {tried} were tried: {tried} hold, 0 fail, 0 cannot be told." in firm
 
 
+def other_ways(data):
+    return [(way.prepared, ends) for way, ends in preparations.along(data, "crossover", [0.2])]
+
+
 def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path, good):
     """It has the layout of the dataset ``events``, and says what it was made from."""
     store.write(tmp_path / "preparation.nc", good["preparation"], {"group": "preparation", "parameters": "ways: []"})
-    path = summary.write(tmp_path / "preparation.nc", tmp_path / "extensions" / "summary.nc")
+    path = preparations.write(tmp_path / "preparation.nc", tmp_path / "extensions" / "summary.nc")
     made = store.read_attributes(path)
     assert made["source"] == "preparation.nc" and made["parameters"] == "ways: []" and len(made["source_sha256"]) == 64
     data = table.collect(tmp_path / "none", path)
     assert data.event("preparation", "crossover", 0.2) == Data(good).event("preparation", "crossover", 0.2)
-    assert preparations.events(data, "crossover", 0.2) == preparations.events(Data(good), "crossover", 0.2) != {}
+    assert other_ways(data) == other_ways(Data(good)) != []
     assert table.collect(tmp_path / "none", tmp_path / "none.nc").groups == {}
     store.write(tmp_path / "other.nc", pile_study(), {"group": "pile_dip"})
     with pytest.raises(NotMeasured, match="no events of the group preparation"):
-        summary.write(tmp_path / "other.nc", tmp_path / "summary.nc")
+        preparations.write(tmp_path / "other.nc", tmp_path / "summary.nc")
 
 
 def test_the_readme_quotes_the_stored_table():

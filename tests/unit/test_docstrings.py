@@ -24,7 +24,11 @@ def public() -> dict[str, object]:
             found |= {f"{name}.{key}": one for key, one in methods.items() if callable(one)}
             shown = {key: one for key, one in methods.items() if ">>>" in (inspect.getdoc(one) or "")}
             found |= {f"{name}.{key}": one for key, one in shown.items()}
-    return found | {f"plot.{name}": getattr(gr.plot, name) for name in gr.plot.__all__}
+    found |= {f"plot.{name}": getattr(gr.plot, name) for name in gr.plot.__all__}
+    named = {name: getattr(gr.studies, name) for name in gr.studies.__all__}
+    named = {name: one for name, one in named.items() if callable(one) and name not in gr.__all__}
+    methods = {f"LoadPath.{name}": getattr(gr.studies.LoadPath, name) for name in ("of", "at", "through", "first")}
+    return found | {f"studies.{name}": one for name, one in (named | methods).items()}
 
 
 @pytest.fixture(scope="module")

@@ -12,13 +12,13 @@ from rich.console import Console
 from small_scenes import scene
 
 import granular_response as gr
-from granular_response.observe.events import EventNotBracketed
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import CONTACT_EVENTS
 from granular_response.store.checked import checked, read_result
 from granular_response.store.export import export
 from granular_response.store.result import ResultError, chosen_states, state_from, to_dataset
 from granular_response.store.summary import summarise
+from granular_response.studies import EventNotBracketed
 
 LOAD = [{"disk": "top-centre", "force": [0.0, -6.0]}]
 SCENE = scene(4, 9, contact__friction=0.2, loads=LOAD)
@@ -278,6 +278,12 @@ def test_an_event_along_a_key():
         (("open", 0.0, 1.0), {}, ValueError, r"^kind = 'open': must be opens or"),
         (("opens", -0.5, 1.0), {}, ValueError, r"^low = -0.5: must be 0 or greater"),
         ((bool, 0.1, 1.0), {"where": bool}, ValueError, r"^where: is asked of events, must be left out"),
+        (
+            (bool, 0.1, 1e9),
+            {},
+            gr.SceneError,
+            r"^loads\[0\].force: 6e\+09 mg at the largest load",
+        ),
         ((bool, 0.1, 1.0), {"tolerance": 0.0}, ValueError, r"^tolerance = 0.0: must be a finite number greater than 0"),
         (("opens", 0.0, 1e-5), {}, EventNotBracketed, r"^no event 'opens' between load factors 0 and 1e-05$"),
         (

@@ -13,10 +13,10 @@ from granular_response.observe.difference import (
     require_same_candidates,
     wall_force_difference,
 )
-from granular_response.observe.events import bisect_event
 from granular_response.observe.floor import floor_disks, floor_force, floor_response, interior_mask, smoothed_response
 from granular_response.observe.profile import force_profile, row_depth
 from granular_response.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, SLIDING, STICKING
+from granular_response.studies import bisect_event
 
 
 @pytest.mark.parametrize("rising", [True, False])

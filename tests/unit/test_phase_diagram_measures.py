@@ -9,12 +9,12 @@ from places import ROOT
 
 from granular_response.plot import style
 from granular_response.store import files as store
+from granular_response.studies import linear_end
 from granular_response_paper.claims import words
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, NOT_REACHED
 from granular_response_paper.groups.phase_diagram import draw as figures
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
 from granular_response_paper.groups.phase_diagram.simulate import read_ensemble, simulate
-from granular_response_paper.slab_response import linear_end
 from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import (
     ABOVE,

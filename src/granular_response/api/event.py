@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
-from itertools import pairwise
+from collections.abc import Callable, Mapping
 from numbers import Real
 from typing import Any
 
-from ..observe.events import Bracket, EventNotBracketed, bisect_event
 from ..observe.positive import check_positive
 from ..scene import Scene, SceneError
 from ..solvers.solution import Solution
 from ..state import Event
+from ..studies.brackets import Bracket, EventNotBracketed, bisect_event, unchanged
+from ..studies.path import Happening, LoadPath
 from ..sweeps.tasks import Progress
 from .event_table import check_kind
-from .result import Result, described, solve
+from .result import Result, described, solve, vouched
 from .terminal import shown
 
 #: Load (mean disk weights) before and beyond an event at which its contact has its status before and after: a thousand
@@ -112,12 +111,9 @@ def find_event(
             if report:
                 report(0, 1, "event")
             bracket = _first(solve(base, load_factors=[high], progress=False), kind, where, low)
-        elif kind is not None:
-            search = _Search(base, lambda result: bool(_events(result, kind, where)), key, report)
-            bracket = search.along(low, high, tolerance)
         else:
-            assert callable(happened)
-            bracket = _Search(base, happened, key, report).along(low, high, tolerance)
+            asked = happened if callable(happened) else lambda result: bool(_events(result, happened, where))
+            bracket = _searched(base, asked, key, low, high, tolerance, report)
         if report:
             report(bracket.evaluations, bracket.evaluations, "event")
     return bracket
@@ -158,71 +154,38 @@ def _first(result: Result, kind: str, where: Callable[[Event], bool] | None, low
     return Bracket(low=begin, high=end, at_low=False, evaluations=1)
 
 
-class _Search:
-    """Bisection with a function of the result along the load or a key."""
+def _searched(
+    base: Scene,
+    happened: Callable[[Result], bool],
+    key: str,
+    low: float,
+    high: float,
+    tolerance: float,
+    report: Progress | None,
+) -> Bracket:
+    """By bisection; along the load among the events of the path first, each looked at from both sides."""
+    total = 2 + _halvings(high - low, tolerance)
+    known: dict[float, bool] = {}
+    path: LoadPath | None = None
 
-    def __init__(self, base: Scene, happened: Callable[[Result], bool], key: str, report: Progress | None) -> None:
-        self.base, self.happened, self.key, self.report = base, happened, key, report
-        self.done, self.total = 0, 2
-        self.states: dict[float, Result] = {}  #: by load factor
+    def says(value: float) -> bool:
+        if value not in known:
+            if report:
+                report(len(known), max(total, len(known) + 1), "event")
+            one = vouched(path.solution(value)) if path else solve(base.updated({key: value}), progress=False)
+            known[value] = bool(happened(one))
+        return known[value]
 
-    def along(self, low: float, high: float, tolerance: float) -> Bracket:
-        self.total = 2 + _halvings(high - low, tolerance)
-        at_low, at_high = self.says(low), self.says(high)
-        if at_low != at_high and self.key == "load" and self._followed(high):
-            beside = BESIDE / _solution(self.states[high]).problem.load_size
-            knots = _knots(low, high, self.states[high].loaded[-1].reached.events, beside)
-            longest = max(after - before for before, after in pairwise(knots))
-            self.total = 2 + _halvings(len(knots) - 1, 1) + _halvings(longest, tolerance)
-            low, high = self._neighbours(knots, at_low)
-        bracket = bisect_event(self.says, low, high, tolerance, at_low=at_low, at_high=at_high)
-        return replace(bracket, evaluations=self.done)
-
-    def says(self, value: float) -> bool:
-        if self.report:
-            self.report(self.done, self.total, "event")
-        result = self._at(value)
-        self.done += 1
-        return bool(self.happened(result))
-
-    def _at(self, value: float) -> Result:
-        if self.key != "load":
-            return solve(self.base.updated({self.key: value}), progress=False)
-        below = [factor for factor in self.states if factor < value]
-        if below:
-            found = self.states[max(below)].continued([value], progress=False)
-        else:
-            found = solve(self.base, load_factors=[value], progress=False)
-        self.states[value] = found
-        return found
-
-    def _followed(self, factor: float) -> bool:
-        """Whether every event on the way to a state is known with its load."""
-        result = self.states[factor]
-        return _method(result) == "path" and result.loaded[-1].reached.events_within is None
-
-    def _neighbours(self, knots: list[float], at_low: bool) -> tuple[float, float]:
-        """Two neighbouring knots between which the answer changes, as it does between the first and the last."""
-        first, last = 0, len(knots) - 1
-        while last - first > 1:
-            middle = (first + last) // 2
-            if self.says(knots[middle]) == at_low:
-                first = middle
-            else:
-                last = middle
-        return knots[first], knots[last]
-
-
-def _knots(low: float, high: float, events: Iterable[Event], beside: float) -> list[float]:
-    """``low``, ``high``, and the loads just before and just beyond each event between them."""
-    knots = [low]
-    factors = {float(factor) for event in events for factor in (event.load_factor, event.until)}
-    for factor in sorted(factor for factor in factors if low < factor - beside and factor + beside < high):
-        if factor - beside > knots[-1]:
-            knots += [factor - beside, factor + beside]
-        else:
-            knots[-1] = factor + beside
-    return [*knots, high]
+    if key != "load":
+        return bisect_event(says, low, high, tolerance)
+    if report:
+        report(0, total, "event")
+    path = LoadPath.from_solution(_solution(solve(base, load_factors=[low, high], progress=False)))
+    if says(low) == says(high):
+        raise EventNotBracketed(unchanged(says(low), low, high))
+    changed = Happening(lambda state: says(state.load_factor) != says(low), "what is asked for has changed")
+    ends = path.first([low, high], changed, tolerance=tolerance, beside=BESIDE / path.problem.load_size)
+    return Bracket(*ends, says(low), len(known))
 
 
 def _halvings(width: float, least: float) -> int:

@@ -419,7 +419,7 @@ class Result:
         solution = self._solved
         with shown(progress) as report, compiling.logged(report):
             further = continue_solution(solution, load_factors, progress=report)
-        return _vouched(further)
+        return vouched(further)
 
     @cached_property
     def _solved(self) -> Solution:
@@ -515,10 +515,10 @@ def solve(
         asked = asked.updated({"protocol.method": method})
     with shown(progress) as report, compiling.logged(report):
         solution = solve_scene(asked, load_factors=load_factors, progress=report)
-    return _vouched(solution)
+    return vouched(solution)
 
 
-def _vouched(solution: Solution) -> Result:
+def vouched(solution: Solution) -> Result:
     """The result; how it was reached goes into the log, and remarks on it are warnings."""
     for stage, choice in (("gravity", solution.rest_choice), ("loads", solution.load_choice)):
         if choice is not None:

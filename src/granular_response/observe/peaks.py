@@ -185,6 +185,11 @@ def asymmetry(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) -
     return float(np.max(np.abs(r[both] - np.interp(-x[both], x, r))) / largest)
 
 
+def asymmetry_sign(x: FloatArray, response: FloatArray) -> int:
+    """On which side of x = 0 the response is larger: 1 right, -1 left, 0 if neither."""
+    return int(np.sign(response[x > 1e-6].sum() - response[x < -1e-6].sum()))
+
+
 def _outer_peaks(x: ArrayLike, response: ArrayLike, interior: Interior, relative_prominence: float) -> Peaks | None:
     """All peaks, if there are peaks above the centre on both sides of it; else None."""
     peaks = find_peaks(x, response, interior=interior, relative_prominence=relative_prominence)

@@ -13,3 +13,12 @@ def last_passage(t: FloatArray, profile: FloatArray, level: float) -> float:
     if k == len(t) - 1:
         return np.nan
     return float(t[k] + (profile[k] - level) / (profile[k] - profile[k + 1]) * (t[k + 1] - t[k]))
+
+
+def half_maximum_width(x: FloatArray, response: FloatArray) -> float:
+    """Distance of the outermost places where the response passes half of its maximum.
+
+    Linear between samples; nan where a side does not fall to half. Peaks that reach half count as one.
+    """
+    half = 0.5 * float(response.max())
+    return last_passage(x, response, half) + last_passage(-x[::-1], response[::-1], half)

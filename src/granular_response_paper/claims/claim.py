@@ -8,16 +8,19 @@ of the packing (``prepared``) decide nothing but the second column.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import ClassVar, Literal
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from granular_response.errors import GranularError
 
 from .words import Words
+from .words import words as thresholds
 
 #: What an interval means: none (one deterministic run); the event lies inside; 95 % of the bootstrap draws; the
 #: smallest to the largest value.
@@ -166,15 +169,21 @@ class Test:
         except NotMeasured as missing:
             raise NotMeasured(f"{self.what}: {missing}") from None
 
-    def named(self, case: str) -> Test:
-        """The same test for a value of what the text leaves open."""
-        return replace(self, case=case)
+
+#: What the function of a claim yields: for each case its name and a number for each test.
+Numbers = Iterator[tuple[Any, ...]]
 
 
-Measure = Callable[["Data", Words], Sequence[Test]]
+class Case(str):
+    """The name of a value of what the text leaves open, what its number is ``of``, and the preparation if another."""
 
-#: Whose sentence a claim judges.
-Source = Literal["paper", "literature", "hypothesis"]
+    of: str
+    prepared: str
+
+    def __new__(cls, name: str = "", of: str = "", prepared: str = "") -> Case:
+        case = super().__new__(cls, name)
+        case.of, case.prepared = of, prepared
+        return case
 
 
 @dataclass(frozen=True)
@@ -190,11 +199,11 @@ class Claim:
     place: str
     paper: str
     measured: str
-    measure: Measure = field(repr=False)
+    measure: Callable[[Data], Sequence[Test]] = field(repr=False)
     group: str = ""
     here: str = ""
     figures: tuple[int, ...] = ()
-    source: Source = "paper"
+    source: Literal["paper", "literature", "hypothesis"] = "paper"  #: whose sentence it is
     modal: bool = False
     derivation: bool = False
     disorder: bool = False
@@ -209,11 +218,12 @@ class Claim:
 class Data:
     """Stored datasets by figure group; a missing one raises NotMeasured.
 
-    ``groups`` maps a figure group to its datasets by name, as ``store.read`` returns them.
+    ``groups`` maps a figure group to its datasets by name, as ``store.read`` returns them; ``words`` are the thresholds
+    under which they are judged.
     """
 
-    def __init__(self, groups: Mapping[str, Mapping[str, xr.Dataset]]) -> None:
-        self.groups = groups
+    def __init__(self, groups: Mapping[str, Mapping[str, xr.Dataset]], words: Words | None = None) -> None:
+        self.groups, self.words = groups, words or thresholds()
 
     def get(self, group: str, name: str) -> xr.Dataset:
         """Dataset ``name`` of ``group``."""
@@ -223,17 +233,13 @@ class Data:
             raise NotMeasured(f"data/{group}.nc holds no dataset {name}")
         return self.groups[group][name]
 
-    def event(self, group: str, name: str, friction: float | None = None, table: str = "events") -> Quantity:
-        """The bracket of an event in a ``table`` of them; ``friction`` None takes the first event of that name."""
-        events = self.get(group, table)
-        here = events["name"].values == name
-        if friction is not None and "friction" in events.variables:
-            here = here & (np.abs(events["friction"].values - friction) <= _SAME * abs(friction))
-        if not here.any():
-            with_friction = "" if friction is None else f" at friction {friction:g}"
-            raise NotMeasured(f"data/{group}.nc: {table} holds no {name}{with_friction}")
-        k = int(np.flatnonzero(here)[0])
-        return Quantity.bracket(float(events["low"].values[k]), float(events["high"].values[k]))
+    def event(
+        self, group: str, name: str, friction: float | None = None, table: str = "events", **at_: Any
+    ) -> Quantity:
+        """The bracket of an event in a ``table`` of them, the first with this name, this friction and other labels."""
+        labels = {"name": name, **at_} | ({} if friction is None else {"friction": friction})
+        found = at(self.get(group, table), **labels)
+        return Quantity.bracket(float(found["low"]), float(found["high"]))
 
 
 def needs(there: object, what: str) -> None:
@@ -255,3 +261,29 @@ def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
         masks[dimension] = masks.get(dimension, True) & same
         needs(masks[dimension].any(), f"nothing is stored at {name} = {label}")
     return dataset.isel({dimension: int(np.flatnonzero(mask)[0]) for dimension, mask in masks.items()})
+
+
+def rise(values: Sequence[Quantity]) -> Quantity:
+    """The smallest ratio of neighbours among positive ``values``; above 1 if each is larger than the one before."""
+    steps = [after.per(before) for before, after in pairwise(values)]
+    needs(steps, "fewer than two values to compare")
+    value, low, high = (min(getattr(step, name) for step in steps) for name in ("value", "low", "high"))
+    return Quantity(value, low, high, steps[0].kind)
+
+
+def first(curve: xr.Dataset, name: str, happened: ArrayLike) -> Quantity:
+    """Between which stored values of the coordinate ``name`` something has ``happened`` first, in their order.
+
+    Raises NotMeasured if it has at the first one.
+    """
+    values, place = curve[name].values, np.flatnonzero(happened)
+    needs(values.size and not (place.size and place[0] == 0), f"no {name} is stored at which it has not happened yet")
+    ends = sorted(values[place[0] - 1 : place[0] + 1]) if place.size else (values[-1], np.nan)
+    return Quantity.bracket(*ends)
+
+
+def materials(study: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+    """The cases of a study, by polydispersity and friction."""
+    for k in range(study.sizes["case"]):
+        one = study.isel(case=k)
+        yield f"polydispersity {float(one['polydispersity']):g}, friction {float(one['friction']):g}", one

@@ -4,26 +4,32 @@ A test has one of
 
 ``event``
     the name of an event in the group's dataset ``events`` (or in ``table``, or of another ``group``); with
-    a ``friction``, and ``prepared: true`` if the same event in other preparations makes the second column;
+    a ``friction`` and other labels ``at``, and ``prepared: true`` if the same event in other preparations makes the
+    second column, or ``prepared: only`` if nothing else is looked at;
 ``value``
     ``dataset.variable``, at the labels ``at`` or where coordinates lie in ``where``; ``over`` reduces what is left,
-    dimension by dimension (``max``, ``min``, ``first``, ``last``, ``mean`` and ``median`` with the interval of the
-    bootstrap over realizations, ``interval`` with the stored ends along that dimension, ``range`` of all entries);
+    dimension by dimension (``max``, ``min``, ``average``, ``first``, ``last``, or ``interval`` with the stored ends);
+    with ``unlike``, another one, their largest difference per its largest value;
 ``trend``
     the same, smallest ratio of neighbours along the dimension ``along`` (``falling: true`` turns it round);
 
-and may have ``per``, a number of the same kind by which it is divided, ``scale``, ``unit``, ``case`` (a value of what
-the text leaves open) or ``each`` (a test for each label of this coordinate), and a ``bound``; see
-:func:`granular_response_paper.claims.bounds.declared`.
+and may have ``per``, a number of the same kind by which it is divided, ``scale`` and ``case`` (a value of what the text
+leaves open). What else is measured has a function in the group's ``claims.py``, which ``numbers`` of the claim names,
+with its arguments if it has some. It is called with the data and yields for each case its name (a text or a
+:class:`Case`) and a number for each of the claim's tests, None for none, or with its bound where the data say it.
+
+Every other test has a ``bound``, see :func:`bound`, and may have a ``unit`` and say ``what`` is measured, with ``{}``
+for what a :class:`Case` is of. A claim may say what is ``missing`` in place of tests.
 """
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from importlib import resources
+from importlib import import_module, resources
 from typing import Any
 
 import numpy as np
@@ -32,112 +38,157 @@ import xarray as xr
 from granular_response.scene import text as yaml
 
 from . import preparations
-from .bootstrap import over_realizations
-from .bounds import DeclaredError, declared, rise
-from .claim import Claim, Data, Measure, Quantity, Test, at, needs
-from .words import Words
+from .bootstrap import RARE
+from .claim import Bound, Case, Claim, Data, NotMeasured, Numbers, Quantity, Test, at, needs, rise
+from .stored import ClaimsError
+from .words import WORDS, Words
 
 #: Beside a group's ``claims.py``.
 TEXTS = "claims.yaml"
 
-_KEYS = {"event", "table", "friction", "prepared", "value", "at", "where", "over", "trend", "along", "falling", "per"}
-_KEYS |= {"scale", "unit", "case", "each", "bound", "what", "group"}
-_SIMPLE: dict[str, Callable[..., Any]] = {"max": np.max, "min": np.min}
+_KINDS = ("event", "value", "trend")
+_KEYS = {*_KINDS, "table", "friction", "prepared", "at", "where", "over", "along", "falling", "per", "scale", "unit"}
+_KEYS |= {"case", "bound", "what", "group", "unlike"}
+
+#: By the kind of a bound: its ends, from its number v and the threshold t of its term.
+_ENDS: dict[str, Callable[[Any, float], Sequence[float]]] = {
+    "sampled": lambda v, t: ((1.0 - t) * v, v),
+    "between": lambda v, t: v,
+    "at most": lambda v, t: (-math.inf, v),
+    "less than": lambda v, t: (-math.inf, v),
+    "at least": lambda v, t: (v, math.inf),
+    "more than": lambda v, t: (v, math.inf),
+    "lower by": lambda v, t: (-math.inf, 1.0 - t),
+    "hardly lower by": lambda v, t: (1.0 - t, math.inf),
+    "higher by": lambda v, t: (1.0 + t, math.inf),
+    "same size": lambda v, t: (1.0 / (1.0 + t), 1.0 + t),
+    "order of magnitude": lambda v, t: (10.0 ** (1.0 - t), 10.0 ** (1.0 + t)),
+}
+_ENDS |= dict.fromkeys(WORDS, lambda v, t: ((1.0 - t) * v, (1.0 + t) * v))
 
 
-class Claims(list[Claim]):
-    """The claims of a figure group, by its ``package``: those declared, and those with a function.
+_SIMPLE: dict[str, Callable[..., Any]] = {"max": np.max, "min": np.min, "average": np.mean}
+
+
+def bound(what: Mapping[str, Any], words: Words) -> Bound:
+    """The bound of a test, with a number or the threshold t of a qualitative term.
+
+    ``about: 20`` (or another term) is off 20 by t of it at most; ``sampled: 20`` that the force 20 is the first sampled
+    one at or above the event; ``lower by``, ``higher by`` and ``hardly lower by`` compare a ratio with 1 -+ t; ``same
+    size`` asks for one from 1 / (1 + t) to 1 + t, ``order of magnitude`` for 10 on the logarithmic scale. The others
+    say what they are, and ``rare`` is one in forty. ``times`` and ``plus`` scale and shift both ends, ``word`` names
+    the term on which a number hangs. Raises ClaimsError for another key.
+    """
+    (kind, of), *_ = what.items()
+    if kind not in _ENDS:
+        raise ClaimsError(f"bound {kind}: must be one of {', '.join(_ENDS)}")
+    of = RARE if of == "rare" else of
+    word = of if isinstance(of, str) else kind if kind in WORDS else "about" if kind == "sampled" else ""
+    t = words[word] if word else 0.0
+    ends = _ENDS[kind](t if isinstance(of, str) else of, t)
+    least, most = (float(end) * what.get("times", 1.0) + what.get("plus", 0.0) for end in ends)
+    return Bound(least, most, what.get("word", word), strict=kind in ("less than", "more than"))
+
+
+def read(package: str) -> list[Claim]:
+    """The claims of a figure group, by its ``package``.
 
     ``claims.yaml`` has of each the ``place`` in the paper, the ``paper``'s sentence, what is ``measured``, and if they
     are not the usual: ``here``, ``figures`` (those that the place names), ``source``, ``modal``, ``derivation``,
-    ``disorder``, ``remark``; and the ``test`` or ``tests`` unless a function makes them. Raises DeclaredError for a
-    test that is not declared as it must be.
+    ``disorder``, ``remark``; and its ``test`` or ``tests``. Raises ClaimsError for a test that is not declared as it
+    must be.
     """
-
-    def __init__(self, package: str) -> None:
-        self.group = package.rpartition(".")[2]
-        self._texts = yaml.read(resources.files(package).joinpath(TEXTS).read_text("utf-8"))
-        for id, said in self._texts.items():
-            if tests := ([said["test"]] if "test" in said else said.get("tests")):
-                for one in tests:
-                    _check(f"{self.group}: {id}", one)
-                self._add(id, partial(_measured, self.group, said["measured"], tests))
-
-    def measures(self, id: str) -> Callable[[Measure], Measure]:
-        """Stands above the function that makes the tests of a claim. Raises KeyError if its text is missing."""
-
-        def measured(measure: Measure) -> Measure:
-            self._add(id, measure)
-            return measure
-
-        return measured
-
-    def _add(self, id: str, measure: Measure) -> None:
-        said = {"figures": _figures(self._texts[id]["place"]), **self._texts[id]}
-        said = {name: value for name, value in said.items() if name not in ("test", "tests")}
-        self.append(Claim(id, measure=measure, group=self.group, **said | {"figures": tuple(said["figures"])}))
-
-    def needs(self, there: object, what: str) -> None:
-        """Raises NotMeasured, which says ``what`` the group's datasets hold or lack, unless ``there`` is true."""
-        needs(there, f"data/{self.group}.nc: {what}")
+    group, found = package.rpartition(".")[2], []
+    for id, said in yaml.read(resources.files(package).joinpath(TEXTS).read_text("utf-8")).items():
+        tests = [said.pop("test")] if "test" in said else said.pop("tests", [])
+        numbers = said.pop("numbers", None)
+        for one in tests:
+            _check(f"{group}: {id}", one, declares=not numbers)
+        rows: Callable[[Data], Numbers] = partial(_rows, group, tests)
+        if numbers:
+            ((name, given),) = numbers.items() if isinstance(numbers, dict) else [(numbers, {})]
+            function = getattr(import_module(f"{package}.claims"), name, None)
+            if function is None:
+                raise ClaimsError(f"{group}: {id}: numbers: {name}, must be a function of the group's claims.py")
+            rows = partial(function, **given)
+        missing = said.pop("missing", None)
+        measure = partial(_missing, missing) if missing else partial(_measured, group, said["measured"], tests, rows)
+        figures = tuple(said.pop("figures", _figures(said["place"])))
+        found.append(Claim(id, measure=measure, group=group, figures=figures, **said))
+    return found
 
 
 def _figures(place: str) -> tuple[int, ...]:
     """The figures in a place of the paper such as "V.F, Fig. 17e, f"."""
-    named = "".join(re.findall(r"Figs?\. (.*)", place))
-    return tuple(int(number) for number in re.findall(r"\d+", named))
+    return tuple(int(number) for number in re.findall(r"\d+", "".join(re.findall(r"Figs?\. (.*)", place))))
 
 
-def _check(name: str, test: Mapping[str, Any]) -> None:
+def _check(name: str, test: Mapping[str, Any], declares: bool = True) -> None:
     if unknown := set(test) - _KEYS:
-        raise DeclaredError(f"{name}: unknown key {', '.join(sorted(unknown))}, must be of {', '.join(sorted(_KEYS))}")
-    if sum(kind in test for kind in ("event", "value", "trend")) != 1:
-        raise DeclaredError(f"{name}: a test needs one of event, value, trend")
+        raise ClaimsError(f"{name}: unknown key {', '.join(sorted(unknown))}, must be of {', '.join(sorted(_KEYS))}")
+    if sum(kind in test for kind in _KINDS) != declares:
+        raise ClaimsError(f"{name}: a test needs one of {', '.join(_KINDS)}, or its claim the numbers of a function")
 
 
-def _measured(group: str, what: str, tests: Sequence[Mapping[str, Any]], data: Data, words: Words) -> list[Test]:
+def _measured(
+    group: str,
+    what: str,
+    tests: Sequence[Mapping[str, Any]],
+    rows: Callable[[Data], Numbers],
+    data: Data,
+) -> list[Test]:
     found = []
-    for spec in tests:
-        name, unit, bound = spec.get("what", what), spec.get("unit", ""), declared(spec["bound"], words)
-        for case, number in _numbers(group, spec, data):
-            found.append(Test(name, number, bound, case, unit))
-        if spec.get("prepared"):
-            found += [
-                Test(name, number, bound, unit=unit, prepared=way)
-                for way, number in preparations.events(data, spec["event"], float(spec["friction"])).items()
-            ]
+    try:
+        for case, *numbers in rows(data):
+            for spec, number in zip(tests, numbers, strict=True):
+                if number is None:
+                    continue
+                number, asked = number if isinstance(number, tuple) else (number, bound(spec["bound"], data.words))
+                of, prepared = (case.of, case.prepared) if isinstance(case, Case) else ("", "")
+                name = spec.get("what", what).replace("{}", of)
+                number = number if isinstance(number, Quantity) else Quantity.exact(number)
+                found.append(Test(name, number, asked, str(case), spec.get("unit", ""), prepared))
+    except NotMeasured as lacking:
+        named = str(lacking).startswith("data/")
+        raise NotMeasured(str(lacking) if named else f"data/{group}.nc: {lacking}") from None
     return found
 
 
-def _numbers(group: str, spec: Mapping[str, Any], data: Data) -> Iterator[tuple[str, Quantity]]:
-    """The number, or one for each label, with the name of the case."""
-    dimension = spec.get("each")
-    if not dimension:
-        yield spec.get("case", ""), _number(group, spec, data)
-        return
-    source = spec.get("value") or spec["trend"]
-    labels = _where(data.get(group, source.partition(".")[0]), spec)[dimension].values.tolist()
-    needs(labels, f"data/{group}.nc: no {dimension} is stored in that range")
-    for label in labels:
-        shown = label if isinstance(label, str) else f"{dimension.replace('_', ' ')} {label:g}"
-        yield shown, _number(group, {**spec, "at": {**spec.get("at", {}), dimension: label}}, data)
+def _missing(what: str, data: Data) -> list[Test]:
+    raise NotMeasured(what)
+
+
+def _rows(group: str, tests: Sequence[Mapping[str, Any]], data: Data) -> Numbers:
+    """What declared tests measure: each one's number by itself, and the event's in other preparations."""
+    for k, spec in enumerate(tests):
+        before, after = [None] * k, [None] * (len(tests) - k - 1)
+        if spec.get("prepared") != "only":
+            yield spec.get("case", ""), *before, _number(group, spec, data), *after
+        if "prepared" in spec:
+            frictions = [one["friction"] for one in (spec, spec.get("per")) if one]
+            own = {frictions[-1]: _number(group, spec["per"], data)} if "per" in spec else {}
+            for way, ends in preparations.along(data, spec["event"], frictions, own):
+                yield way, *before, ends[0].per(ends[1]) if "per" in spec else ends[0], *after
 
 
 def _number(group: str, spec: Mapping[str, Any], data: Data) -> Quantity:
     if "event" in spec:
-        friction = spec.get("friction")
-        friction = None if friction is None else float(friction)
-        found = data.event(spec.get("group", group), spec["event"], friction, spec.get("table", "events"))
+        labels = {name: spec[name] for name in ("friction", "table") if name in spec} | spec.get("at", {})
+        found = data.event(spec.get("group", group), spec["event"], **labels)
     elif "trend" in spec:
-        values = _selected(group, spec, spec["trend"], data)
+        values = _selected(group, spec, spec["trend"], data).sortby(spec["along"])
         along = [_reduced(values.isel({spec["along"]: k}), spec) for k in range(values.sizes[spec["along"]])]
         found = rise(along[::-1] if spec.get("falling") else along)
     else:
-        found = _reduced(_selected(group, spec, spec["value"], data), spec)
+        values = _selected(group, spec, spec["value"], data)
+        if "unlike" in spec:
+            other = _selected(group, spec["unlike"], spec["unlike"]["value"], data)
+            values = np.abs(values.drop_vars(values.coords) - other.drop_vars(other.coords)).max() / other.max()
+        found = _reduced(values, spec)
     if "per" in spec:
         found = found.per(_number(group, spec["per"], data))
     scale = float(spec.get("scale", 1.0))
-    return found if scale == 1.0 else replace(found, **{k: scale * getattr(found, k) for k in ("value", "low", "high")})
+    return replace(found, value=scale * found.value, low=scale * found.low, high=scale * found.high)
 
 
 def _where(study: xr.Dataset, spec: Mapping[str, Any]) -> xr.Dataset:
@@ -148,27 +199,20 @@ def _where(study: xr.Dataset, spec: Mapping[str, Any]) -> xr.Dataset:
 
 
 def _selected(group: str, spec: Mapping[str, Any], source: str, data: Data) -> xr.DataArray:
-    name, variable = source.split(".")
-    study = at(_where(data.get(group, name), spec), **spec.get("at", {}))
-    if "along" in spec:
-        study = study.sortby(spec["along"])
-    return study[variable]
+    name, _, variable = source.rpartition(".")
+    return at(_where(data.get(spec.get("group", group), name), spec), **spec.get("at", {}))[variable]
 
 
 def _reduced(values: xr.DataArray, spec: Mapping[str, Any]) -> Quantity:
     for dimension, how in spec.get("over", {}).items():
-        if how in ("mean", "median"):
-            return over_realizations(values.values.reshape(-1), getattr(np, how))
         if how == "interval":
             value, low, high = values.values.tolist()
             return Quantity(value, low, high, "confidence", "bootstrap of the mean")
-        if how == "range":
-            return Quantity.range(values.values.reshape(-1))
         if how in ("first", "last"):
             values = values.isel({dimension: 0 if how == "first" else -1})
         elif how in _SIMPLE:
             values = values.reduce(_SIMPLE[how], dimension)
         else:
-            raise DeclaredError(f"over {dimension}: {how}, must be one of max, min, first, last, mean, median, range")
+            raise ClaimsError(f"over {dimension}: {how}, must be first, last, interval, {', '.join(_SIMPLE)}")
     needs(values.size == 1, f"{values.name}: {values.size} numbers in place of one")
     return Quantity.exact(float(values.values.reshape(-1)[0]))

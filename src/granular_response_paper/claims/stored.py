@@ -27,7 +27,7 @@ LISTED = {"id", "group", "part", "verdict", "star", "elsewhere", "here", "paper"
 
 
 class ClaimsError(GranularError):
-    """Nothing to judge, or no stored table. The message is one line."""
+    """A claim that is not declared as it must be, nothing to judge, or no stored table. The message is one line."""
 
 
 def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:

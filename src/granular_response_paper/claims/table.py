@@ -17,13 +17,13 @@ from typing import Any
 from granular_response.store import atomic
 from granular_response.store import files as store
 
-from ..registry import PAPER, Collection, collection_of, group_member, group_path
-from . import preparations, summary
+from ..registry import PAPER, Collection, collection_of, group_path
+from . import preparations
 from .claim import Claim, Data, Quantity
-from .declared import TEXTS, Claims
+from .declared import TEXTS, read
 from .stored import OUTPUT, PARTS, ClaimsError
-from .verdict import MEANINGS, SCHEME, Entry, judge, key, rounded
-from .words import TABLE
+from .verdict import MEANINGS, SCHEME, Verdict, judge, key, rounded
+from .words import WORDS
 
 #: Sections of the paper, in order.
 SECTIONS = ("abstract", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "beyond")
@@ -32,12 +32,10 @@ SECTIONS = ("abstract", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "beyon
 KINDS = {"bracket": "bracket", "confidence": "95 % confidence", "range": "range"}
 
 
-def claims_of(group: str) -> Sequence[Claim]:
-    """The claims of a figure group; none if it has neither ``claims.py`` nor ``claims.yaml``."""
-    found: Sequence[Claim] | None = group_member(group, "claims", "CLAIMS", optional=True)
-    if found is None and (group_path(group) / TEXTS).is_file():
-        return Claims(f"{collection_of(group).package}.{group}")
-    return found or ()
+def claims_of(group: str) -> list[Claim]:
+    """The claims of a figure group; none if it has no ``claims.yaml``."""
+    there = (group_path(group) / TEXTS).is_file()
+    return read(f"{collection_of(group).package}.{group}") if there else []
 
 
 def part_of(claim: Claim) -> str:
@@ -65,7 +63,7 @@ def groups_read(collection: Collection) -> list[str]:
 
 def collect(
     folder: str | os.PathLike[str] = "data",
-    others: str | os.PathLike[str] = summary.OUTPUT,
+    others: str | os.PathLike[str] = preparations.OUTPUT,
     collection: Collection = PAPER,
 ) -> Data:
     """The stored datasets that claims read, and the summary of ``others``, preparations that are not the paper's.
@@ -82,12 +80,12 @@ def _paths(folder: str | os.PathLike[str], collection: Collection) -> list[Path]
     return [Path(folder) / f"{group}.nc" for group in groups_read(collection)]
 
 
-def evaluate(data: Data, claims: Sequence[Claim]) -> list[Entry]:
+def evaluate(data: Data, claims: Sequence[Claim]) -> list[Verdict]:
     """The verdict on each claim."""
     return [judge(claim, data) for claim in claims]
 
 
-def document(entries: Sequence[Entry]) -> dict[str, Any]:
+def document(entries: Sequence[Verdict]) -> dict[str, Any]:
     """Everything about the verdicts, as it is stored; ``counts`` are scalars for ``dvc metrics show``."""
     counts = {
         part: {key(kind): sum(e.verdict == kind and part_of(e.claim) == part for e in entries) for kind in MEANINGS}
@@ -97,12 +95,12 @@ def document(entries: Sequence[Entry]) -> dict[str, Any]:
         "counts": counts,
         "scheme": list(SCHEME),
         "verdicts": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
-        "words": [{"word": w.name, "bound": w.bound, "sentence": w.sentence} for w in TABLE],
+        "words": [{"word": word, "bound": bound, "sentence": text} for word, (bound, text) in WORDS.items()],
         "table": [_row(entry) for entry in entries],
     }
 
 
-def _row(entry: Entry) -> dict[str, Any]:
+def _row(entry: Verdict) -> dict[str, Any]:
     claim = entry.claim
     return {
         **_named(claim, "id", "place", "paper", "source", "measured", "figures", "group"),
@@ -137,7 +135,7 @@ def _interval(quantity: Quantity | None) -> dict[str, Any]:
 def write(
     output: str | os.PathLike[str] = OUTPUT,
     folder: str | os.PathLike[str] = "data",
-    others: str | os.PathLike[str] = summary.OUTPUT,
+    others: str | os.PathLike[str] = preparations.OUTPUT,
     keep: Sequence[str | os.PathLike[str]] = (),
     collection: Collection = PAPER,
 ) -> dict[str, Any]:

@@ -26,10 +26,10 @@ SCHEME = (
     "tell or not tried.",
 )
 
-Verdict = Literal["supported", "in part", "not supported", "cannot tell", "not seen", "derivation", "not measured"]
+Kind = Literal["supported", "in part", "not supported", "cannot tell", "not seen", "derivation", "not measured"]
 
 #: Every verdict and what it says.
-MEANINGS: dict[Verdict, str] = {
+MEANINGS: dict[Kind, str] = {
     "supported": "the sentence holds for every value of what the text leaves open",
     "in part": "it holds for some of these values",
     "not supported": "it holds for none of them, and fails for one or more",
@@ -54,15 +54,16 @@ def together(outcomes: Iterable[Outcome]) -> Outcome:
     return "no" if "no" in found else "cannot tell" if "cannot tell" in found else "yes"
 
 
-def by_case(tests: Sequence[Test]) -> dict[str, Outcome]:
-    """The outcome for each value of what the text leaves open, in the paper's preparation."""
-    own = [test for test in tests if not test.prepared]
-    return {case: together(t.outcome for t in own if t.case == case) for case in dict.fromkeys(t.case for t in own)}
+def _outcomes(tests: Sequence[Test], of: str) -> dict[str, Outcome]:
+    """The outcome for each value of what the text leaves open (``of`` "case"), or each preparation ("prepared")."""
+    chosen = [test for test in tests if bool(test.prepared) is (of == "prepared")]
+    names = dict.fromkeys(getattr(test, of) for test in chosen)
+    return {name: together(test.outcome for test in chosen if getattr(test, of) == name) for name in names}
 
 
-def verdict_of(tests: Sequence[Test], claim: Claim | None = None) -> Verdict:
+def verdict_of(tests: Sequence[Test], claim: Claim | None = None) -> Kind:
     """Raises ValueError without a test in the paper's preparation."""
-    outcomes = set(by_case(tests).values())
+    outcomes = set(_outcomes(tests, "case").values())
     if not outcomes:
         raise ValueError("a claim needs a test in the paper's own preparation")
     if outcomes == {"yes"}:
@@ -76,16 +77,16 @@ def verdict_of(tests: Sequence[Test], claim: Claim | None = None) -> Verdict:
 
 def elsewhere_of(tests: Sequence[Test]) -> Elsewhere:
     """Whether the tests hold in every other preparation."""
-    found = [test.outcome for test in tests if test.prepared]
-    return together(found) if found else "not tried"
+    found = _outcomes(tests, "prepared")
+    return together(found.values()) if found else "not tried"
 
 
 @dataclass(frozen=True)
-class Entry:
-    """A claim with its verdict. ``star`` names the qualitative terms whose threshold, halved or doubled, changes it."""
+class Verdict:
+    """On a claim. ``star`` names the qualitative terms whose threshold, halved or doubled, changes it."""
 
     claim: Claim
-    verdict: Verdict
+    verdict: Kind
     tests: tuple[Test, ...] = ()
     missing: str = ""
     elsewhere: Elsewhere = "not tried"
@@ -106,45 +107,42 @@ class Entry:
     @property
     def cases(self) -> str:
         """For which values of what the text leaves open it holds, fails or is open."""
-        found = by_case(self.tests)
+        found = _outcomes(self.tests, "case")
         return _listed(found, "Supported for", "Not supported for", "Cannot tell for") if len(found) > 1 else ""
 
     @property
     def preparations(self) -> str:
         """In which other preparations it holds, fails or is open."""
-        ways = dict.fromkeys(test.prepared for test in self.tests if test.prepared)
-        found = {way: together(test.outcome for test in self.tests if test.prepared == way) for way in ways}
-        return _listed(found, "Holds", "Fails", "Open")
+        return _listed(_outcomes(self.tests, "prepared"), "Holds", "Fails", "Open")
 
 
-def _listed(found: Mapping[str, Outcome], yes: str, no: str, open_: str) -> str:
-    titles: dict[Outcome, str] = {"yes": yes, "no": no, "cannot tell": open_}
-    parts = {title: [name for name, one in found.items() if one == outcome] for outcome, title in titles.items()}
-    return " ".join(f"{title}: {'; '.join(names)}." for title, names in parts.items() if names)
+def _listed(found: Mapping[str, Outcome], *titles: str) -> str:
+    names = [[name for name, one in found.items() if one == outcome] for outcome in ("yes", "no", "cannot tell")]
+    return " ".join(f"{title}: {'; '.join(some)}." for title, some in zip(titles, names, strict=True) if some)
 
 
-def judge(claim: Claim, data: Data) -> Entry:
+def judge(claim: Claim, data: Data) -> Verdict:
     """Make the tests of a claim on stored data.
 
     It is not measured if its function finds too little: a variable, a label, or all that is left to look at is missing.
     """
+
+    def under(word: str, factor: float) -> Kind:
+        """The verdict with the threshold of one term changed."""
+        return verdict_of(claim.measure(Data(data.groups, words(word, factor))), claim)
+
     try:
-        tests = tuple(claim.measure(data, words()))
+        tests = tuple(claim.measure(data))
         verdict = verdict_of(tests, claim)
         elsewhere = elsewhere_of(tests)
         used = sorted({test.bound.word for test in tests if test.bound.word and not test.prepared})
-        star = tuple(word for word in used if any(_with(claim, data, word, f) != verdict for f in FACTORS))
+        star = tuple(word for word in used if any(under(word, f) != verdict for f in FACTORS))
     except NotMeasured as missing:
-        return Entry(claim, "not measured", missing=str(missing))
+        return Verdict(claim, "not measured", missing=str(missing))
     except TOO_LITTLE as error:
         problem = " ".join(f"{type(error).__name__}: {error}".split())
-        return Entry(claim, "not measured", missing=f"data/{claim.group}.nc holds too little ({problem})")
-    return Entry(claim, verdict, tests, "", elsewhere, star)
-
-
-def _with(claim: Claim, data: Data, word: str, factor: float) -> Verdict:
-    """The verdict with the threshold of one term changed."""
-    return verdict_of(claim.measure(data, words(word, factor)), claim)
+        return Verdict(claim, "not measured", missing=f"data/{claim.group}.nc holds too little ({problem})")
+    return Verdict(claim, verdict, tests, "", elsewhere, star)
 
 
 def rounded(value: float) -> float | None:

@@ -10,49 +10,34 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
-
-@dataclass(frozen=True)
-class Word:
-    """A word of the paper and its bound, a part of what is compared."""
-
-    name: str
-    bound: float
-    sentence: str
-
-
-TABLE: tuple[Word, ...] = (
-    Word(
-        "about",
+#: Each term with its threshold, a part of what is compared, and what it says.
+WORDS: dict[str, tuple[float, str]] = {
+    "about": (
         0.25,
         "About 20 is within a quarter of 20: what rounds to a number of one digit. Of a sampled force, the event "
         "itself lies at most that much below it.",
     ),
-    Word(
-        "almost",
+    "almost": (
         math.log10(2.0),
         "Almost an order of magnitude, on the logarithmic scale to which the paper points: within a factor of two, 0.3 "
         "of a decade, of ten. It calls 4/0.75 and 6/0.75 so.",
     ),
-    Word("slightly", 0.25, "Slightly smaller, a little below, is at most a quarter less."),
-    Word("small", 0.25, "Small is at most a quarter of what it is compared with."),
-    Word("nearly", 0.1, "Nearly the same, nearly independent, saturated: changed by at most a tenth."),
-    Word("similar", 0.5, "Similar, resembling: the larger exceeds the smaller, or they differ, by at most half."),
-    Word("few per cent", 0.05, "Only a few per cent is at most five."),
-    Word(
-        "visible",
+    "slightly": (0.25, "Slightly smaller, a little below, is at most a quarter less."),
+    "small": (0.25, "Small is at most a quarter of what it is compared with."),
+    "nearly": (0.1, "Nearly the same, nearly independent, saturated: changed by at most a tenth."),
+    "similar": (0.5, "Similar, resembling: the larger exceeds the smaller, or they differ, by at most half."),
+    "few per cent": (0.05, "Only a few per cent is at most five."),
+    "visible": (
         0.01,
         "What a printed curve shows: a dip, a peak or a change of a hundredth of the largest value. No effect is less.",
     ),
-    Word("holds", 0.05, "Holds, reflects exactly, agrees: the symbols of a plot, a twentieth of its height, overlap."),
-    Word("quite well", 0.2, "Quite well: seen to differ, and by at most a fifth."),
-    Word("gradual", 0.5, "Gradual: no step between neighbouring forces by half of the largest response; sharp: one."),
-    Word("marked", 0.5, "Marked, significant, strong, considerable, very distinct: by at least half."),
-    Word("several", 3.0, "Several hundred is at least three hundred."),
-)
-
-WORDS: dict[str, Word] = {word.name: word for word in TABLE}
+    "holds": (0.05, "Holds, reflects exactly, agrees: the symbols of a plot, a twentieth of its height, overlap."),
+    "quite well": (0.2, "Quite well: seen to differ, and by at most a fifth."),
+    "gradual": (0.5, "Gradual: no step between neighbouring forces by half of the largest response; sharp: one."),
+    "marked": (0.5, "Marked, significant, strong, considerable, very distinct: by at least half."),
+    "several": (3.0, "Several hundred is at least three hundred."),
+}
 
 #: Thresholds by term.
 Words = Mapping[str, float]
@@ -63,7 +48,7 @@ FACTORS = (0.5, 2.0)
 
 def words(word: str | None = None, factor: float = 1.0) -> dict[str, float]:
     """The thresholds of all terms, that of ``word`` multiplied by ``factor``. Raises KeyError for an unknown one."""
-    found = {name: entry.bound for name, entry in WORDS.items()}
+    found = {name: threshold for name, (threshold, _) in WORDS.items()}
     if word is not None:
         found[word] *= factor
     return found

@@ -21,11 +21,12 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.timestep import stability_limit
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS, flags
+from granular_response.studies import LoadPath, by_motion, lost
+from granular_response.studies.measures import wall_margin
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED, OUTCOMES
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup
 from granular_response_paper.parameters import material
 from granular_response_paper.records import column, columns, record
-from granular_response_paper.slab_response import LoadPath, by_motion, lost, wall_margin
 
 #: Bins of the contact angles over half a turn.
 ANGLE_BINS = 36

@@ -16,7 +16,7 @@ from typing import Any
 import yaml
 
 from granular_response_paper import digitised, report
-from granular_response_paper.claims import summary, table
+from granular_response_paper.claims import preparations, table
 from granular_response_paper.pipeline.imports import closure, file_of
 from granular_response_paper.registry import PAPER, Collection
 
@@ -83,7 +83,7 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
         [] if not _surveyed(root, collection) else [Path(os.path.relpath(root / "survey" / "data", base)).as_posix()]
     )
     judged = [f"data/{group}.nc" for group in table.groups_read(collection)]
-    judged += [summary.OUTPUT.as_posix()] if collection == PAPER else []
+    judged += [preparations.OUTPUT.as_posix()] if collection == PAPER else []
     pictures = [f"figures/{group}" for group in groups]
     documents = Path(os.path.relpath(root / "docs" / "_generated", base)).as_posix()
     written = [f"{documents}/{name}" for name in report.fragments(root, collection)]
@@ -135,7 +135,7 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
         stages["summary"] = {
             "desc": "What the claims of the paper read of other preparations",
             "cmd": "granular-response-paper summary --data data/preparation.nc -o summary.nc",
-            "deps": ["data/preparation.nc", *code([f"{_PAPER}.claims.summary"])],
+            "deps": ["data/preparation.nc", *code([f"{_PAPER}.claims.preparations"])],
         }
     return {"stages": stages}
 

@@ -40,7 +40,7 @@ from granular_response_paper.ensembles.realizations import Realization, ensemble
 from granular_response_paper.survey.parameters import Parameters
 
 #: The sources that every outcome depends on, and those of a realization of an ensemble.
-LIBRARY = ("contact", "kernels", "linalg", "machine", "observe", "scene", "solvers", "state")
+LIBRARY = ("contact", "kernels", "linalg", "machine", "observe", "scene", "solvers", "state", "studies")
 MECHANICS = (*LIBRARY, f"{PACKAGE}/slab_response.py")
 SOURCES = (*MECHANICS, f"{PACKAGE}/ensembles")
 

@@ -2,48 +2,22 @@
 
 from __future__ import annotations
 
-import xarray as xr
+from granular_response_paper.claims.claim import Data, Numbers, Quantity
 
-from granular_response_paper.claims import bounds
-from granular_response_paper.claims.claim import Bound, Data, Quantity, Test
-from granular_response_paper.claims.declared import Claims
-from granular_response_paper.claims.words import Words
-
-CLAIMS = Claims(__package__)
-
-#: Of the layers: the weight of a piece of the slab that is as wide as deep. And how the sides are confined, in words.
-OF_WEIGHT = 2.0
+#: How the sides are confined, in words.
 SIDES = {"walls": "between walls", "constant": "constant confinement", "as weight": "confined as weight"}
 
 
-def _series(data: Data, event: str) -> list[tuple[str, xr.Dataset]]:
-    """What each series of layers is, and its powers of the layers."""
+def powers(data: Data, by_choice: bool = True, **events: str) -> Numbers:
+    """B8, B9: powers of the layers of events, in each series of layers.
+
+    Without those in which the power is that of the weight ``by_choice`` of the confinement, if it is false.
+    """
     study = data.get("crossover_scaling", "powers")
-    every = (study.isel(series=k).sel(event=event) for k in range(study.sizes["series"]))
-    found = [one for one in every if str(one["varied"].values) == "layers"]
-    CLAIMS.needs(found, "powers holds no series of layers")
-    return [(f"friction {float(one['friction']):g}, {SIDES[str(one['confined'].values)]}", one) for one in found]
-
-
-def _power(one: xr.Dataset) -> Quantity:
-    value, least, largest = one["exponent"].values.tolist()
-    return Quantity.range((least, largest), value)
-
-
-@CLAIMS.measures("B8")
-def deep_and_shallow(data: Data, words: Words) -> list[Test]:
-    bound = Bound(0.0, strict=True)
-    return [Test("power of the layers", _power(one), bound, name) for name, one in _series(data, "crossover")]
-
-
-@CLAIMS.measures("B9")
-def of_weight(data: Data, words: Words) -> list[Test]:
-    """Of the series in which the power is not that of the weight by choice of the confinement."""
-    tests = [
-        Test("power of the layers", _power(one), bounds.near(words, "nearly", OF_WEIGHT), f"{what}, {name}")
-        for event, what in (("reaches_floor", "open region at the floor"), ("crossover", "two peaks"))
-        for name, one in _series(data, event)
-        if float(one["friction"]) > 0.0 or str(one["confined"].values) != "as weight"
-    ]
-    CLAIMS.needs(tests, "powers holds no series in which gravity could decide")
-    return tests
+    for event, what in events.items():
+        for one in (study.isel(series=k).sel(event=event) for k in range(study.sizes["series"])):
+            friction, confined = float(one["friction"]), str(one["confined"].values)
+            if str(one["varied"].values) == "layers" and (by_choice or friction > 0.0 or confined != "as weight"):
+                value, *ends = one["exponent"].values.tolist()
+                name = f"friction {friction:g}, {SIDES[confined]}"
+                yield ", ".join(filter(None, (what, name))), Quantity.range(ends, value)

@@ -8,13 +8,8 @@ import numpy as np
 import xarray as xr
 
 from granular_response.state import FloatArray
-from granular_response_paper.claims import bounds
 from granular_response_paper.claims.bootstrap import over_brackets, over_realizations
-from granular_response_paper.claims.claim import Data, Quantity, Test
-from granular_response_paper.claims.declared import Claims
-from granular_response_paper.claims.words import Words
-
-CLAIMS = Claims(__package__)
+from granular_response_paper.claims.claim import Data, Numbers, Quantity, materials
 
 #: Realizations from which on they have an interval of confidence.
 FEWEST = 3
@@ -34,34 +29,21 @@ def _brackets(event: xr.Dataset) -> list[Quantity]:
     return [Quantity.bracket(*ends) for ends in zip(event["low"].values, event["high"].values, strict=True)]
 
 
-@CLAIMS.measures("B2")
-def ranges(data: Data, words: Words) -> list[Test]:
-    events, tests = data.get("hysteresis", "events"), []
-    for case in range(events.sizes["case"]):
-        one = events.isel(case=case)
-        linear, reversible = (_brackets(one.sel(event=name)) for name in ("linear_range", "reversible_range"))
+def ranges(data: Data) -> Numbers:  # B2
+    for name, one in materials(data.get("hysteresis", "events")):
+        linear, reversible = (_brackets(one.sel(event=event)) for event in ("linear_range", "reversible_range"))
         there = [k for k, end in enumerate(linear) if np.isfinite(end.low)]  # realizations that are
         if any(linear[k].happens for k in there):
-            found = over_packings([reversible[k].per(linear[k]) for k in there])
-            tests.append(
-                Test("reversible range per linear one", found, bounds.near(words, "about"), bounds.material(one))
-            )
-    CLAIMS.needs(tests, "events holds no end of a linear range")
-    return tests
+            yield name, over_packings([reversible[k].per(linear[k]) for k in there])
 
 
-@CLAIMS.measures("B3")
-def repeated(data: Data, words: Words) -> list[Test]:
-    loops, tests = data.get("hysteresis", "loops"), []
-    for case in range(loops.sizes["case"]):
-        one = loops.isel(case=case)
-        one = one.isel(turn=int(np.flatnonzero(np.isfinite(one["force"].values))[-1]))
-        name = f"{bounds.material(one)}, {float(one['force']):g} mg"
-        lost = _of_realizations((one["slid_again"] + one["crossed_again"]).values / one["work"].values)
-        floor = _of_realizations(one["floor_repeated"].values)
-        for what, found in (("part of the work lost again", lost), ("change of the response", floor)):
-            tests.append(Test(what, found, bounds.at_most(words, "visible"), name, "%"))
-    return tests
+def repeated(data: Data) -> Numbers:
+    """B3: the part of the work that is lost again, and the change of the response."""
+    for name, case in materials(data.get("hysteresis", "loops")):
+        one = case.isel(turn=int(np.flatnonzero(np.isfinite(case["force"].values))[-1]))
+        lost = (one["slid_again"] + one["crossed_again"]).values / one["work"].values
+        numbers = (_of_realizations(values) for values in (lost, one["floor_repeated"].values))
+        yield f"{name}, {float(one['force']):g} mg", *numbers
 
 
 def _of_realizations(values: FloatArray) -> Quantity:

@@ -4,16 +4,9 @@ from __future__ import annotations
 
 import xarray as xr
 
-from granular_response_paper.claims import bounds
-from granular_response_paper.claims.claim import Bound, Data, Quantity, Test
-from granular_response_paper.claims.declared import Claims
-from granular_response_paper.claims.words import Words
+from granular_response_paper.claims.claim import Data, Numbers, Quantity, needs
 
 GROUP = "rolling_resistance"
-CLAIMS = Claims(__package__)
-
-#: Of the paper's pile with friction (Fig. 17). And mean radii below which a length of a continuum is none: one disk's.
-FRICTION, RADIUS = 0.94, 1.0
 
 
 def _held(data: Data, rolling: int) -> dict[str, xr.Dataset]:
@@ -28,56 +21,42 @@ def _held(data: Data, rolling: int) -> dict[str, xr.Dataset]:
     }
 
 
-@CLAIMS.measures("B14")
-def without_resistance(data: Data, words: Words) -> list[Test]:
-    tests = []
+def without_resistance(data: Data) -> Numbers:  # B14
     for name, one in _held(data, 0).items():
-        CLAIMS.needs(float(one["rolling_friction"]) == 0.0, "thresholds holds nothing without rolling resistance")
-        least, loose = (
-            Quantity.bracket(float(one["low"]), float(one["high"])),
-            Quantity.exact(float(one["loose_disks"])),
-        )
-        tests.append(Test("least friction that holds the core", least, Bound(FRICTION), f"the core, {name}"))
-        tests.append(Test("disks that leave the pile", loose, Bound(1.0), f"every disk, {name}"))
-    return tests
+        needs(float(one["rolling_friction"]) == 0.0, "thresholds holds nothing without rolling resistance")
+        yield f"the core, {name}", Quantity.bracket(float(one["low"]), float(one["high"])), None
+        yield f"every disk, {name}", None, float(one["loose_disks"])
 
 
-@CLAIMS.measures("B15")
-def no_dip(data: Data, words: Words) -> list[Test]:
+def no_dip(data: Data) -> Numbers:  # B15
     piles = data.get(GROUP, "piles").sel(case="resisting")
-    dips = {f"friction of Fig. 17, {int(n)} layers": float(piles["floor_dip"].sel(layers=n)) for n in piles["layers"]}
-    dips |= {f"least friction, {name}": float(one["floor_dip"]) for name, one in _held(data, -1).items()}
-    visible = bounds.at_most(words, "visible")
-    return [Test("dip per largest force", Quantity.exact(dip), visible, case, "%") for case, dip in dips.items()]
+    for size in piles["layers"]:
+        yield f"friction of Fig. 17, {int(size)} layers", float(piles["floor_dip"].sel(layers=size))
+    for name, one in _held(data, -1).items():
+        yield f"least friction, {name}", float(one["floor_dip"])
 
 
 def _slabs(data: Data, name: str = "slabs") -> xr.Dataset:
     found = data.get(GROUP, name).sortby("rolling_friction")
-    CLAIMS.needs(found.sizes["rolling_friction"] > 1, f"{name} holds one rolling friction, there is nothing to compare")
+    needs(found.sizes["rolling_friction"] > 1, f"{name} holds one rolling friction, there is nothing to compare")
     return found
 
 
-@CLAIMS.measures("B16")
-def small_load(data: Data, words: Words) -> list[Test]:
+def small_load(data: Data) -> Numbers:  # B16
     response = _slabs(data)["floor_response"].isel(load=0)
     without = response.isel(rolling_friction=0)
     change = abs(response - without).max("floor_disk") / without.max("floor_disk")
-    found = {f"friction {float(mu):g}": Quantity.range(change.sel(friction=mu).values[1:]) for mu in change["friction"]}
-    least = bounds.at_least(words, "nearly")
-    return [Test("change per largest response", one, least, case, "%") for case, one in found.items()]
+    for mu in change["friction"]:
+        yield f"friction {float(mu):g}", Quantity.range(change.sel(friction=mu).values[1:])
 
 
-@CLAIMS.measures("B17")
-def cosserat(data: Data, words: Words) -> list[Test]:
+def cosserat(data: Data) -> Numbers:
+    """B17: what is left of the squares, and the Cosserat length."""
     slabs, turned = (_slabs(data, name).isel(rolling_friction=slice(1, None)) for name in ("slabs", "torques"))
     loads = [(f"{load:g} mg", slabs.sel(load=load), [""]) for load in slabs["load"].values]
     loads += [(f"torque {load:g}", turned.sel(torque=load), ["", "decay_"]) for load in turned["torque"].values]
-    tests = []
     for mu in slabs["friction"].values.tolist():
         for load, one, fits in loads:
             for fit in fits:
-                left, length = (Quantity.range(one[f"{fit}{of}"].sel(friction=mu)) for of in ("unexplained", "length"))
-                case = f"friction {mu:g}, {load}{', decay' if fit else ''}"
-                tests.append(Test("part of the squares left", left, bounds.at_most(words, "quite well"), case, "%"))
-                tests.append(Test("Cosserat length in radii", length, Bound(RADIUS), case))
-    return tests
+                numbers = (Quantity.range(one[f"{fit}{of}"].sel(friction=mu)) for of in ("unexplained", "length"))
+                yield f"friction {mu:g}, {load}{', decay' if fit else ''}", *numbers

@@ -1,4 +1,4 @@
-"""Claims F4 to F10: the ordered slab without friction (Sec. IV)."""
+"""Claims F5 to F10: the ordered slab without friction (Sec. IV)."""
 
 from __future__ import annotations
 
@@ -10,13 +10,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.state import FloatArray
-from granular_response_paper.claims import bounds
-from granular_response_paper.claims.claim import Bound, Data, Quantity, Test
-from granular_response_paper.claims.declared import Claims
-from granular_response_paper.claims.words import Words
+from granular_response_paper.claims.claim import Case, Data, Numbers, Quantity, needs
 
 GROUP = "frictionless_crossover"
-CLAIMS = Claims(__package__)
 
 #: The paper's stiffness of contacts.
 STIFFNESS = 3000.0
@@ -39,24 +35,15 @@ def _open_regions(data: Data) -> list[tuple[float, NDArray[Any]]]:
     return found
 
 
-@CLAIMS.measures("F5a")
-def horizontal(data: Data, words: Words) -> list[Test]:
-    least = Quantity.exact(min(share for share, _ in _open_regions(data)))
-    return [Test("horizontal part of the opened contacts", least, bounds.hardly_lower(words, "visible"), unit="%")]
+def horizontal(data: Data) -> Numbers:  # F5a
+    yield "", min(share for share, _ in _open_regions(data))
 
 
-@CLAIMS.measures("F5b")
-def teardrop(data: Data, words: Words) -> list[Test]:
+def teardrop(data: Data) -> Numbers:  # F5b
     widest = _open_regions(data)[-1][1]
     depth = data.get(GROUP, "response")["teardrop_depth"].values / ROW
-    CLAIMS.needs(len(widest) > 3, "no region of four rows that has not reached the floor")
-    ratio = Quantity.exact(widest.max() / max(widest[0], widest[-1]))
-    least, grown = Quantity.exact(np.diff(depth).min()), Quantity.exact(depth.max() - depth[0])
-    return [
-        Test("widest row per the wider end", ratio, Bound(1.0, strict=True)),
-        Test("smallest growth with the force, rows (known to half a row)", least, Bound(-0.5)),
-        Test("growth of the depth, rows", grown, Bound(0.5)),
-    ]
+    needs(len(widest) > 3, "no region of four rows that has not reached the floor")
+    yield "", widest.max() / max(widest[0], widest[-1]), np.diff(depth).min(), depth.max() - depth[0]
 
 
 def size_in_steps(size: FloatArray, step: float) -> Quantity:
@@ -76,25 +63,18 @@ def _slabs(data: Data, name: str) -> xr.Dataset:
     return study.isel(slab=np.isclose(study["normal_stiffness"].values, STIFFNESS))
 
 
-@CLAIMS.measures("F6")
-def teardrop_and_depth(data: Data, words: Words) -> list[Test]:
+def teardrop_and_depth(data: Data) -> Numbers:  # F6
     slabs = _slabs(data, "regions")
     layers = slabs["layers"].values
     use = (slabs["reaches_floor"].values[0] == 0) & (slabs["teardrop_depth"].values[0] > 2.0 * ROW)
-    tests = []
     for k in range(1, len(layers)):
         for what, step in (("depth", ROW), ("width", DISK)):
             thin, deep = (size_in_steps(slabs[f"teardrop_{what}"].values[slab, use], step) for slab in (0, k))
-            bound = bounds.hardly_lower(words, "slightly")
-            tests.append(
-                Test(f"{what} per that in {layers[0]:g} layers", deep.per(thin), bound, f"{layers[k]:g} layers")
-            )
-    return tests
+            yield Case(f"{layers[k]:g} layers", f"{what} per that in {layers[0]:g}"), deep.per(thin)
 
 
-@CLAIMS.measures("F7")
-def deep_and_shallow(data: Data, words: Words) -> list[Test]:
-    tests = {}
+def deep_and_shallow(data: Data) -> Numbers:  # F7
+    found = {}
     for name in ("sizes", "widths"):
         slabs = _slabs(data, name)
         slabs = slabs.isel(slab=slabs["open_at_rest"].values == 0)
@@ -104,10 +84,8 @@ def deep_and_shallow(data: Data, words: Words) -> list[Test]:
             if layers[thin] == min(layers) < layers[deep] and (name == "sizes" or abs(row[thin] - row[deep]) <= 1):
                 shallow, other = (Quantity.bracket(*slabs["crossover_bracket"].values[k]) for k in (thin, deep))
                 case = f"{layers[deep]} x {row[deep]} against {layers[thin]} x {row[thin]} disks"
-                what = "crossover force, deep per shallow"
-                tests[case] = Test(what, other.per(shallow), Bound(1.0, strict=True), case)
-    CLAIMS.needs(tests, "sizes and widths hold no pair of slabs whose horizontal contacts all touch at rest")
-    return list(tests.values())
+                found[case] = other.per(shallow)
+    yield from found.items()
 
 
 def _between(data: Data) -> xr.Dataset:
@@ -116,46 +94,33 @@ def _between(data: Data) -> xr.Dataset:
     stiffness = study["normal_stiffness"].values
     chosen = (stiffness >= 999.0) & (stiffness <= 1.001e5)
     there = chosen.any() and stiffness[chosen].min() < 1001.0 and stiffness[chosen].max() > 0.99e5
-    CLAIMS.needs(there, "stiffness does not span 1000 to 1e5")
+    needs(there, "stiffness does not span 1000 to 1e5")
     return study.isel(normal_stiffness=chosen)
 
 
-@CLAIMS.measures("F8")
-def stiffness_response(data: Data, words: Words) -> list[Test]:
+def stiffness_response(data: Data) -> Numbers:  # F8
     study = _between(data)
     values = study["response_at_centre"].transpose("normal_stiffness", "force").values
-    change, most = np.ptp(values, axis=0) / np.abs(values[-1]), Bound(most=(1.0 + words["about"]) * 0.02, word="about")
-    return [
-        Test("change of the response at x = 0", Quantity.exact(one), most, f"{force:g} mg", "%")
-        for force, one in zip(study["force"].values, change, strict=True)
-    ]
+    for force, low, high, last in zip(study["force"].values, values.min(0), values.max(0), values[-1], strict=True):
+        yield f"{force:g} mg", (high - low) / abs(last)
 
 
-@CLAIMS.measures("F9")
-def stiffness_teardrop(data: Data, words: Words) -> list[Test]:
+def stiffness_teardrop(data: Data) -> Numbers:
+    """F9: what depth and width change by at high stiffness, and how the depth grows."""
     study = data.get(GROUP, "stiffness").sortby("normal_stiffness")
     high = study["normal_stiffness"].values >= 2000.0
     depth, width = study["teardrop_depth"].values, study["teardrop_width"].values
     use = (depth[-1] > 2.0 * ROW) & ~study["reaches_floor"].values.astype(bool).any(axis=0)
-    CLAIMS.needs(high.sum() > 1 and not high.all(), "stiffness holds too few stiffnesses to compare")
-    tests = []
-    for what, size in (("depth", depth[:, use]), ("width", width[:, use])):
-        spread = Quantity.exact((np.ptp(size[high], axis=0) / size[-1]).max())
-        tests.append(Test(f"change of the {what} from 2000 on", spread, bounds.at_most(words, "nearly"), unit="%"))
-    grown = Quantity.exact(((depth[-1] - depth[0])[use] / ROW).max())
-    return [*tests, Test("growth of the depth, rows", grown, Bound(0.5))]
+    needs(high.sum() > 1 and not high.all(), "stiffness holds too few stiffnesses to compare")
+    spread = ((np.ptp(size[high], axis=0) / size[-1]).max() for size in (depth[:, use], width[:, use]))
+    yield "", *spread, ((depth[-1] - depth[0])[use] / ROW).max()
 
 
-@CLAIMS.measures("F10")
-def crossover_and_stiffness(data: Data, words: Words) -> list[Test]:
+def crossover_and_stiffness(data: Data) -> Numbers:  # F10
     study = _between(data)
     by_dip = np.moveaxis(study["crossovers"].values, 1, 0)
     definitions = {"two peaks, each above the response at x = 0": study["crossover_bracket"].values}
     definitions |= {f"a dip above {dip:.1%}": one for dip, one in zip(study["dip"].values, by_dip, strict=True)}
-    tests = []
     for case, brackets in definitions.items():
         ratios = [Quantity.bracket(*one).per(Quantity.bracket(*brackets[-1])) for one in brackets[:-1]]
-        ends = [min(r.low for r in ratios), max(r.high for r in ratios)]
-        found = Quantity.range(ends, ratios[0].value)
-        tests.append(Test("crossover force per that at the largest k_N", found, bounds.near(words, "nearly"), case))
-    return tests
+        yield case, Quantity.range([end for r in ratios for end in (r.low, r.high)], ratios[0].value)

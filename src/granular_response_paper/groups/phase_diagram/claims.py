@@ -10,24 +10,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, pairwise
+from itertools import combinations, groupby, pairwise, product
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.special import betaincinv
 
 from granular_response.scene.lattice import SlabPacking, touching_largest
 from granular_response.state import FloatArray
-from granular_response_paper.claims import bounds
-from granular_response_paper.claims.bootstrap import LEVELS, RARE, of_draws, over_realizations, part_of
-from granular_response_paper.claims.claim import Bound, Data, Quantity, Test, at
-from granular_response_paper.claims.declared import Claims
-from granular_response_paper.claims.words import Words
+from granular_response_paper.claims.bootstrap import LEVELS, of_draws, over_realizations, part_of
+from granular_response_paper.claims.claim import Bound, Case, Data, Numbers, Quantity, at, needs
 from granular_response_paper.survey.crossover import ABOVE, BELOW, FOUND, counted
 
 GROUP = "phase_diagram"
-CLAIMS = Claims(__package__)
 
 #: The initial lattice of this project, and the literal one.
 USUAL, LITERAL = "touching-largest", "2.0"
@@ -42,89 +38,80 @@ TOLERANCES = (0.01, 0.02, 0.05)
 BOOTSTRAP = "bootstrap of realizations"
 
 
-def _case(study: xr.Dataset, polydispersity: float, friction: float, start: str = USUAL) -> xr.Dataset:
-    """The case with these numbers. Raises NotMeasured if there is none."""
-    here = np.isclose(study["polydispersity"].values, polydispersity) & np.isclose(study["friction"].values, friction)
-    here &= study["lattice_constant"].values.astype(str) == start
-    CLAIMS.needs(here.any(), f"no case of polydispersity {polydispersity:g}, friction {friction:g}, start {start}")
-    return study.isel(case=int(np.flatnonzero(here)[0]))
+class Slab(NamedTuple):
+    """What a case is: its polydispersity, its initial lattice and its friction."""
 
+    polydispersity: float
+    start: str
+    friction: float
 
-def _disorders(study: xr.Dataset) -> list[float]:
-    return sorted({delta for delta in study["polydispersity"].values.tolist() if delta > 0.0})
+    def of(self, study: xr.Dataset) -> xr.Dataset:
+        """The case of a study. Raises NotMeasured if there is none."""
+        return at(study, polydispersity=self.polydispersity, friction=self.friction, lattice_constant=self.start)
 
+    @property
+    def title(self) -> str:
+        return f"polydispersity {self.polydispersity:g}, friction {self.friction:g}"
 
-def _starts(study: xr.Dataset, polydispersity: float) -> list[str]:
-    """The stored initial lattices: this project's, then by their constants."""
-    stored = set(
-        study["lattice_constant"].values[np.isclose(study["polydispersity"].values, polydispersity)].astype(str)
-    )
-    return [USUAL] * (USUAL in stored) + sorted(stored - {USUAL})
-
-
-def _frictions(study: xr.Dataset, polydispersity: float, start: str) -> list[float]:
-    here = np.isclose(study["polydispersity"].values, polydispersity)
-    here &= study["lattice_constant"].values.astype(str) == start
-    return sorted(set(study["friction"].values[here].tolist()))
-
-
-def _every(study: xr.Dataset, friction: float | None = None) -> Iterator[tuple[float, str, float]]:
-    """Polydispersity, start and friction of every case of disorder, or of those with one friction."""
-    for delta in _disorders(study):
-        for start in _starts(study, delta):
-            for mu in _frictions(study, delta, start):
-                if friction in (None, mu):
-                    yield delta, start, mu
-
-
-def _disorder(polydispersity: float) -> str:
-    return f"polydispersity {polydispersity:g}"
+    def case(self, name: str | None = None, of: str = "") -> Case:
+        """A value of what the text leaves open, or another preparation if the lattice is wider than it need be."""
+        name = f"polydispersity {self.polydispersity:g}" if name is None else name
+        title = ", ".join(filter(None, (name, _title(self.start))))
+        wider = self.start != USUAL and float(self.start) > touching_largest(self.polydispersity)
+        return Case("" if wider else title, of, title if wider else "")
 
 
 def _title(start: str) -> str:
     return "largest disks touch at first" if start == USUAL else f"lattice constant {start}"
 
 
-def _prepared(test: Test, start: str, polydispersity: float = 0.01) -> Test:
-    """A test of a start: one value of what the text leaves open, or another preparation if the lattice is wider."""
-    title = ", ".join(filter(None, (test.case, _title(start))))
-    if start != USUAL and float(start) > touching_largest(polydispersity):
-        return replace(test, prepared=title, case="")
-    return test.named(title)
+def _slabs(study: xr.Dataset, disordered: bool = True) -> list[Slab]:
+    """Every case: by start this project's first, then by their constants."""
+    columns = (study[name].values.tolist() for name in ("polydispersity", "lattice_constant", "friction"))
+    found = sorted(map(Slab, *columns), key=lambda slab: (slab.polydispersity, slab.start != USUAL, *slab[1:]))
+    return [slab for slab in found if (slab.polydispersity > 0.0) is disordered]
 
 
-def _by_start(study: xr.Dataset, *frictions: float) -> Iterator[tuple[str, list[xr.Dataset]]]:
+def _lines(study: xr.Dataset) -> dict[tuple[float, str], list[Slab]]:
+    """Disordered cases with growing friction, by polydispersity and start."""
+    return {key: list(line) for key, line in groupby(_slabs(study), key=lambda slab: slab[:2])}
+
+
+def _cases(data: Data, *names: str, **labels: float) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
+    """Every case of disorder with its datasets."""
+    studies = [at(data.get(GROUP, name), **labels) for name in names]
+    yield from ((slab, [slab.of(study) for study in studies]) for slab in _slabs(studies[0]))
+
+
+def _by_start(study: xr.Dataset, *frictions: float) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
     """Starts of delta = 0.01 with their cases of these frictions."""
-    for start in _starts(study, 0.01):
-        if set(frictions) <= set(_frictions(study, 0.01, start)):
-            yield start, [_case(study, 0.01, mu, start) for mu in frictions]
+    for (delta, _), line in _lines(study).items():
+        slabs = [slab for slab in line if slab.friction in frictions]
+        if np.isclose(delta, 0.01) and len(slabs) == len(frictions):
+            yield slabs[0], [slab.of(study) for slab in slabs]
+
+
+def _samples(case: xr.Dataset) -> int:
+    return int(case["realizations"]) if "realizations" in case.variables else 1
 
 
 def _with_interval(case: xr.Dataset, name: str) -> Quantity:
     """A number of a case with 95 % of its bootstrap draws."""
     low, high = (float(at(case, level=level)[f"{name}_interval"]) for level in LEVELS)
-    samples = int(case["realizations"]) if "realizations" in case.variables else 1
-    return Quantity(float(case[name]), low, high, "confidence", BOOTSTRAP, samples)
+    return Quantity(float(case[name]), low, high, "confidence", BOOTSTRAP, _samples(case))
 
 
-@CLAIMS.measures("D1")
-def two_peaks_or_one(data: Data, words: Words) -> list[Test]:
-    """The paper shows one mean of each friction, so that what is asked is only that such ones are not rare."""
-    tests = []
-    for start, cases in _by_start(at(data.get(GROUP, "starts"), width=NARROW), 0.0, 0.2):
-        deepest, flattest = (_tail(case, level) for case, level in zip(cases, LEVELS[::-1], strict=True))
-        two, one = bounds.at_least(words, "marked"), bounds.at_most(words, "visible")
-        tests.append(_prepared(Test("dip at friction 0, 97.5 % quantile", deepest, two, unit="%"), start))
-        tests.append(_prepared(Test("dip at friction 0.2, 2.5 % quantile", flattest, one, unit="%"), start))
-    return tests
+def two_peaks_or_one(data: Data) -> Numbers:
+    """D1. The paper shows one mean of each friction, so that what is asked is only that such ones are not rare."""
+    for slab, cases in _by_start(at(data.get(GROUP, "starts"), width=NARROW), 0.0, 0.2):
+        yield slab.case(""), *(_tail(case, level) for case, level in zip(cases, LEVELS[::-1], strict=True))
 
 
 def _tail(case: xr.Dataset, level: float) -> Quantity:
     """A quantile of the dip of means of ``SHOWN`` realizations, with 95 % of its bootstrap draws."""
-    one = at(case, level=level)
+    one, method = at(case, level=level), f"quantile of means of {SHOWN}, bootstrap"
     low, high = one["dip_of_means_interval"].values.tolist()
-    method = f"quantile of means of {SHOWN}, bootstrap"
-    return Quantity(float(one["dip_of_means"]), low, high, "confidence", method, int(case["realizations"]))
+    return Quantity(float(one["dip_of_means"]), low, high, "confidence", method, _samples(case))
 
 
 @dataclass(frozen=True)
@@ -141,15 +128,14 @@ class Crossover:
         """As stored, with its interval; open to one side where it is a bound."""
         force, kind = float(case["force"]), int(case["kind"])
         low, high = (float(at(case, level=level)["interval"]) for level in LEVELS)
-        CLAIMS.needs(not np.isnan([force, low, high]).any(), "crossovers holds a case without number")
+        needs(not np.isnan([force, low, high]).any(), "crossovers holds a case without number")
         # at no force two peaks, or at all: what was looked at ends there
         low = 0.0 if kind == BELOW else min(max(low, 0.0), force)
         high = max(high, force) if kind == BELOW else high
-        samples = int(case["realizations"]) if "realizations" in case.variables else 1
         draws = case["draws"].values.astype(float)
         smallest, largest = (float(end) for end in case["limits"].values)
         least = np.where(draws == -np.inf, 0.0, np.where(draws == np.inf, largest, draws))
-        found = Quantity(force, low, high, "confidence", BOOTSTRAP, samples)
+        found = Quantity(force, low, high, "confidence", BOOTSTRAP, _samples(case))
         return cls(found, kind, least, np.where(draws == -np.inf, smallest, draws))
 
     def comparable(self, other: Crossover) -> bool:
@@ -165,20 +151,18 @@ class Crossover:
         return of_draws(ratio.value, (low, high), BOOTSTRAP, ratio.samples, "inverted_cdf")
 
 
-def _crossover(data: Data, words: Words, polydispersity: float, friction: float, start: str) -> Crossover:
+def _crossover(data: Data, slab: Slab) -> Crossover:
     """By the mean of the realizations; by the median one where packings collapse, so that the mean hangs on a few.
 
     A dip counts from the threshold of "visible" on.
     """
-    medians = _case(at(data.get(GROUP, "medians"), width=WIDE), polydispersity, friction, start)
+    medians = slab.of(at(data.get(GROUP, "medians"), width=WIDE))
     if int(medians["collapsed"]) > 0:
         return Crossover.of(medians)
-    study = data.get(GROUP, "crossovers")
-    if np.isclose(study.attrs.get("tolerance", words["visible"]), words["visible"]):
-        study = at(study, width=WIDE)
-    else:
-        study = at(data.get(GROUP, "definitions"), width=WIDE, tolerance=words["visible"])
-    return Crossover.of(_case(study, polydispersity, friction, start))
+    study, visible = data.get(GROUP, "crossovers"), data.words["visible"]
+    if np.isclose(study.attrs.get("tolerance", visible), visible):
+        return Crossover.of(slab.of(at(study, width=WIDE)))
+    return Crossover.of(slab.of(at(data.get(GROUP, "definitions"), width=WIDE, tolerance=visible)))
 
 
 def trend(line: Sequence[Crossover]) -> Quantity:
@@ -195,169 +179,105 @@ def trend(line: Sequence[Crossover]) -> Quantity:
     return of_draws(float(np.median(up - down)), ends, "Kendall's tau of the draws", samples, "inverted_cdf")
 
 
-def _order(name: str, line: Sequence[Crossover]) -> list[Test]:
-    """That crossover forces rise along a line, and no step against it is clear of its interval.
+def _order(line: Sequence[Crossover]) -> tuple[Quantity, int]:
+    """How crossover forces rise along a line, and the steps against it that are clear of their intervals.
 
     Those with two peaks at every force are below all others and of no order among themselves.
     """
     rest = [one for one in line if one.kind != BELOW]
     steps = [after.per(before) for before, after in pairwise(line) if after.comparable(before)]
-    rising = Bound(0.0, word="visible", strict=True)
-    back = Quantity.exact(sum(step.high < 1.0 for step in steps))
-    return [
-        Test("trend (Kendall's tau)", trend(rest if len(rest) > 1 else line), rising, name),
-        Test("steps against it, clear of their intervals", back, replace(bounds.NONE, word="visible"), name),
-    ]
+    return trend(rest if len(rest) > 1 else line), sum(step.high < 1.0 for step in steps)
 
 
-@CLAIMS.measures("D3a")
-def rises_with_friction(data: Data, words: Words) -> list[Test]:
-    study, tests = data.get(GROUP, "crossovers"), []
-    for delta, start in dict.fromkeys((delta, start) for delta, start, _ in _every(study)):
-        frictions = _frictions(study, delta, start)
-        if len(frictions) > 1:
-            line = [_crossover(data, words, delta, mu, start) for mu in frictions]
-            tests += [_prepared(test, start, delta) for test in _order(_disorder(delta), line)]
-    return tests
+def rises_with_friction(data: Data) -> Numbers:  # D3a
+    for line in _lines(data.get(GROUP, "crossovers")).values():
+        if len(line) > 1:
+            yield line[0].case(), *_order([_crossover(data, slab) for slab in line])
 
 
-@CLAIMS.measures("D3b")
-def falls_with_disorder(data: Data, words: Words) -> list[Test]:
-    study, tests = data.get(GROUP, "crossovers"), []
-    deltas = _disorders(study)
-    for start in (USUAL, LITERAL):
-        for mu in sorted(set.intersection(*(set(_frictions(study, delta, start)) for delta in deltas))):
-            line = [_crossover(data, words, delta, mu, start) for delta in reversed(deltas)]
+def falls_with_disorder(data: Data) -> Numbers:  # D3b
+    slabs = _slabs(data.get(GROUP, "crossovers"))
+    deltas = sorted({slab.polydispersity for slab in slabs}, reverse=True)
+    for start, mu in product((USUAL, LITERAL), sorted({slab.friction for slab in slabs})):
+        wanted = [Slab(delta, start, mu) for delta in deltas]
+        if set(wanted) <= set(slabs):
+            line = [_crossover(data, slab) for slab in wanted]
             if any(after.comparable(before) for before, after in pairwise(line)) or start == LITERAL:
-                tests += [test.named(f"{test.case}, {_title(start)}") for test in _order(f"friction {mu:g}", line)]
-    return tests
+                yield f"friction {mu:g}, {_title(start)}", *_order(line)
 
 
-@CLAIMS.measures("D4")
-def gradual(data: Data, words: Words) -> list[Test]:
-    studies = [at(data.get(GROUP, name), width=WIDE) for name in ("shapes", "realizations", "crossovers")]
-    tests, most = [], bounds.at_most(words, "gradual")
-    for delta, start, mu in _every(studies[0], 1.0):
-        case, single, crossover = (_case(study, delta, mu, start) for study in studies)
-        if int(crossover["kind"]) == FOUND:
+def gradual(data: Data) -> Numbers:  # D4
+    for slab, (case, single, crossover) in _cases(data, "shapes", "realizations", "crossovers", width=WIDE):
+        if slab.friction == 1.0 and int(crossover["kind"]) == FOUND:
             dips, leans = (single[name].transpose("realization", "step").values for name in ("shape", "asymmetry"))
             steps = np.fmax.reduce(np.fmax(np.abs(np.diff(dips)), np.abs(np.diff(leans))), axis=1)
-            found = {"mean": _with_interval(case, "largest_step"), "median realization": over_realizations(steps)}
-            for name, step in found.items():
-                what = f"largest change between neighbouring forces, {name}"
-                tests.append(_prepared(Test(what, step, most, _disorder(delta)), start, delta))
-    return tests
+            yield slab.case(of="mean"), _with_interval(case, "largest_step")
+            yield slab.case(of="median realization"), over_realizations(steps)
 
 
-@CLAIMS.measures("D5")
-def five_enough(data: Data, words: Words) -> list[Test]:
-    """A statement on samples of five: it must hold in most of them, wherever the mean of all has a crossover.
+def five_enough(data: Data) -> Numbers:
+    """D5, a statement on samples of five: it must hold in most of them, wherever the mean of all has a crossover.
 
     Where it has none up to the largest force, samples may have one beyond it.
     """
-    study, tests = at(data.get(GROUP, "crossovers"), width=WIDE), []
-    for delta, start, mu in _every(study):
-        case = _case(study, delta, mu, start)
+    for slab, (case,) in _cases(data, "crossovers", width=WIDE):
         seen = replace(_with_interval(case, "seen"), method="samples of five, bootstrap")
-        seen = replace(seen, high=1.0) if int(case["kind"]) == ABOVE else seen
         if int(case["kind"]) != BELOW:
-            what = f"samples of five with a crossover, friction {mu:g}"
-            tests.append(_prepared(Test(what, seen, Bound(0.5), _disorder(delta), "%"), start, delta))
-    return tests
+            yield slab.case(of=f"{slab.friction:g}"), replace(seen, high=1.0) if int(case["kind"]) == ABOVE else seen
 
 
-@CLAIMS.measures("D6")
-def below_lattice(data: Data, words: Words) -> list[Test]:
-    tests, below = [], Bound(most=1.0, word="visible", strict=True)
-    for delta, start, mu in _every(data.get(GROUP, "crossovers")):
-        found, lattice = (_crossover(data, words, d, mu, s) for d, s in ((delta, start), (0.0, USUAL)))
+def below_lattice(data: Data) -> Numbers:  # D6
+    for slab in _slabs(data.get(GROUP, "crossovers")):
+        found, lattice = (_crossover(data, one) for one in (slab, Slab(0.0, USUAL, slab.friction)))
         if found.comparable(lattice):
-            what = f"crossover per lattice's, friction {mu:g}"
-            tests.append(_prepared(Test(what, found.per(lattice), below, _disorder(delta)), start, delta))
-    return tests
+            yield slab.case(of=f"{slab.friction:g}"), found.per(lattice)
 
 
-@CLAIMS.measures("D8")
-def preparation(data: Data, words: Words) -> list[Test]:
-    tests, what = [], "crossover from lattice constant 2 per that from touching disks"
+def preparation(data: Data) -> Numbers:  # D8
     for mu in (0.0, 0.2):
-        usual, literal = (_crossover(data, words, 0.01, mu, start) for start in (USUAL, LITERAL))
-        larger = Bound(1.0, word="visible", strict=True)
-        tests.append(Test(what, literal.per(usual), larger, f"friction {mu:g}"))
-    return tests
+        usual, literal = (_crossover(data, Slab(0.01, start, mu)) for start in (USUAL, LITERAL))
+        yield f"friction {mu:g}", literal.per(usual)
 
 
-@CLAIMS.measures("D13")
-def like_the_lattice(data: Data, words: Words) -> list[Test]:
-    """One peak under the smallest force, two under larger ones, at the frictions at which the lattice has both."""
-    study, tests = data.get(GROUP, "crossovers"), []
-    ordered = [mu for mu in _frictions(study, 0.0, USUAL) if _crossover(data, words, 0.0, mu, USUAL).kind == FOUND]
-    for delta, start, mu in _every(study):
-        if mu in ordered:
-            found = _crossover(data, words, delta, mu, start).found
-            smallest, largest = _case(study, delta, mu, start)["limits"].values[-1].tolist()
-            for bound in (Bound(smallest, strict=True), Bound(most=largest)):
-                test = Test(
-                    f"crossover force, friction {mu:g}", found, bound, f"{_disorder(delta)}, friction {mu:g}", "mg"
-                )
-                tests.append(_prepared(test, start, delta))
-    return tests
+def like_the_lattice(data: Data) -> Numbers:
+    """D13. One peak under the smallest force, two under larger ones, at the frictions at which the lattice has both."""
+    study = data.get(GROUP, "crossovers")
+    both = {one.friction for one in _slabs(study, disordered=False) if _crossover(data, one).kind == FOUND}
+    for slab in _slabs(study):
+        if slab.friction in both:
+            found = _crossover(data, slab).found
+            smallest, largest = slab.of(study)["limits"].values[-1].tolist()
+            case = slab.case(slab.title, f"{slab.friction:g}")
+            yield case, (found, Bound(smallest, strict=True)), (found, Bound(most=largest))
 
 
-@CLAIMS.measures("D18")
-def without_contacts(data: Data, words: Words) -> list[Test]:
-    study, tests = at(data.get(GROUP, "shapes"), width=NARROW), []
-    for delta, start, mu in _every(study, 0.0):
-        dip, least = (
-            _with_interval(_case(study, delta, mu, start).isel(step=0), "shape"),
-            bounds.at_least(words, "visible"),
-        )
-        tests.append(_prepared(Test("dip under the smallest force", dip, least, _disorder(delta), "%"), start, delta))
-    return tests
+def without_contacts(data: Data) -> Numbers:  # D18
+    for slab, (case,) in _cases(data, "shapes", width=NARROW):
+        if slab.friction == 0.0:
+            yield slab.case(), _with_interval(case.isel(step=0), "shape")
 
 
 #: What is counted as contacts of a disk.
 COUNTED = {"contacts of disks": "", "walls counted": "_with_walls", "away from the boundaries": "_bulk"}
 
 
-def _coordination(data: Data, bound: Bound, scale: float = 1.0) -> list[Test]:
-    tests = []
-    for start, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
-        for name, kind in COUNTED.items():
-            mean = over_realizations(case[f"coordination_number{kind}"].values / scale, np.mean)
-            tests.append(_prepared(Test("contacts per disk", mean, bound, name), start))
-    return tests
+def coordination(data: Data, per: float = 1.0) -> Numbers:  # D7a, D14
+    for (slab, (case,)), (name, kind) in product(_by_start(data.get(GROUP, "packings"), 0.0), COUNTED.items()):
+        yield slab.case(name), over_realizations(case[f"coordination_number{kind}"].values / per, np.mean)
 
 
-@CLAIMS.measures("D7a")
-def coordination(data: Data, words: Words) -> list[Test]:
-    # the paper holds 4.25 against the isostatic 4: what is "about" is the excess
-    low, high = (4.0 + (1.0 + sign * words["about"]) * 0.25 for sign in (-1.0, 1.0))
-    return _coordination(data, Bound(low, high, "about"))
-
-
-@CLAIMS.measures("D14")
-def below_six(data: Data, words: Words) -> list[Test]:
-    return _coordination(data, bounds.lower(words, "marked"), 6.0)
-
-
-@CLAIMS.measures("D7b")
-def missing_horizontal(data: Data, words: Words) -> list[Test]:
-    """Of the contacts of the ideal lattice, in which every disk touches its neighbours."""
+def missing_horizontal(data: Data) -> Numbers:
+    """D7b, of the contacts of the ideal lattice, in which every disk touches its neighbours."""
     packing = SlabPacking().build()
     i, j = packing.neighbour_pairs().T  # type: ignore[union-attr]
     level = packing.row[i] == packing.row[j]
     ideal = {"horizontal": level.sum() / packing.n, "oblique": (~level).sum() / packing.n}
-    tests = []
-    for start, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
+    for slab, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
         missing = {name: number - case[f"{name}_contacts"].values for name, number in ideal.items()}
-        part = over_realizations(missing["horizontal"] / sum(missing.values()), np.mean)
-        test = Test("horizontal part of the missing contacts", part, bounds.at_least(words, "marked"), unit="%")
-        tests.append(_prepared(test, start))
-    return tests
+        yield slab.case(""), over_realizations(missing["horizontal"] / sum(missing.values()), np.mean)
 
 
-def _away(data: Data, words: Words) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _away(data: Data) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """(case, step) which forces are known to be far below the crossover at w = 6, and far above.
 
     A force inside the interval of its crossover is not known to be away from it; a bound has forces on one side alone.
@@ -365,48 +285,38 @@ def _away(data: Data, words: Words) -> tuple[NDArray[np.bool_], NDArray[np.bool_
     force = data.get(GROUP, "shapes")["applied_force"].transpose("case", "step").values
     crossovers = at(data.get(GROUP, "crossovers"), width=WIDE)
     low, high = (at(crossovers, level=level)["interval"].values[:, None] for level in LEVELS)
-    near, crossover = 1.0 + words["similar"], crossovers["force"].values[:, None]
+    near, crossover = 1.0 + data.words["similar"], crossovers["force"].values[:, None]
     kind = crossovers["kind"].values[:, None]
     below = (force < np.minimum(low, crossover / near)) & (kind != BELOW)
     above = (force > np.maximum(high, crossover * near)) & (kind != ABOVE)
     return below, above
 
 
-@CLAIMS.measures("D9")
-def resembles(data: Data, words: Words) -> list[Test]:
-    """At forces that are known to be away from the crossover of their case."""
+def resembles(data: Data) -> Numbers:
+    """D9, at forces that are known to be away from the crossover of their case."""
     study = at(data.get(GROUP, "realizations"), width=WIDE)
     off = study["difference"].transpose("case", "realization", "step").values
-    constant, tests = study["lattice_constant"].values.astype(str), []
+    constant = study["lattice_constant"].values.astype(str)
     for start in (USUAL, LITERAL):
         here = (study["polydispersity"].values > 0.0) & (constant == start)
         known = np.isfinite(off).any(axis=1) & here[:, None]
-        for side, away in zip(("below", "above"), _away(data, words), strict=True):
+        for side, away in zip(("below", "above"), _away(data), strict=True):
             typical = [np.nanmedian(off[case, :, step]) for case, step in np.argwhere(away & known)]
             if len(typical) > 2:
                 found = replace(over_realizations(typical), method="bootstrap of the median over cases and forces")
-                case = f"{side} the crossover, {_title(start)}"
-                what = "difference of a typical realization from the mean"
-                tests.append(Test(what, found, bounds.at_most(words, "similar"), case, "%"))
-    return tests
+                yield f"{side} the crossover, {_title(start)}", found
 
 
-def _at_15(data: Data, name: str) -> Iterator[tuple[str, list[xr.Dataset]]]:
+def _at_15(data: Data, name: str) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
     """By start: delta = 0.01 under 15 mg at friction 0 and at 0.2, w = 3."""
     study = at(data.get(GROUP, name), width=NARROW).assign(applied=data.get(GROUP, "shapes")["applied_force"])
-    for start, cases in _by_start(study, 0.0, 0.2):
-        yield start, [one.isel(step=int(np.flatnonzero(np.isclose(one["applied"].values, 15.0))[0])) for one in cases]
+    for slab, cases in _by_start(study, 0.0, 0.2):
+        yield slab, [one.isel(step=int(np.flatnonzero(np.isclose(one["applied"].values, 15.0))[0])) for one in cases]
 
 
-@CLAIMS.measures("D10")
-def fluctuations(data: Data, words: Words) -> list[Test]:
-    tests = []
-    for start, cases in _at_15(data, "shapes"):
-        without, full = (_with_interval(case, "spread") for case in cases)
-        tests.append(
-            _prepared(Test("spread without friction per with 0.2", without.per(full), Bound(1.0, strict=True)), start)
-        )
-    return tests
+def fluctuations(data: Data) -> Numbers:  # D10
+    for slab, (without, full) in _at_15(data, "shapes"):
+        yield slab.case(""), _with_interval(without, "spread").per(_with_interval(full, "spread"))
 
 
 def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quantity:
@@ -425,41 +335,19 @@ def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quan
     return of_draws(part(without, full, 20000), drawn, method, number)
 
 
-@CLAIMS.measures("D11")
-def evident(data: Data, words: Words) -> list[Test]:
-    tests, least = [], 1.0 - words["holds"]
-    for start, cases in _at_15(data, "realizations"):
+def evident(data: Data) -> Numbers:  # D11
+    least = 1.0 - data.words["holds"]
+    for slab, cases in _at_15(data, "realizations"):
         without, full = (case["shape"].values[np.isfinite(case["shape"].values)] for case in cases)
-        what = f"samples in which {least:.0%} of the pairs of realizations differ"
-        tests.append(
-            _prepared(Test(what, evident_samples(without, full, least), Bound(RARE, word="holds"), unit="%"), start)
-        )
-    return tests
+        yield slab.case("", f"{least:.0%}"), evident_samples(without, full, least)
 
 
-def _collapses(
-    data: Data, wanted: Bound, polydispersity: float | None = None, friction: float | None = None
-) -> list[Test]:
-    """The part of the packings that collapse along their load paths, of all cases or of one disorder and friction."""
-    study, tests = data.get(GROUP, "realizations"), []
-    for delta, start, mu in _every(study, friction):
-        if polydispersity in (None, delta):
-            one = _case(study, delta, mu, start)
-            part = part_of(np.isfinite(one["collapse_force"].values[: int(one["realizations"])]))
-            case = f"{_disorder(delta)}, friction {mu:g}"
-            tests.append(_prepared(Test("packings that collapse", part, wanted, case, "%"), start, delta))
-    return tests
-
-
-@CLAIMS.measures("D12")
-def unstable(data: Data, words: Words) -> list[Test]:
-    """Two of five packings were unstable: not rare if so many or more are in one of forty samples of five."""
-    return _collapses(data, Bound(float(betaincinv(2, 4, RARE))), 0.1, 0.2)
-
-
-@CLAIMS.measures("D16")
-def rearrangements(data: Data, words: Words) -> list[Test]:
-    return _collapses(data, Bound(RARE))
+def collapses(data: Data, **of: float) -> Numbers:
+    """D12, D16: the part of the packings that collapse along their load paths, of all cases or of one of them."""
+    for slab, (one,) in _cases(data, "realizations"):
+        if of.items() <= slab._asdict().items():
+            hits = np.isfinite(one["collapse_force"].values[: int(one["realizations"])])
+            yield slab.case(slab.title), part_of(hits)
 
 
 #: Names of what is off in the linear range.
@@ -500,7 +388,7 @@ def linear_end(ends: FloatArray) -> Quantity:
 
     Raises NotMeasured for two realizations or none; a lattice has one, without scatter.
     """
-    CLAIMS.needs(len(ends) not in (0, 2), "linear_range holds too few realizations")
+    needs(len(ends) not in (0, 2), "linear_range holds too few realizations")
     picked = np.random.default_rng(0).integers(0, len(ends), (2000, len(ends)))
     low, high = (np.quantile(ends[picked, k], 0.5, axis=1, method="inverted_cdf") for k in (0, 1))
     value = float(np.quantile(ends[:, 1], 0.5, method="inverted_cdf"))
@@ -531,34 +419,25 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
     return of_draws(value / number, (low / number, high / number), "Jonckheere's statistic, bootstrap", samples)
 
 
-@CLAIMS.measures("D2")
-def shorter_range(data: Data, words: Words) -> list[Test]:
-    study, tests = data.get(GROUP, "linear_range"), []
-    for start in _starts(study, 0.01):
-        for mu in _frictions(study, 0.01, start):
-            for tolerance in TOLERANCES:
-                ends, lattice = (linear_ends(_case(study, *case), tolerance) for case in ((0.01, mu, start), (0.0, mu)))
-                what = f"realizations with a shorter range, {tolerance:.0%} off"
-                test = Test(what, shorter(ends, lattice[0]), Bound(0.5, strict=True), f"friction {mu:g}", "%")
-                tests.append(_prepared(test, start))
-    return tests
+def shorter_range(data: Data) -> Numbers:  # D2
+    study = data.get(GROUP, "linear_range")
+    for slab, tolerance in product(_slabs(study), TOLERANCES):
+        if np.isclose(slab.polydispersity, 0.01):
+            lattice = slab._replace(polydispersity=0.0, start=USUAL)
+            ends, whole = (linear_ends(one.of(study), tolerance) for one in (slab, lattice))
+            yield slab.case(f"friction {slab.friction:g}", f"{tolerance:.0%}"), shorter(ends, whole[0])
 
 
-@CLAIMS.measures("A5")
-def shorter_with_disorder(data: Data, words: Words) -> list[Test]:
-    """The response as a whole, since that at x = 0 is near zero without friction."""
-    study, tests = data.get(GROUP, "linear_range"), []
+def shorter_with_disorder(data: Data) -> Numbers:
+    """A5, by the response as a whole, since that at x = 0 is near zero without friction."""
+    study = data.get(GROUP, "linear_range")
+    lines = _lines(study)
     for start in (USUAL, LITERAL):
-        deltas = [delta for delta in _disorders(study) if start in _starts(study, delta)]
-        for mu in _frictions(study, deltas[-1], start) if deltas else ():
-            for tolerance in TOLERANCES:
-                cases = [_case(study, 0.0, mu), *(_case(study, delta, mu, start) for delta in deltas)]
-                ends = [linear_ends(case, tolerance, PROFILE) for case in cases]
-                lattice, least = (linear_end(one) for one in ends[:2])
-                case = f"friction {mu:g}, {tolerance:.0%} off, {_title(start)}"
-                longer = Bound(1.0, strict=True)
-                tests.append(Test(f"lattice per disorder of {deltas[0]:g}", lattice.per(least), longer, case))
-                if len(deltas) > 1:
-                    falls = Bound(most=0.0, strict=True)
-                    tests.append(Test("order of the realizations (Kendall's tau)", order_of(ends[1:]), falls, case))
-    return tests
+        deltas = [delta for delta, one in lines if one == start]
+        for slab, tolerance in product(lines[deltas[-1], start] if deltas else (), TOLERANCES):
+            mu = slab.friction
+            cases = [Slab(0.0, USUAL, mu), *(Slab(delta, start, mu) for delta in deltas)]
+            ends = [linear_ends(one.of(study), tolerance, PROFILE) for one in cases]
+            lattice, least = (linear_end(one) for one in ends[:2])
+            case = Case(f"friction {mu:g}, {tolerance:.0%} off, {_title(start)}", f"{deltas[0]:g}")
+            yield case, lattice.per(least), order_of(ends[1:]) if len(deltas) > 1 else None

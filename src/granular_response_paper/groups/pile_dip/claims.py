@@ -2,30 +2,16 @@
 
 from __future__ import annotations
 
-from granular_response_paper.claims import bounds
-from granular_response_paper.claims.claim import Bound, Data, Quantity, Test
-from granular_response_paper.claims.declared import Claims
-from granular_response_paper.claims.words import Words
-
-CLAIMS = Claims(__package__)
+from granular_response_paper.claims.claim import Data, Numbers
 
 
-@CLAIMS.measures("P3")
-def regions(data: Data, words: Words) -> list[Test]:
+def regions(data: Data) -> Numbers:
+    """P3: with friction per without, and the aspect of the one per the other's."""
     study = data.get("pile_dip", "piles")
-    contacts, height, width = (
-        float(study[f"central_{name}"].sel(case="frictional"))
-        / float(study[f"central_{name}"].sel(case="frictionless"))
-        for name in ("open_contacts", "height", "width")
-    )
-    limit = 1.0 + words["similar"]
-    sizes = {"contacts": contacts, "height": height, "width": width}
-    aspect = Quantity.exact(max(width / height, height / width))
-    return [
-        test
-        for case, size in sizes.items()
-        for test in (
-            Test("size with friction per without", Quantity.exact(size), Bound(1 / limit, limit, "similar"), case),
-            Test("width per height, one pile over the other", aspect, bounds.higher(words, "nearly"), case),
-        )
-    ]
+    ratios = {
+        name: float(one.sel(case="frictional")) / float(one.sel(case="frictionless"))
+        for name, one in ((name, study[f"central_{name}"]) for name in ("open_contacts", "height", "width"))
+    }
+    aspect = max(ratios["width"] / ratios["height"], ratios["height"] / ratios["width"])
+    for name, size in ratios.items():
+        yield name.replace("open_", ""), size, aspect

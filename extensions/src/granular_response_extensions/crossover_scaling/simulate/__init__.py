@@ -22,25 +22,28 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
+from granular_response import studies
 from granular_response.scene import Scene
 from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response.studies import Happening, LoadPath, Measures, by_motion
+from granular_response.studies.measures import FIRST_OPENING, REACHES_FLOOR, TWO_PEAKS
+from granular_response.studies.path import NARROW
 from granular_response_extensions.crossover_scaling.parameters import Parameters
 from granular_response_extensions.crossover_scaling.simulate.series import Slab, packings, power_table, slabs
 from granular_response_extensions.surveyed import measured
-from granular_response_paper import slab_response
 from granular_response_paper.datasets import labelled
 from granular_response_paper.records import axes, column, columns, record, table
-from granular_response_paper.slab_response import Happening, LoadPath, Measures, Scalars, by_motion
+from granular_response_paper.slab_response import Scalars
 
 #: Force over the confinement, from which the answers of contacts to small forces are taken.
 SMALL = 0.1
 
 EVENTS = {
-    "first_opening": slab_response.FIRST_OPENING,
+    "first_opening": FIRST_OPENING,
     "crossover": "the floor response at x = 0 is visibly below both maxima beside it",
-    "two_peaks": slab_response.TWO_PEAKS,
-    "reaches_floor": slab_response.REACHES_FLOOR,
+    "two_peaks": TWO_PEAKS,
+    "reaches_floor": REACHES_FLOOR,
 }
 
 
@@ -73,10 +76,10 @@ def compute(
     measures, rest = Measures(path), path.rest.pairs
     confinement = measures.confinement
     asked = [  # in the order of EVENTS
-        slab_response.first_opening(measures),
+        studies.first_opening(measures),
         Happening(lambda state: measures.dip(state) > visible, EVENTS["crossover"]),
-        slab_response.two_peaks(measures),
-        slab_response.reaches_floor(measures),
+        studies.two_peaks(measures),
+        studies.reaches_floor(measures),
     ]
     forces: list[float] = []
     left = asked
@@ -85,7 +88,7 @@ def compute(
         state = path.at(forces[-1])
         left = [what for what in left if not what.happened(state)]
     states = path.through(forces)
-    width = slab_response.NARROW if scene.contact.friction else tolerance
+    width = NARROW if scene.contact.friction else tolerance
     brackets = np.array([path.first(forces, what, width) for what in asked])
     regions = [measures.region(state) for state in states]
     # exact without friction, where all contacts go on as they are, but for the overlaps' effect on directions

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from granular_response.observe.events import bisect_event
+from granular_response import studies
 from granular_response.observe.floor import floor_force
 from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
@@ -23,12 +23,12 @@ from granular_response.solvers.solution import loaded_states
 from granular_response.solvers.work import slid, stored, work
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS
-from granular_response_paper import slab_response as slab
+from granular_response.studies import Happening, LoadPath, Measures, bisect_event, by_motion
+from granular_response.studies.measures import FIRST_OPENING, LINEARITY
 from granular_response_paper.records import column, record
-from granular_response_paper.slab_response import LINEARITY, Happening, LoadPath, Measures, by_motion
 
 EVENTS = {
-    "first_opening": slab.FIRST_OPENING,
+    "first_opening": FIRST_OPENING,
     "linear_range": f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at the smallest force",
     "reversible_range": "unloading leaves a floor force changed by more than the part left of the largest change",
 }
@@ -183,11 +183,11 @@ class Packing:
         """Brackets of ``EVENTS``; see the module."""
         path, passed = self.path, sorted(self.path.known)
         linear = self.centre(path.known[forces[0]])
-        opening = slab.first_opening(self.measures)
+        opening = studies.first_opening(self.measures)
         nonlinear = Happening(lambda state: abs(self.centre(state) / linear - 1.0) > LINEARITY, EVENTS["linear_range"])
         # a loop is known of where the load turns alone, and to each further force it is a way of its own
-        low, high = slab.first_change(forces, [self.left_by(force) > left for force in forces])
+        low, high = studies.first_change(forces, [self.left_by(force) > left for force in forces])
         if np.isfinite(high) and high - low > (width := tolerance * high):
-            found = bisect_event(lambda at: self.left_by(at) > left, low, high, width, at_low=False, at_high=True)
-            low, high = found.low, found.high
+            bracket = bisect_event(lambda at: self.left_by(at) > left, low, high, width, at_low=False, at_high=True)
+            low, high = bracket.ends
         return [path.first(passed, opening), path.first(passed[passed.index(forces[0]) :], nonlinear), (low, high)]

@@ -22,12 +22,12 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.small_loads import force_on
 from granular_response.state import SLIDING, FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS
+from granular_response.studies import LoadPath, Measures, two_peaks
 from granular_response.theory.moduli import peak_criterion
 from granular_response_extensions.moduli.parameters import Loaded, Parameters
 from granular_response_extensions.moduli.simulate.response import apart
 from granular_response_extensions.moduli.simulate.solid import Solid, fitted, triangles
 from granular_response_paper.records import axes, column, labels, parts, places, record, table
-from granular_response_paper.slab_response import LoadPath, Measures, two_peaks
 from granular_response_paper.tasks import computed
 
 LOADS = ("body", "surface")

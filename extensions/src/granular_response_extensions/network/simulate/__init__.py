@@ -25,11 +25,12 @@ from granular_response.errors import SolveError
 from granular_response.observe import network
 from granular_response.scene import Scene, SceneError
 from granular_response.state import FloatArray, State
+from granular_response.studies import LoadPath
+from granular_response.studies.measures import wall_margin
 from granular_response_extensions.network.parameters import VERTICAL_MARGIN, Parameters
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles.realizations import ensemble_scene
 from granular_response_paper.records import axes, column, record, table
-from granular_response_paper.slab_response import LoadPath, wall_margin
 from granular_response_paper.tasks import computed
 
 #: Edges of the bins of forces over their mean, of mobilization, and number of bins of directions.

@@ -17,12 +17,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from granular_response import studies
 from granular_response.scene import Scene
 from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.taps import tapped
 from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS
+from granular_response.studies.measures import MARGINS
 from granular_response.sweeps.rest import rest_state
 from granular_response_extensions.preparation.parameters import Parameters
 from granular_response_paper import slab_response as slab
@@ -44,7 +46,7 @@ class Prepared:
     wall_friction: float = column("coefficient of friction of walls")
 
 
-#: Counted in a slab at rest, for each of ``slab.MARGINS``.
+#: Counted in a slab at rest, for each of ``MARGINS``.
 LIMITED = "contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit"
 
 
@@ -90,11 +92,11 @@ def compute(
 ) -> Outcome:
     """A slab settled as its ``scene`` says, tapped (number, amplitude, duration) and loaded by each of the forces."""
     problem = Problem.from_scene(scene)
-    path = slab.LoadPath.of(scene, tapped(problem, rest_state(problem), *taps))
-    states, measures = path.through(forces), slab.Measures(path)
+    path = studies.LoadPath.of(scene, tapped(problem, rest_state(problem), *taps))
+    states, measures = path.through(forces), studies.Measures(path)
     touching = float(path.rest.pairs.touching.sum())
     rest = Rest(touching, measures.confinement, np.array(measures.mobilised(path.rest)))
-    events = slab.locate(path, forces, slab.happenings(measures, states[0], asymmetry))
+    events = slab.locate(path, forces, studies.happenings(measures, states[0], asymmetry))
     packing, high = scene.packing.model_dump(), {event.name: event.high for event in events}
     if packing["polydispersity"]:
         high["crossover"] = np.nan
@@ -133,7 +135,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     response = response.assign(table([one.rest for one in cases], "case").variables)
     response = response.assign_coords(axes(force=(forces, f"applied force {WEIGHTS}")))
     events = slab.events_dataset([event for one in cases for event in one.events])
-    names = axes(name=(AGAINST, "event"), margin=(slab.MARGINS, "fraction below the Coulomb limit"))
+    names = axes(name=(AGAINST, "event"), margin=(MARGINS, "fraction below the Coulomb limit"))
     mobilized = table([one.mobilized for one in every], "case")
     datasets = {
         "response": response.assign_coords(_prepared(cases, "case")),

@@ -13,7 +13,6 @@ from functools import cache, partial
 import numpy as np
 import xarray as xr
 
-from granular_response.observe.events import bisect_event
 from granular_response.observe.floor import floor_force
 from granular_response.observe.peaks import central_dip
 from granular_response.scene import Scene
@@ -21,6 +20,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import NotSettled
 from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS
+from granular_response.studies import bisect_event
 from granular_response.sweeps.rest import rest_state
 from granular_response_extensions.rolling_resistance.parameters import Parameters
 from granular_response_extensions.rolling_resistance.simulate.balance import balanced

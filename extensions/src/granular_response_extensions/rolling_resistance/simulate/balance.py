@@ -7,8 +7,8 @@ from scipy.optimize import linprog
 from scipy.sparse import block_array, csr_array, diags_array, eye_array
 from scipy.spatial import cKDTree
 
-from granular_response.observe.events import bisect_event
 from granular_response.scene import PilePacking
+from granular_response.studies import bisect_event
 from granular_response_paper.records import column, record
 
 

@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from granular_response.observe import stress as coarse
+from granular_response.observe.widths import half_maximum_width
 from granular_response.scene import Packing, Scene
 from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS
+from granular_response.studies import LoadPath, Measures, first_opening, two_peaks
 from granular_response_extensions.rolling_resistance.parameters import Parameters, Slab
 from granular_response_paper.records import column, record
-from granular_response_paper.slab_response import LoadPath, Measures, first_opening, half_maximum_width, two_peaks
 
 
 @record

@@ -21,11 +21,11 @@ from granular_response.scene import Scene
 from granular_response.state import FloatArray, State
 from granular_response.store.result import added_forces_dataset, certificates_dataset, common_candidates
 from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response.studies import LoadPath
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.friction_fields.parameters import Parameters, Profiles
 from granular_response_paper.groups.friction_fields.simulate.stress import ON_AXIS, stress_dataset
 from granular_response_paper.records import axes, column, record, table, variables
-from granular_response_paper.slab_response import LoadPath
 from granular_response_paper.tasks import computed
 
 FRICTION = "coefficient of friction between disks and with the walls"

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from granular_response.observe.events import bisect_event
+from granular_response import studies
 from granular_response.scene import Scene
 from granular_response.state import State
 from granular_response.store.variables import WEIGHTS, variable
@@ -48,17 +48,17 @@ def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = No
     ``asymmetry`` is that from which symmetry is lost; without it no events are looked for. All of them are located, and
     states kept, where ``keep`` asks for it.
     """
-    path = slab.LoadPath.of(scene)
-    states, measures = path.through(forces), slab.Measures(path)
-    asked = slab.happenings(measures, states[0], asymmetry) if asymmetry else {}
+    path = studies.LoadPath.of(scene)
+    states, measures = path.through(forces), studies.Measures(path)
+    asked = studies.happenings(measures, states[0], asymmetry) if asymmetry else {}
     asked = {name: what for name, what in asked.items() if keep or name in ("first_opening", "linear_range")}
     if asked and keep:
-        asked["first_opening_anywhere"] = slab.first_opening(measures, anywhere=True)
+        asked["first_opening_anywhere"] = studies.first_opening(measures, anywhere=True)
     return PathResult(
         forces,
         slab.measured(measures, states),
         slab.locate(path, forces, asked),
-        [slab.Lost.of(measures.friction, event) for event in slab.lost(states)],
+        [slab.Lost.of(measures.friction, event) for event in studies.lost(states)],
         path.method,
         path.rest,
         slab.states_picture([path.rest, *states], path.problem) if keep else None,
@@ -67,34 +67,33 @@ def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = No
 
 def equal_rows(scene: Scene, given: EqualRows) -> list[slab.Event]:
     """Events on the path of a slab with as many disks in every row; its load is half a radius off the middle."""
-    path = slab.LoadPath.of(scene, packing=slab.equal_rows(given.layers, given.disks))
+    path = studies.LoadPath.of(scene, packing=slab.equal_rows(given.layers, given.disks))
     path.through(given.forces)
-    measures = slab.Measures(path)
+    measures = studies.Measures(path)
     asked = {
-        "first_opening": slab.first_opening(measures),
-        "first_opening_anywhere": slab.first_opening(measures, anywhere=True),
-        "crossover": slab.two_peaks(measures),
-        "reaches_floor": slab.reaches_floor(measures),
+        "first_opening": studies.first_opening(measures),
+        "first_opening_anywhere": studies.first_opening(measures, anywhere=True),
+        "crossover": studies.two_peaks(measures),
+        "reaches_floor": studies.reaches_floor(measures),
     }
     return slab.locate(path, given.forces, asked)
 
 
 def shake(scene: Scene, rest: State, force: float) -> tuple[State, xr.Dataset]:
     """One force applied to the packing at rest by dynamics."""
-    path = slab.LoadPath.of(scene, rest)
+    path = studies.LoadPath.of(scene, rest)
     state = path.at(force)
-    return state, slab.measured(slab.Measures(path), [state])
+    return state, slab.measured(studies.Measures(path), [state])
 
 
 def narrow(scene: Scene, force: float, low: float, high: float, tolerance: float) -> tuple[float, float]:
     """The coefficient of friction, above ``low`` and not above ``high``, from which there is one peak."""
 
     def single_peaked(friction: float) -> bool:
-        path = slab.LoadPath.of(scene.updated({"contact.friction": friction}))
-        return not slab.Measures(path).double_peaked(path.at(force))
+        path = studies.LoadPath.of(scene.updated({"contact.friction": friction}))
+        return not studies.Measures(path).double_peaked(path.at(force))
 
-    found = bisect_event(single_peaked, low, high, tolerance, at_low=False, at_high=True)
-    return found.low, found.high
+    return studies.bisect_event(single_peaked, low, high, tolerance, at_low=False, at_high=True).ends
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -107,7 +106,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     axis_frictions = sorted(axis.frictions)
     on_axis = [paths[mu].measured.isel(state=[paths[mu].forces.index(axis.force)]) for mu in axis_frictions]
     one_peak = [not measured["double_peaked"][0] for measured in on_axis]
-    low, high = slab.first_change(axis_frictions, one_peak)
+    low, high = studies.first_change(axis_frictions, one_peak)
     protocol = {"method": "dynamics", "ramp_time": given.ramp_time, "time_step": given.time_step}
     shaken = base.updated({"contact.friction": given.friction, "protocol": protocol})
     tasks: dict[Any, partial[Any]]
@@ -147,8 +146,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
             )
         )
         rest = main[given.friction].rest
-        datasets["large_force_states"] = slab.states_picture([rest, *states], slab.LoadPath.of(shaken, rest).problem)
-        ends = slab.first_change(large["force"].values, large["asymmetry"].values > parameters.asymmetry)
+        datasets["large_force_states"] = slab.states_picture([rest, *states], studies.LoadPath.of(shaken, rest).problem)
+        ends = studies.first_change(large["force"].values, large["asymmetry"].values > parameters.asymmetry)
         text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {parameters.asymmetry:g}"
         found.append(slab.Event("loss_of_symmetry", given.friction, *ends, text))
     datasets["events"] = slab.events_dataset(found)

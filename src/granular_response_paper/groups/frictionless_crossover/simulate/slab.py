@@ -14,10 +14,12 @@ from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import RADII
+from granular_response.studies import Happening, LoadPath, Measures
+from granular_response.studies.measures import TWO_PEAKS
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper import slab_response
 from granular_response_paper.records import column, record, variables
-from granular_response_paper.slab_response import TWO_PEAKS, Event, Happening, LoadPath, Measures
+from granular_response_paper.slab_response import Event
 
 EVENTS = {
     "first_opening": "a contact within five lattice constants of the loaded disk is open that touches at rest",

@@ -14,8 +14,8 @@ from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.timestep import resolve_time_step, stability_limit
 from granular_response.state import FloatArray, State
+from granular_response.studies import LoadPath
 from granular_response_paper.records import column, record
-from granular_response_paper.slab_response import LoadPath
 
 ACCELERATION = "mean acceleration of disks with two contacts or more, in g"
 

@@ -23,6 +23,7 @@ from granular_response.scene import Scene, SceneError
 from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS
+from granular_response.studies import linear_end
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import AT_REST, datasets, smoothed
 from granular_response_paper.ensembles.averages import at_rest, averages_dataset
@@ -30,7 +31,7 @@ from granular_response_paper.ensembles.parameters import Case
 from granular_response_paper.ensembles.realizations import Loaded, Realization, ensemble_task
 from granular_response_paper.groups.polydisperse_averages.parameters import Individual, LinearRange, Parameters
 from granular_response_paper.records import axes, column, columns, record, table, variables
-from granular_response_paper.slab_response import linear_end, states_picture
+from granular_response_paper.slab_response import states_picture
 from granular_response_paper.tasks import computed
 
 

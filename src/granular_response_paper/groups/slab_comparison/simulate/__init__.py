@@ -21,13 +21,13 @@ from granular_response.scene import Scene
 from granular_response.state import SLIDING, FloatArray, State
 from granular_response.store.result import certificates_dataset
 from granular_response.store.variables import RADII, variable
+from granular_response.studies import LoadPath, Measures
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.slab_comparison.parameters import Case, Parameters
 from granular_response_paper.records import column, labels, record, table
-from granular_response_paper.slab_response import LoadPath, Measures
 from granular_response_paper.tasks import computed
 
 FLOORS: tuple[Floor, ...] = ("smooth", "rough")

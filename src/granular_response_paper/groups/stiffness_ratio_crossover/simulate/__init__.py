@@ -20,7 +20,7 @@ from typing import get_args
 import numpy as np
 import xarray as xr
 
-from granular_response.observe.events import bisect_event
+from granular_response import studies
 from granular_response.observe.peaks import central_dip
 from granular_response.scene import Scene
 from granular_response.state import FloatArray
@@ -60,16 +60,18 @@ RATIO = "tangential stiffness over normal stiffness"
 def measure(base: Scene, ratio: float, force: float) -> tuple[xr.Dataset, str]:
     """The measured response of a packing at one stiffness ratio, and the method that found it."""
     scene = base.updated({"contact.stiffness_ratio": ratio})
-    path = slab.LoadPath.of(scene if ratio else scene.updated({"protocol.method": "auto"}))
-    return slab.measured(slab.Measures(path), [path.at(force)]), path.method
+    path = studies.LoadPath.of(scene if ratio else scene.updated({"protocol.method": "auto"}))
+    return slab.measured(studies.Measures(path), [path.at(force)]), path.method
 
 
 def narrow(name: str, base: Scene, force: float, low: float, high: float, tolerance: float) -> tuple[float, float]:
     """Bisect an event of ``EVENTS`` between two ratios; every evaluation settles and loads a packing."""
     _, happened = EVENTS[name]
-    at = partial(measure, base, force=force)
-    found = bisect_event(lambda ratio: happened(at(ratio)[0]), low, high, tolerance, at_low=False, at_high=True)
-    return found.low, found.high
+
+    def has(ratio: float) -> bool:
+        return happened(measure(base, ratio, force)[0])
+
+    return studies.bisect_event(has, low, high, tolerance, at_low=False, at_high=True).ends
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -82,7 +84,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     ended, central = ([happened(one) for one in measured] for _, happened in EVENTS.values())
     # the last stretch of ratios with the maximum at the centre; there may be others below it
     begun = [all(central[k:]) for k in range(len(central))]
-    brackets = {name: slab.first_change(ratios, has) for name, has in zip(EVENTS, (ended, begun), strict=True)}
+    brackets = {name: studies.first_change(ratios, has) for name, has in zip(EVENTS, (ended, begun), strict=True)}
     searches = {
         name: partial(narrow, name, base, force, low, high, tolerance)
         for name, (low, high) in brackets.items()

@@ -15,9 +15,9 @@ from granular_response.solvers.solution import loaded_states
 from granular_response.state import Contacts, FloatArray, State
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import WEIGHTS
+from granular_response.studies import by_motion, linear_end
 from granular_response_paper.groups.superposition.parameters import Parameters
 from granular_response_paper.records import column, record
-from granular_response_paper.slab_response import by_motion, linear_end
 
 #: Which forces act.
 PARTS = ("left", "right", "both")

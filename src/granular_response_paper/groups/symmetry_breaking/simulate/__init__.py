@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from granular_response.observe.events import EventNotBracketed, bisect_event
+from granular_response import studies
 from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import State
@@ -68,19 +68,19 @@ def bracket(
     asked: Parameters, rest: State, protocol: Protocol, time_step: float, first: tuple[float, float] | None
 ) -> BracketResult:
     """For one time step; the loss is looked for between ``first`` before anywhere else."""
-    path = slab.LoadPath.of(protocol.scene(asked.scene, time_step), rest)
+    path = studies.LoadPath.of(protocol.scene(asked.scene, time_step), rest)
     event = narrowed(asked, path, protocol, time_step, first)
     forces = tuple(sorted(path.known))
     ends = tuple(path.known[force] for force in (event.low, event.high) if force in path.known)
-    measured = slab.measured(slab.Measures(path), path.through(forces))
+    measured = slab.measured(studies.Measures(path), path.through(forces))
     return BracketResult(protocol.ramp_time, time_step, event, forces, measured, ends if len(ends) == 2 else ())
 
 
 def narrowed(
-    asked: Parameters, path: slab.LoadPath, protocol: Protocol, time_step: float, first: tuple[float, float] | None
+    asked: Parameters, path: studies.LoadPath, protocol: Protocol, time_step: float, first: tuple[float, float] | None
 ) -> slab.Event:
     """Where the states of a path lose their symmetry; see :func:`bracket`."""
-    measures, above = slab.Measures(path), asked.asymmetry
+    measures, above = studies.Measures(path), asked.asymmetry
 
     def asymmetric(force: float) -> bool:
         return force > 0.0 and measures.asymmetry(path.at(force)) > above
@@ -89,9 +89,8 @@ def narrowed(
     if first is not None and not asymmetric(first[0]) and asymmetric(first[1]):
         low, high = first
     try:
-        found = bisect_event(asymmetric, low, high, asked.tolerance)
-        low, high = found.low, found.high
-    except EventNotBracketed:
+        low, high = studies.bisect_event(asymmetric, low, high, asked.tolerance).ends
+    except studies.EventNotBracketed:
         low, high = (0.0, low) if asymmetric(low) else (high, float("nan"))
     how = f"dynamics with a ramp of {protocol.ramp_time:g} and a time step of {time_step:g}"
     text = f"{how}: the asymmetry of the floor response exceeds {above:g}"
@@ -102,15 +101,15 @@ def equal_rows(asked: Parameters) -> slab.Event:
     """For the first protocol and a slab with as many disks in every row."""
     first, given = asked.protocols[0], asked.equal_rows
     scene = first.scene(asked.scene, first.time_steps[0])
-    path = slab.LoadPath.of(scene, packing=slab.equal_rows(given.layers, given.disks))
+    path = studies.LoadPath.of(scene, packing=slab.equal_rows(given.layers, given.disks))
     protocol = first.model_copy(update={"between": given.between})
     return narrowed(asked, path, protocol, first.time_steps[0], None)
 
 
 def held(asked: Parameters, rest: State) -> xr.Dataset:
     """Equilibria that are displaced a little, settled under constant force and measured."""
-    path, given = slab.LoadPath.of(asked.base, rest), asked.held
-    problem, states, measures = path.problem, path.through(given.forces), slab.Measures(path)
+    path, given = studies.LoadPath.of(asked.base, rest), asked.held
+    problem, states, measures = path.problem, path.through(given.forces), studies.Measures(path)
     settled = []
     for state in states:
         shift = random_shift(state.position.shape, given.displacement, seed=0)
@@ -156,7 +155,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "runs": runs.assign(of_run.variables).assign(force=variable("run", forces, APPLIED)),
         "held": done["held"],
         "copies": compared({name: done[name] for name in packings}, force),
-        "states": slab.states_picture([rest, *found[0].states], slab.LoadPath.of(base, rest).problem),
+        "states": slab.states_picture([rest, *found[0].states], studies.LoadPath.of(base, rest).problem),
     }
     for dataset in datasets.values():
         dataset["friction_coefficient"] = variable((), base.contact.friction, "coefficient of friction between disks")

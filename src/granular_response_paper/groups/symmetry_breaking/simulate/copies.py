@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from granular_response import studies
 from granular_response.observe import network
 from granular_response.scene import Packing, Scene
 from granular_response.state import FloatArray
@@ -54,8 +55,8 @@ def random_shift(shape: tuple[int, ...], size: float, seed: int) -> FloatArray:
 
 def copied(scene: Scene, packing: Packing, force: float) -> xr.Dataset:
     """What is measured under one force on one copy of the packing, settled under gravity anew."""
-    path = slab.LoadPath.of(scene, packing=packing)
-    return slab.measured(slab.Measures(path), [path.at(force)])
+    path = studies.LoadPath.of(scene, packing=packing)
+    return slab.measured(studies.Measures(path), [path.at(force)])
 
 
 def compared(found: Mapping[str, xr.Dataset], force: float) -> xr.Dataset:

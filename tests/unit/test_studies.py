@@ -1,0 +1,238 @@
+"""Paths of a load, what is measured on them, and where something happens first."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_scenes import scene
+
+from granular_response.observe.peaks import asymmetry_sign
+from granular_response.observe.widths import half_maximum_width
+from granular_response.state import OPEN, STICKING
+from granular_response.state import Event as PathEvent
+from granular_response.studies import (
+    EventNotBracketed,
+    Happening,
+    LoadPath,
+    Measures,
+    bisect_event,
+    by_motion,
+    first_change,
+    first_opening,
+    lost,
+    reaches_floor,
+)
+from granular_response.studies import path as paths
+from granular_response.studies.path import EXACT, NARROW
+from granular_response_paper.slab_response import Scalars
+
+UNIT_LOAD = [{"disk": "top-centre", "force": [0.0, -1.0]}]
+
+
+@pytest.fixture(scope="module")
+def path():
+    return LoadPath.of(scene(5, 17, contact__friction=0.0, loads=UNIT_LOAD))
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """What is asked of the solver: (load factor of the start, load factors)."""
+    asked = []
+    solver = paths.loaded_states
+
+    def record(problem, start, factors):
+        asked.append((start.load_factor, list(factors)))
+        return solver(problem, start, factors)
+
+    monkeypatch.setattr(paths, "loaded_states", record)
+    return asked
+
+
+def test_states_are_found_from_the_one_below_and_once(path, calls):
+    path = LoadPath(path.scene, path.problem, path.rest)
+    path.through([0.2, 0.4, 1.0])
+    path.at(0.7)
+    assert path.solution(0.7).load_factors == (0.2, 0.4, 0.7)
+    path.at(0.4)
+    path.through([0.3, 0.4, 1.0, 1.2])
+    assert calls == [(0.0, [0.2, 0.4, 1.0]), (0.4, [0.7]), (0.2, [0.3]), (1.0, [1.2])]
+    assert path.at(0.7).load_factor == 0.7
+    assert path.method == "minimise"
+
+
+def test_a_state_on_the_way_is_the_one_found_alone(path):
+    together = LoadPath(path.scene, path.problem, path.rest).through([0.5, 2.0])[1]
+    alone = LoadPath(path.scene, path.problem, path.rest).at(2.0)
+    np.testing.assert_allclose(together.position, alone.position, atol=1e-11)
+
+
+def test_the_literal_protocol_starts_at_rest_every_time(calls):
+    literal = scene(2, 5, loads=UNIT_LOAD, protocol__method="dynamics")
+    path = LoadPath.of(literal)
+    path.at(0.1)
+    path.at(0.3)
+    assert [start for start, _ in calls] == [0.0, 0.0]
+    assert path.method == "dynamics"
+
+
+def test_measures_know_the_symmetric_slab(path):
+    measures = Measures(path)
+    assert measures.x[len(measures.x) // 2] == pytest.approx(0.0, abs=1e-9)
+    state = path.at(0.05)
+    scalars = Scalars.of(measures, state)
+    assert scalars.asymmetry < 1e-9
+    assert scalars.opened_contacts == scalars.sliding_contacts == scalars.network_asymmetry == 0
+    assert scalars.response_at_centre == pytest.approx(scalars.peak_height)
+    assert measures.response(state).sum() == pytest.approx(1.0, abs=1e-9)
+
+
+def test_contacts_far_from_the_load_are_not_near(path):
+    measures = Measures(path)
+    pairs = path.rest.pairs
+    middle = 0.5 * (path.rest.position[pairs.first, 0] + path.rest.position[pairs.second, 0])
+    width = path.problem.packing.width
+    np.testing.assert_array_equal(measures.near, (middle >= width / 3) & (middle <= 2 * width / 3))
+
+
+def test_mobilised_contacts_are_near_the_coulomb_limit(path):
+    state = path.rest
+    touching = np.flatnonzero(state.pairs.touching)[:4]
+    status = np.full(state.pairs.status.shape, OPEN, dtype=np.int8)
+    status[touching] = STICKING
+    normal, tangential = np.zeros(status.shape), np.zeros(status.shape)
+    normal[touching] = 2.0
+    tangential[touching] = 2.0 * 0.3 * np.array([-1.0, 0.985, 0.94, 0.0])
+    pairs = replace(state.pairs, status=status, normal_force=normal, tangential_force=tangential)
+    made = replace(state, pairs=pairs)
+    assert [int(made.pairs.near_limit(0.3, margin).sum()) for margin in (1e-6, 0.02, 0.1)] == [1, 2, 3]
+    assert int(made.pairs.near_limit(0.0, 0.1).sum()) == 0
+    opened = replace(made, pairs=replace(pairs, status=np.zeros_like(status)))
+    assert int(opened.pairs.near_limit(0.3, 0.1).sum()) == 0
+
+
+def test_half_maximum_width():
+    x = np.arange(-4.0, 5.0)
+    assert half_maximum_width(x, 4.0 - np.abs(x)) == pytest.approx(4.0)
+    assert half_maximum_width(x, np.where(x > -0.5, 4.0 - x, 0.0)) == pytest.approx(2.5)
+    two = np.array([0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0])
+    assert half_maximum_width(x, two) == pytest.approx(5.0)
+    assert np.isnan(half_maximum_width(x, x))
+
+
+def test_asymmetry_sign():
+    x = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
+    assert asymmetry_sign(x, np.array([0.0, 1.0, 9.0, 2.0, 0.0])) == 1
+    assert asymmetry_sign(x, np.array([3.0, 1.0, 9.0, 2.0, 0.0])) == -1
+    assert asymmetry_sign(x, np.array([1.0, 1.0, 9.0, 1.0, 1.0])) == 0
+
+
+def test_first_change():
+    assert first_change([1.0, 2.0, 3.0], [False, True, False]) == (1.0, 2.0)
+    assert first_change([1.0, 2.0], [True, True]) == (0.0, 1.0)
+    low, high = first_change([1.0, 2.0], [False, False])
+    assert (low, np.isnan(high)) == (2.0, True)
+
+
+@pytest.mark.parametrize(("threshold", "low", "high"), [(0.33, 0.3, 0.4), (0.055, 0.0, 0.1)])
+def test_events_among_minima_of_the_energy_are_bisected(path, threshold, low, high):
+    path = LoadPath(path.scene, path.problem, path.rest)
+    forces = [0.1, 0.2, 0.5]
+    path.through(forces)
+    found = path.first(forces, Happening(lambda s: s.load_factor > threshold, "made up"), 0.04)
+    assert low <= found[0] < threshold <= found[1] <= high
+    assert found[1] - found[0] <= 0.02
+
+
+@pytest.fixture(scope="module")
+def rough():
+    path = LoadPath.of(scene(5, 17, contact__friction=0.2, loads=UNIT_LOAD))
+    path.through([0.5, 3.0, 6.0])
+    return path
+
+
+def test_what_contacts_decide_happens_at_an_event_of_the_path_and_costs_no_state(rough, calls):
+    measures = Measures(rough)
+    known = dict(rough.known)
+    for what in (first_opening(measures), reaches_floor(measures)):
+        low, high = rough.first([0.5, 3.0, 6.0], what)
+        (at,) = {e.load_factor for s in known.values() for e in s.reached.events if low < e.load_factor < high}
+        assert high - low <= 2.001 * EXACT * at
+        before, after = (LoadPath(rough.scene, rough.problem, rough.rest).at(at + d) for d in (-1e-5, 1e-5))
+        assert [what.happened(state) for state in (before, after)] == [False, True]
+    assert rough.known == known
+
+
+def test_what_forces_decide_is_narrowed_within_one_piece(rough):
+    path = LoadPath(rough.scene, rough.problem, rough.rest)
+    states = path.through([0.5, 3.0, 6.0])
+    measures = Measures(path)
+    half = 0.5 * (measures.centre(states[1]) + measures.centre(states[2]))
+    side = measures.centre(states[1]) > half
+    half_way = Happening(lambda s: (measures.centre(s) > half) != side, "made up")
+    low, high = path.first([3.0, 6.0], half_way)
+    assert 3.0 < low < high < 6.0
+    assert high - low <= NARROW * high
+    assert not any(low < e.load_factor < high for e in states[2].reached.events)
+    centres = [measures.centre(path.at(force)) for force in (low, high)]
+    assert min(centres) <= half <= max(centres)
+
+
+def test_an_event_in_a_lost_equilibrium_has_the_bracket_of_the_loss(rough):
+    """There is no state of the path between."""
+    path = LoadPath(rough.scene, rough.problem, rough.rest)
+    states = path.through([3.0, 6.0])
+    jump = PathEvent(4.0, "jump", 7, until=4.5, displacement=0.1, reason="unstable")
+    path.through([3.9999, 4.0, 4.5])
+    for force in (4.5, 6.0):
+        path.known[force] = replace(path.known[force], reached=replace(path.known[force].reached, events=(jump,)))
+    states[1] = path.known[6.0]
+    for of_contacts in (False, True):
+        what = Happening(lambda state: state.load_factor > 4.2, "made up", of_contacts)
+        assert path.first([3.0, 6.0], what) == (4.0, 4.5)
+    assert lost(states) == [jump] and [by_motion(state) for state in states] == [False, True]
+
+
+@pytest.mark.parametrize("rising", [True, False])
+def test_bracket_holds_the_event_within_the_tolerance(rising):
+    bracket = bisect_event(lambda f: (f > math.pi) is rising, 0.0, 10.0, 0.01)
+    assert bracket.low <= math.pi < bracket.high
+    assert bracket.width <= 0.01
+    assert bracket.low < bracket.middle < bracket.high
+    assert bracket.at_low is not rising
+
+
+def test_each_point_is_evaluated_once():
+    seen = []
+
+    def predicate(f):
+        seen.append(f)
+        return f >= 3.0
+
+    bracket = bisect_event(predicate, 0.0, 8.0, 1.0)
+    assert len(seen) == len(set(seen)) == bracket.evaluations == 5  # two ends, three halvings
+    assert (bracket.low, bracket.high) == (2.0, 3.0)
+
+
+def test_known_ends_are_not_evaluated():
+    def predicate(f):
+        assert 0.0 < f < 8.0
+        return f >= 3.0
+
+    assert bisect_event(predicate, 0.0, 8.0, 1.0, at_low=False, at_high=True).evaluations == 3
+
+
+def test_equal_ends_are_an_error():
+    with pytest.raises(EventNotBracketed, match=r"False at both 0\.0 and 2\.0"):
+        bisect_event(lambda f: f > 3.0, 0.0, 2.0, 0.1)
+
+
+def test_tolerance_below_the_spacing_of_numbers_ends():
+    bracket = bisect_event(lambda f: f > 1e9 + 0.3, 1e9, 1e9 + 1.0, 1e-12)
+    assert bracket.high == math.nextafter(bracket.low, math.inf)
+
+
+@pytest.mark.parametrize(("low", "high", "tolerance"), [(1.0, 1.0, 0.1), (2.0, 1.0, 0.1), (0.0, 1.0, 0.0)])
+def test_bad_intervals_are_refused(low, high, tolerance):
+    with pytest.raises(ValueError, match=r"low|tolerance"):
+        bisect_event(lambda f: f > 0.5, low, high, tolerance)
