@@ -145,10 +145,10 @@ def unbalanced(problem: Problem, state: State) -> tuple[FloatArray, FloatArray]:
     load = state.load_factor * problem.load
     weight = np.stack([np.zeros(n), -problem.weight], axis=1)
     pushes = np.concatenate([weight, load[:, :2], on_pairs, -on_pairs, on_walls])
-    force = np.stack([np.bincount(disk, along, n) for along in pushes.T], axis=1)
+    force = np.stack([np.bincount(disk, along, n) for along in pushes.T], axis=1).astype(float, copy=False)
     tangential = np.concatenate([pairs.tangential_force, pairs.tangential_force, walls.tangential_force])
     turned = -radius[disk[n + len(load) :]] * tangential
-    torque = np.bincount(disk, np.concatenate([np.zeros(n), load[:, 2], turned]), n)
+    torque = np.asarray(np.bincount(disk, np.concatenate([np.zeros(n), load[:, 2], turned]), n), float)
     if problem.rolls:
         couple = problem.pair_arms(pairs.first, pairs.second) * pairs.rolling_force
         np.add.at(torque, pairs.first, couple)
