@@ -215,7 +215,7 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
         whole = (one.set_dims(given).values for one, given in zip(those.values(), sizes, strict=True))
         arrays = dict(zip(those, map(_without_objects, whole), strict=True))
         attributes, longest = next(iter(those.values())).attrs, max(arrays.values(), key=np.size)
-        heads = (longest[: len(one)] if name == "step" else longest for one in arrays.values())
+        heads = (longest[: len(one)] if name == "step" and one.ndim else longest for one in arrays.values())
         everywhere = name in coordinates and len(those) == len(measured)
         if dims == (name,) or (everywhere and all(map(_same, arrays.values(), heads))):
             variables[name] = (dims, longest, attributes)
