@@ -109,7 +109,7 @@ def test_shares_of_a_solution_are_whole_and_of_the_right_parts(script):
     assert sum(row[part] for part in (*dict(shares.PARTS), shares.REST)) == pytest.approx(1.0)
     assert row["dynamics"] > 0.5
     assert shares.part_of("~") == "matrices and arrays"
-    assert shares.part_of("src/granular_response/solvers/path.py") == shares.REST
+    assert shares.part_of("src/granular_response/solvers/path/landing.py") == shares.REST
 
 
 def test_what_skipping_forces_on_changes_no_result(script):

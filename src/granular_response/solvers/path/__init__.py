@@ -152,7 +152,6 @@ def step(leg: Leg, point: Point, stuck: bool) -> Point:
         return relisted(leg, beyond(leg, point, "no statuses of the contacts go on"))
     leg.record.events += events.changes(point, rates.sense)
     negative, before = rates.factor.negative_pivots, point.negative
-    point = replace(point, velocity=rates.velocity, negative=negative)
     # one real eigenvalue is negative, or real ones have passed zero; where contacts slide these may not go along
     if negative % 2 or negative not in (0, before):
         near = point.unstable if negative == before else None
@@ -162,6 +161,7 @@ def step(leg: Leg, point: Point, stuck: bool) -> Point:
         point = replace(point, unstable=unstable)
     found = landed(leg, point, rates)
     if found is None:
+        point = replace(point, velocity=rates.velocity, negative=negative)
         return relisted(leg, beyond(leg, point, "no equilibrium with these statuses"))
     leg.record.work.increments += 1
     if abs(found.factor - point.factor) * leg.unit > point.rate_problem.force:
