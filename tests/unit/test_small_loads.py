@@ -9,7 +9,7 @@ from granular_response.errors import EquilibriumError
 from granular_response.observe.difference import pair_force_difference, wall_force_difference
 from granular_response.observe.floor import floor_disks, floor_response
 from granular_response.scene import Scene
-from granular_response.solvers.small_loads import contact_answers, influence
+from granular_response.solvers.small_loads import added_forces, force_on, influence, sticking
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR
 
@@ -68,6 +68,14 @@ def test_nothing_holds_a_periodic_slab_on_a_smooth_floor_along_x():
     solution = solve_scene(described(changes, 80, [0.0, -1e-4, 0.0]))
     found = influence(solution.problem, solution.rest, floor_disks([solution.rest]))
     assert np.isnan(found[:, :, 0]).all() and np.isfinite(found[:, :, 1]).all()
+
+
+def contact_answers(problem, state, disks, sliding="refuse"):
+    """What a unit force downwards on one disk after another adds to every contact force: (k, m, 2) and (k, w, 2)."""
+    system, trial = sticking(problem, state, sliding)
+    answer = system.answers(trial)
+    added = [added_forces(system, trial, answer(force_on(problem, disk, 1, -1.0))) for disk in disks]
+    return tuple(np.array(one) for one in zip(*added, strict=True))
 
 
 def test_one_contact_that_resists_rolling_bears_a_load():

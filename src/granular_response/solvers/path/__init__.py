@@ -87,12 +87,11 @@ def _to(leg: Leg, asked: float | None) -> State:
     start = leg.start
     if leg.target == start.load_factor and start.reached.certificate is not None and start.certificate.stable:
         return replace(start, reached=replace(start.reached, events=()))
-    point = leg.at(start)
+    point, coarse = leg.at(start), None
     together = Together.asked(leg, point, asked)
     state = followed(leg, point, together)
     if together is None:
         return state
-    coarse = None
     with suppress(SolveError):
         coarse = followed(leg, leg.at(start), together.coarser())
     return together.judged(state, coarse)
