@@ -1,6 +1,5 @@
 """Observables of hand-made states: events, floor forces, profiles, differences of states."""
 
-
 import numpy as np
 import pytest
 from observe_states import ROW, contacts, opened, pair_index, slab, state, with_pairs

@@ -9,7 +9,7 @@ from granular_response.errors import EquilibriumError
 from granular_response.observe.difference import pair_force_difference, wall_force_difference
 from granular_response.observe.floor import floor_disks, floor_response
 from granular_response.scene import Scene
-from granular_response.solvers.small_loads import contact_answers, influence
+from granular_response.solvers.small_loads import added_forces, force_on, influence, sticking
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR
 

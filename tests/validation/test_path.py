@@ -357,6 +357,33 @@ def test_a_path_does_not_step_for_ever_where_no_statuses_go_on(monkeypatch):
     assert "stepped over" in stepped and solution.loaded[0].certificate.stable
 
 
+def test_steps_change_no_point():
+    """Taken again from the same point, also by motion to another list of candidates, they lead to the same one."""
+    load = [{"disk": "top-centre", "force": [0.0, -12.0]}]
+    packing = {"packing__polydispersity": 0.1, "packing__seed": 1}
+    problem, rest = at_rest(scene(5, 11, contact__friction=0.2, loads=load, **packing))
+    leg = path.Leg(problem, PathRecord(), rest, 1.0, -np.inf, None, path.OPTIONS)
+    here = path.step(leg, leg.at(rest), False)
+    moved = []
+    for _ in range(2):
+        leg.gone_on()
+        moved.append(path.by_motion(leg, here, "jump", "for a test", None))
+    assert moved[0].system is not moved[1].system and moved[0].factor == moved[1].factor > here.factor
+    assert np.array_equal(moved[0].position, moved[1].position)
+    first, again = (path.step(leg, here, False) for _ in range(2))
+    assert first.system is here.system and first.factor > here.factor
+    assert again.factor == pytest.approx(first.factor, rel=1e-9) and np.array_equal(again.due, first.due)
+
+
+def test_progress_does_not_go_back():
+    """Also where a path is followed twice, to measure what increments leave out."""
+    load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
+    problem, rest = at_rest(scene(3, 5, contact__friction=0.2, loads=load))
+    reported: list[float] = []
+    follow(problem, rest, [1.0, 3.0], together=0.3, progress=reported.append)
+    assert reported == sorted(set(reported)) and reported[-1] == 3.0
+
+
 def lost_on(scene: gr.Scene, programme) -> list[tuple[str, float]]:
     """Kind and load factor of the equilibria that a path through the factors loses."""
     problem, rest = at_rest(scene)

@@ -63,11 +63,7 @@ class Work:
 
 
 def solve_increment(
-    system: StaticSystem,
-    known: Configuration,
-    external: FloatArray,
-    guess: FloatArray,
-    work: Work,
+    system: StaticSystem, known: Configuration, external: FloatArray, guess: FloatArray, work: Work
 ) -> Trial | None:
     """Equilibrium under ``external``, one increment after ``known``; None where none is found.
 
@@ -106,12 +102,7 @@ def solve_increment(
 
 
 def minimise_with_limits(
-    system: StaticSystem,
-    known: Configuration,
-    external: FloatArray,
-    start: FloatArray,
-    limits: FloatArray,
-    work: Work,
+    system: StaticSystem, known: Configuration, external: FloatArray, start: FloatArray, limits: FloatArray, work: Work
 ) -> Trial | None:
     """The minimum of an increment's energy with fixed Coulomb limits, as near as steps come; None where they go on."""
     q = start

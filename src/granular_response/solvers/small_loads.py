@@ -3,8 +3,8 @@
 A stable state answers a force that is too small to change the status of any contact by ``dq = K^-1 f``, with the
 tangent stiffness K, and the vertical force on a floor disk changes by ``c . dq``, with the row c of its floor contact.
 So the influence of every disk on one floor disk is one solution with the transposed tangent, ``K^T y = c``: as many
-solutions as there are floor disks, whatever the number of loads. What a few loads do to all contacts takes a solution
-for each load.
+solutions as there are floor disks, whatever the number of loads. What a load does to all contacts
+(:func:`added_forces`) takes a solution of its own.
 """
 
 from __future__ import annotations
@@ -61,36 +61,6 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
         result[row] = answer(force.ravel()).reshape(freedoms, n).T
     result[:, _loose(problem, state)] = np.nan
     return result
-
-
-def contact_answers(
-    problem: Problem, state: State, disks: np.ndarray, *, sliding: str = "refuse"
-) -> tuple[FloatArray, FloatArray]:
-    """What a unit force downwards on one disk after another adds to every contact force, in the limit of small loads.
-
-    Parameters
-    ----------
-    problem, state, sliding : as in :func:`influence`.
-    disks : (k,) the loaded disks.
-
-    Returns
-    -------
-    (k, m, 2) and (k, w, 2): what is added to the force on ``pairs.first`` and on ``walls.first`` of the state, per
-    force, at contacts that stay where they are. NaN for disks that nothing bears, as of :func:`influence`.
-
-    Raises
-    ------
-    As :func:`influence`.
-    """
-    system, trial = sticking(problem, state, sliding)
-    answer = system.answers(trial)
-    on_pairs = np.empty((len(disks), len(system.first), 2))
-    on_walls = np.empty((len(disks), len(system.wall_disk), 2))
-    for row, disk in enumerate(disks):
-        on_pairs[row], on_walls[row] = added_forces(system, trial, answer(force_on(problem, disk, 1, -1.0)))
-    loose = _loose(problem, state)[disks, 1]
-    on_pairs[loose] = on_walls[loose] = np.nan
-    return on_pairs, on_walls
 
 
 def _loose(problem: Problem, state: State) -> np.ndarray:

@@ -87,12 +87,11 @@ def _to(leg: Leg, asked: float | None) -> State:
     start = leg.start
     if leg.target == start.load_factor and start.reached.certificate is not None and start.certificate.stable:
         return replace(start, reached=replace(start.reached, events=()))
-    point = leg.at(start)
+    point, coarse = leg.at(start), None
     together = Together.asked(leg, point, asked)
     state = followed(leg, point, together)
     if together is None:
         return state
-    coarse = None
     with suppress(SolveError):
         coarse = followed(leg, leg.at(start), together.coarser())
     return together.judged(state, coarse)
@@ -152,7 +151,6 @@ def step(leg: Leg, point: Point, stuck: bool) -> Point:
         return relisted(leg, beyond(leg, point, "no statuses of the contacts go on"))
     leg.record.events += events.changes(point, rates.sense)
     negative, before = rates.factor.negative_pivots, point.negative
-    point = replace(point, velocity=rates.velocity, negative=negative)
     # one real eigenvalue is negative, or real ones have passed zero; where contacts slide these may not go along
     if negative % 2 or negative not in (0, before):
         near = point.unstable if negative == before else None
@@ -162,6 +160,7 @@ def step(leg: Leg, point: Point, stuck: bool) -> Point:
         point = replace(point, unstable=unstable)
     found = landed(leg, point, rates)
     if found is None:
+        point = replace(point, velocity=rates.velocity, negative=negative)
         return relisted(leg, beyond(leg, point, "no equilibrium with these statuses"))
     leg.record.work.increments += 1
     if abs(found.factor - point.factor) * leg.unit > point.rate_problem.force:

@@ -16,13 +16,14 @@ def changes(point: Point, after: np.ndarray, until: float | None = None) -> list
     changed = (point.sense != after).nonzero()[0]
     if not changed.size:
         return []
-    system, packing, position = point.system, point.system.problem.packing, point.position
+    system, packing, moved = point.system, point.system.problem.packing, point.moved
     m, until = len(system.first), point.factor if until is None else until
     count = m + len(system.wall_disk)
     c = changed % count
     at_wall, first = c >= m, np.concatenate([system.first, system.wall_disk])[c]
-    second, here = np.concatenate([system.second, system.wall])[c], position[first]
-    towards = packing.box.separation(position[np.where(at_wall, first, second)], here)
+    second, here = np.concatenate([system.second, system.wall])[c], system.reference[first] + moved[first]
+    other = np.where(at_wall, first, second)
+    towards = packing.box.separation(system.reference[other] + moved[other], here)
     towards[at_wall] = -system.wall_normals[c[at_wall] - m]
     places = here + towards * (packing.radius[first] / np.hypot(*towards.T))[:, None]
     columns = changed, point.sense[changed], after[changed], first, second, at_wall, places

@@ -67,7 +67,8 @@ def _tried(leg: Leg, point: Point, rates: Rates, aim: Aim) -> Point | Aim | None
         if event is not None and float(velocity @ rates.velocity) < 0.0:
             return aim.shorter(0.5 * length)  # another branch, beyond a limit point of the load
     then = point.rate_problem.changes(trial, velocity, rates.sense)
-    passed = ((then.rate > 0.0) & (then.left < -force)).nonzero()[0]
+    due = then.due(force)
+    passed = due[then.left[due] < -force]
     if passed.size:  # another contact came first
         back = -then.left[passed] / then.rate[passed]
         contact, before = int(passed[np.argmax(back)]), max(way - float(back.max()), 0.0)
@@ -80,11 +81,11 @@ def _tried(leg: Leg, point: Point, rates: Rates, aim: Aim) -> Point | Aim | None
         return aim.shorter(min(0.5, 0.8 * (leg.options.bent / bent) ** (1 / 3)) * way)
     if steps > leg.options.outdated:
         point.system.outdate(rates.factor)
-    due = then.due(force)
     if not again:  # what the rates of the start say of contacts that bear nothing is the turn on the way
         due = due[(rates.changes.rate[due] > 0.0) | (due == aim.contact)]
     after = point.system.coupled(changed(rates.sense, due, then.what))
-    return point.on(factor, trial, rates.sense, after)
+    negative = rates.factor.negative_pivots
+    return Point(point.rate_problem, factor, trial, rates.sense, after, rates.velocity, negative, point.unstable)
 
 
 def _renewed(point: Point, trial: Trial, sense: np.ndarray) -> tuple[Updated | None, FloatArray]:
