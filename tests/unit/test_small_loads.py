@@ -70,6 +70,14 @@ def test_nothing_holds_a_periodic_slab_on_a_smooth_floor_along_x():
     assert np.isnan(found[:, :, 0]).all() and np.isfinite(found[:, :, 1]).all()
 
 
+def contact_answers(problem, state, disks, sliding="refuse"):
+    """What a unit force downwards on one disk after another adds to every contact force: (k, m, 2) and (k, w, 2)."""
+    system, trial = sticking(problem, state, sliding)
+    answer = system.answers(trial)
+    added = [added_forces(system, trial, answer(force_on(problem, disk, 1, -1.0))) for disk in disks]
+    return tuple(np.array(one) for one in zip(*added, strict=True))
+
+
 def test_an_unknown_that_a_load_holds_adds_nothing():
     load = [{"disk": "top-centre", "displacement": [None, -1e-4]}]
     solution = solve_scene(described({}, 80, SMALL).updated({"loads": load}))
