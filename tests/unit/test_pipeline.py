@@ -52,6 +52,26 @@ def test_folders_parameters_and_lock_have_the_same_groups(collection):
     assert locked == set(reproduce.stage_names(collection, ROOT))
 
 
+def test_a_lock_is_empty_while_every_stage_runs(tmp_path):
+    """At the end it has the stages of the pipeline in its order: also those that did not run, and none that is gone."""
+    lock, names = tmp_path / "dvc.lock", ["simulate@a", "simulate@b", "draw@a", "draw@b"]
+    one = "  {}:\n    cmd: {}\n    outs:\n    - path: {}\n".format
+    head = "schema: '2.0'\nstages:\n"
+    before = head + one("draw@b", "old", "d") + one("gone", "old", "g") + one("simulate@a", "old", "a")
+    lock.write_text(before)
+    with reproduce.emptied(lock, ()):
+        assert lock.read_text() == before
+    with reproduce.emptied(lock, names):
+        assert not lock.exists()
+    assert lock.read_text() == head + one("simulate@a", "old", "a") + one("draw@b", "old", "d")
+    with pytest.raises(KeyboardInterrupt), reproduce.emptied(lock, names):
+        lock.write_text(head + one("draw@a", "new", "x") + one("simulate@a", "new", "y"))
+        raise KeyboardInterrupt
+    assert lock.read_text() == head + one("simulate@a", "new", "y") + one("draw@a", "new", "x") + one(
+        "draw@b", "old", "d"
+    )
+
+
 def test_a_misspelt_group_names_the_right_one_and_where_it_lives(tmp_path):
     with pytest.raises(GroupError, match=r"^hystresis: no such figure group, did you mean hysteresis \(the ext"):
         collection_of("hystresis")

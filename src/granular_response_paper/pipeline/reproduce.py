@@ -2,6 +2,9 @@
 
 ``dvc repro`` decides what is out of date and runs it. The stored times of all stages tell how long the rest takes,
 scaled by how this machine compares on the stages that have run. Within a stage its own tasks are shown on a terminal.
+
+DVC reads and writes the whole of its lock around every stage, in 1.4 s once all stages are in it. Where every stage
+runs, the lock begins empty. At the end it gets back the stages that did not run, in the order of the pipeline.
 """
 
 from __future__ import annotations
@@ -14,7 +17,8 @@ import subprocess
 import sys
 import time
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -27,8 +31,8 @@ from granular_response_paper.registry import Collection
 #: Seconds of every stage from nothing, by collection, with the machine that they were measured on.
 TIMES = Path("benchmarks") / "pipeline.json"
 
-#: The pipeline of a collection, in its folder.
-FILE = "dvc.yaml"
+#: The pipeline of a collection and its lock, in its folder.
+FILE, LOCK = "dvc.yaml", "dvc.lock"
 
 #: What DVC prints where a stage begins, and where it need not run.
 _BEGINS = re.compile(r"^Running stage '(?:.*:)?([\w@]+)':")
@@ -62,6 +66,34 @@ def _rows(root: Path) -> list[dict[str, Any]]:
     """What is stored: a row for each stage of each collection."""
     path = root / TIMES
     return list(read_json(path)["runs"]) if path.exists() else []
+
+
+@contextmanager
+def emptied(lock: Path, names: Sequence[str]) -> Iterator[None]:
+    """A lock of DVC that is empty meanwhile, if ``names`` are given: the stages of its pipeline, which all run."""
+    before = lock.read_text(encoding="utf-8") if names and lock.exists() else ""
+    if not before:
+        yield
+        return
+    lock.unlink()
+    try:
+        yield
+    finally:
+        after = lock.read_text(encoding="utf-8") if lock.exists() else before
+        atomic.write_bytes(lock, merged(before, after, names).encode())
+
+
+def merged(before: str, after: str, names: Sequence[str]) -> str:
+    """The stages of two locks in the order of ``names``, each as it is ``after``, if it is there."""
+    (head, old), (_, new) = _parts(before), _parts(after)
+    both = old | new
+    return head + "".join(both[name] for name in names if name in both)
+
+
+def _parts(lock: str) -> tuple[str, dict[str, str]]:
+    """What stands before the stages of a lock, and the text of each stage."""
+    head, *stages = re.split(r"(?m)^(?=  \S)", lock)
+    return head, {stage.partition("\n")[0].strip(" :'\""): stage for stage in stages}
 
 
 @dataclass
@@ -136,9 +168,13 @@ def reproduce(
     command = [sys.executable, "-m", "dvc", "repro", *arguments]
     environment = os.environ | {"PYTHONUNBUFFERED": "1"}
     folder = root / collection.folder
-    with subprocess.Popen(
-        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True
-    ) as run:
+    stored = (root / ".dvc" / "cache").exists() or any((folder / "data").glob("*.nc"))
+    with (
+        emptied(folder / LOCK, names if "--force" in arguments or not stored else ()),
+        subprocess.Popen(
+            command, cwd=folder, env=environment, stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True
+        ) as run,
+    ):
         assert run.stdout is not None
         for line in run.stdout:
             last.append(line.rstrip("\n"))
