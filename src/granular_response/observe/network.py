@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ..state import Contacts, FloatArray, State
 from .difference import pair_numbers, require_same
@@ -161,6 +160,8 @@ def mirror_disks(position: FloatArray, axis: float, tolerance: float = 0.1) -> N
     ``position`` is (n, 2), best that of the undeformed packing. Raises ``ValueError`` if a disk has no
     image within ``tolerance``, or shares it.
     """
+    from scipy.spatial import cKDTree  # importing takes a twentieth of a second at the start of every process
+
     image = position * np.array([-1.0, 1.0]) + np.array([2.0 * axis, 0.0])
     distance, index = cKDTree(position).query(image)
     worst = int(np.argmax(distance))

@@ -29,7 +29,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 from scipy.special import erf
 
 from ..state import FloatArray, State
@@ -192,6 +191,8 @@ def _near(
     """Index pairs (point, centre) within ``reach`` of each centre, about ``_CHUNK`` at a time."""
     if points.size == 0 or centre.size == 0:
         return
+    from scipy.spatial import cKDTree  # importing takes a twentieth of a second at the start of every process
+
     tree = cKDTree(points)
     counts = np.asarray(tree.query_ball_point(centre, reach, return_length=True))
     group = np.cumsum(counts) // _CHUNK

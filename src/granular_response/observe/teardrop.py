@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from ..state import FLOOR, Box, FloatArray, State
 from .difference import require_same_candidates
@@ -102,6 +101,8 @@ def open_region(
 
 
 def _components(points: FloatArray, reach: float, box: Box) -> NDArray[np.int32]:
+    from scipy.spatial import cKDTree  # importing takes a twentieth of a second at the start of every process
+
     if box.periodic:
         tree = cKDTree(np.stack([points[:, 0] % box.width, points[:, 1]], axis=1), boxsize=(box.width, 0.0))
     else:

@@ -19,12 +19,14 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 
-def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[bytes], None] | None = None) -> None:
+def write_bytes(
+    path: str | os.PathLike[str], data: bytes, check: Callable[[bytes], None] | None = None, *, lasting: bool = True
+) -> None:
     """Write ``data`` to ``path``: afterwards the file is whole and on the disk, or as it was before.
 
     The folder must exist; of a link, what it leads to is replaced. ``check`` is called with the bytes read back from
-    the temporary file; what it raises prevents the replacement. Raises OSError if the file cannot be written, or reads
-    back differently.
+    the temporary file; what it raises prevents the replacement. What need not be ``lasting`` may be lost when the
+    machine stops, and is written sooner. Raises OSError if the file cannot be written, or reads back differently.
     """
     target = _regular(path)
     with _temporary(target) as (descriptor, temporary):
@@ -33,13 +35,16 @@ def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[byte
         view = memoryview(data)
         while view:
             view = view[os.write(descriptor, view) :]
-        os.fsync(descriptor)
+        if lasting:
+            os.fsync(descriptor)
         written = temporary.read_bytes()
         if written != data:
             raise OSError(f"{temporary} reads back differently from what was written")
         if check:
             check(written)
         os.replace(temporary, target)
+    if not lasting:
+        return
     with contextlib.suppress(OSError):  # the new name goes to the disk too, where the file system can
         folder = os.open(target.parent, os.O_RDONLY)
         try:

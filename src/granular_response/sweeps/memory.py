@@ -90,7 +90,8 @@ class Memory:
             if not self.shelf.is_dir():
                 self._clear()
                 self.shelf.mkdir(parents=True, exist_ok=True)
-            atomic.write_bytes(self._path(name), data + _seal(name, data))
+            # by its seal a file is known that was lost in part
+            atomic.write_bytes(self._path(name), data + _seal(name, data), lasting=False)
         except OSError as error:
             warn(f"{self.folder}: nothing more is kept there: {error.strerror or error}")
 
