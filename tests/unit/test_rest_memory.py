@@ -133,7 +133,7 @@ def test_states_of_other_sources_go_after_a_week(folder, computed):
 
 
 def test_a_full_disk_costs_a_warning(folder, computed, monkeypatch):
-    def full(*_):
+    def full(*_, **__):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(atomic, "write_bytes", full)
