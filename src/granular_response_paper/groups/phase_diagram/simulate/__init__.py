@@ -8,6 +8,7 @@ among them, so nothing is simulated. What counts as two peaks, and what a crosso
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,6 @@ import xarray as xr
 
 from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS
-from granular_response.sweeps.resources import current
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import COLLAPSED, smoothed
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
@@ -26,6 +26,7 @@ from granular_response_paper.records import axes, parts, table, variables
 from granular_response_paper.survey import crossover
 from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import LEVELS, Crossing, Ensemble, Singles, folded
+from granular_response_paper.tasks import computed
 
 APPLIED = f"applied force {WEIGHTS}"
 
@@ -44,21 +45,15 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     stored = survey.read(Path(asked.survey), asked.blocks)
     source, packings = stored["ensembles"], stored["packings"]
     places = list(product(range(len(widths)), range(source.sizes["case"])))
-    drawn: dict[str, Any] = {"draws": asked.draws, "seed": asked.seed, "tolerance": asked.tolerance}
-    crossings, single, few = {}, {}, {}
     compared = starts_of(source, packings, asked)
-    for done, (w, case) in enumerate(places, 1):
+    tasks = {}
+    for w, case in places:
         ensemble = read_ensemble(source, case, x, widths[w], asked.least_part)
-        symmetric = Ensemble(ensemble.force, folded(ensemble.response), ensemble.least)
-        crossings[w, case] = crossover.cross(
-            symmetric, x, widths[w], numbers=asked.numbers, others=asked.other_tolerances, **drawn
-        )
-        single[w, case] = crossover.singles(ensemble, x, widths[w], **drawn)
-        for k, start in enumerate(compared):
-            if start.case == case:
-                few[w, k] = dips_of_few(symmetric, start.step, x, widths[w], asked)
-        if progress := current().progress:
-            progress(done, len(places), "crossovers")
+        steps = {k: start.step for k, start in enumerate(compared) if start.case == case}
+        tasks[w, case] = partial(of_case, ensemble, x, widths[w], asked, steps)
+    done = computed(tasks, "crossovers")
+    crossings, single = ({k: one[0] for k, one in done.items()}, {k: one[1] for k, one in done.items()})
+    few = {(w, k): dips for (w, _), one in done.items() for k, dips in one[2].items()}
     found = _datasets(source, asked, crossings, single)
     collapsed = (source["outcome"].values == COLLAPSED).any(axis=-1).sum(axis=-1).astype(np.int32)
     text = "packings that collapse along their load paths"
@@ -68,6 +63,17 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     small = survey.read(Path(asked.survey), [asked.linear_range])["ensembles"]
     found["linear_range"] = _linear_range(small, asked.linear_width, np.concatenate([-x[:0:-1], x]))
     return labelled(found)
+
+
+def of_case(
+    ensemble: Ensemble, x: FloatArray, width: float, asked: Parameters, steps: Mapping[int, int]
+) -> tuple[Crossing, Singles, dict[int, FloatArray]]:
+    """The crossover of an ensemble, its realizations one by one, and the dips of few of them at some ``steps``."""
+    drawn: dict[str, Any] = {"draws": asked.draws, "seed": asked.seed, "tolerance": asked.tolerance}
+    symmetric = Ensemble(ensemble.force, folded(ensemble.response), ensemble.least)
+    crossing = crossover.cross(symmetric, x, width, numbers=asked.numbers, others=asked.other_tolerances, **drawn)
+    few = {k: dips_of_few(symmetric, step, x, width, asked) for k, step in steps.items()}
+    return crossing, crossover.singles(ensemble, x, width, **drawn), few
 
 
 def read_ensemble(source: xr.Dataset, case: int, x: FloatArray, width: float, least_part: float) -> Ensemble:
