@@ -19,7 +19,7 @@ from ..solvers.problem import Problem
 from ..solvers.solution import Solution, loaded_states
 from ..state import OPEN, STICKING, Event, State
 from ..sweeps.rest import rest_state
-from .brackets import bisect_event, first_change
+from .search import bisect_event, first_change
 
 #: What a path leaves of the force of an event, as a part of it.
 EXACT = 1e-8
