@@ -121,13 +121,16 @@ def claims(
     from .claims import preparations as kept
     from .claims import stored, table
 
+    if figure is not None and not every:
+        raise typer.BadParameter("must stand with --list: without it all claims are judged anew", param_hint="--figure")
     loaded()
     one = collection(name)
     output, data = output or one.here / stored.OUTPUT, data or one.here / "data"
     found = stored.read(output) if every else table.write(output, data, others or kept.OUTPUT, collection=one)
-    for row in found["table"] if every else ():
-        if figure is not None and figure not in row["figures"]:
-            continue
+    rows = [row for row in found["table"] if figure is None or figure in row["figures"]]
+    if every and not rows:
+        typer.echo(f"no claim on figure {figure}")
+    for row in rows if every else ():
         star = "*" if row["star"] else ""
         typer.echo(f"{row['id']:4} {row['verdict'] + star:15} {row['here']}")
         typer.echo(f"{'':20} {row['source'].capitalize()}, {row['place']}: {row['paper']}")

@@ -57,12 +57,31 @@ def test_the_band_is_that_of_the_responses():
     assert found["floor_response_low"].attrs == found["floor_response"].attrs
 
 
+def test_a_band_is_that_of_one_disk():
+    """Other disks reach the floor, and another one is on top, where the packing rearranges as it comes to rest."""
+    load = [gr.Load(disk="top-centre", force=(0, -2))]
+    heap = gr.Scene(packing=gr.Poured(disks=40, width=14.0, seed=0), contact=gr.Contact(friction=0.5), loads=load)
+    ways = {"at once": {}, "smooth": {"gravity": "frictionless"}}
+    with pytest.warns(
+        UserWarning, match=r"^loads are on other disks in other preparations \(at once: \[39\], smooth: "
+    ):
+        found = gr.preparations(heap, ways, workers=1, progress=False)
+    for way, changes in ways.items():
+        alone = gr.solve(heap.updated({"preparation": changes}), progress=False).floor_response
+        here = found["floor_response"].sel(preparation=way, floor_disk=alone["floor_disk"].values)
+        assert here.dims == alone.dims
+        np.testing.assert_array_equal(here, alone)
+        assert found["floor_response"].sel(preparation=way).count() == alone.count()
+    assert (np.diff(found["x"].mean("preparation")) > 0.0).all()
+
+
 @pytest.mark.parametrize(
     ("ways", "said"),
     [
         ({}, r"ways = {}: must be a mapping of names to preparations"),
         ([gr.Preparation()], r"ways = \[.*\]: must be a mapping"),
         ({"a": {"gravity": "sloow"}}, r"ways\['a'\]: preparation.gravity = 'sloow': must be .*did you mean slow"),
+        ({"a": {}, "b": gr.Preparation()}, r"ways\['b'\]: is the same as 'a'; keys that are left out are those of the"),
         ({"a": 3}, r"ways\['a'\]: preparation = 3: must be a mapping with keys"),
     ],
 )

@@ -75,7 +75,14 @@ def test_an_equilibrium_stays_and_a_load_moves_it():
     np.testing.assert_allclose(pushed["position"][1], result.loaded[-1].position, atol=1e-6)
     assert pushed["load_factor"].values.tolist() == [1.0, 1.0]
     smooth = slab.updated({"protocol.ramp_time": 5.0})
-    under = gr.motion(smooth, [1.0], start=result.loaded[-1], progress=False)  # its load is there from the beginning
+    named = smooth.updated({"loads.0.disk": int(result.loaded_disks[0])})
+    under = gr.motion(named, [1.0], start=result.loaded[-1], progress=False)  # its load is there from the beginning
     np.testing.assert_allclose(under["position"][0], result.loaded[-1].position, atol=1e-12)
+    with pytest.raises(
+        gr.SceneError, match=r"^loads\[0\]\.disk = 'top-centre': must be the number of a disk, since start"
+    ):
+        gr.motion(smooth, [1.0], start=result.loaded[-1])
+    with pytest.raises(gr.SceneError, match=r"^start: a Result, must be a state, such as result.rest or result.loaded"):
+        gr.motion(slab, [1.0], start=result)
     with pytest.raises(gr.SceneError, match=r"^start: a state of 20 disks, must be one of this packing of 908$"):
         gr.motion(gr.Scene(loads=[]), [1.0], start=result.rest)

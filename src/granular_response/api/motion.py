@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..scene import Scene
+from ..scene import Scene, SceneError
+from ..scene.errors import show
 from ..scene.laboratory import FORCE, LENGTH, MASS, TIME
 from ..solvers.motion import trajectory
 from ..solvers.solution import Progress
@@ -38,7 +39,8 @@ def motion(
     scene : a scene, nested mappings with its keys, or the path of a scene file.
     times : in sqrt(R/g) since the start, growing, from 0 on.
     start : a state to begin with, such as ``result.rest``, with its springs; its velocities are those of the scene if
-        the scene has a motion.
+        the scene has a motion. Of one under load, loads name their disks by number (``result.loaded_disks``), and go
+        from its load factor to 1: a state that ``load_factors`` have taken elsewhere needs a scene with its forces.
     progress : as of :func:`solve`.
 
     Returns
@@ -62,6 +64,13 @@ def motion(
     True
     """
     asked = described(scene)
+    if not isinstance(start, State | None):
+        raise SceneError(f"start: a {type(start).__name__}, must be a state, such as result.rest or result.loaded[-1]")
+    if start is not None and start.load_factor != 0.0:  # disks have moved, and a selector may find another one
+        for k, load in enumerate(asked.loads):
+            if not isinstance(load.disk, int):
+                said = f"loads[{k}].disk = {show(load.disk)}: must be the number of a disk, since start is under load"
+                raise SceneError(f"{said}; result.loaded_disks has it")
     with shown(progress) as report, compiling.logged(report):
         found = trajectory(asked, times, start=start, progress=report)
     packing, states = found.problem.packing, found.states

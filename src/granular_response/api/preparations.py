@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from ..scene import Preparation, Scene, SceneError, Taps
 from ..scene.errors import show
 from ..sweeps.tasks import Progress
 from .result import Result, described
-from .sweep import floor_response, sweep
+from .sweep import as_dataset, floor_response, sweep
 
 #: Preparations that are compared unless others are given.
 WAYS: Mapping[str, Preparation] = MappingProxyType(
@@ -46,16 +49,20 @@ def preparations(
 
     Parameters
     ----------
-    ways : by name, a ``Preparation`` or a mapping of its keys. If left out: gravity at once (the paper's), grown over
-        20, 100 and 500 sqrt(R/g), a start without friction, and ten taps by 0.5 g after slow gravity.
+    ways : by name, a ``Preparation`` or a mapping of keys that differ from that of the scene. If left out: gravity at
+        once (the paper's), grown over 20, 100 and 500 sqrt(R/g), a start without friction, and ten taps by 0.5 g after
+        slow gravity.
     scene, measure, load_factors, workers, scheduler, checkpoint, progress : as of :func:`sweep`.
 
     Returns
     -------
-    What :func:`sweep` returns, with the dimension ``preparation``; and of each measured number that depends on it,
-    ``..._low`` and ``..._high``, the ends of its band over preparations (those without an equilibrium left out).
+    What :func:`sweep` returns, with the dimension ``preparation``, and ``loaded_disk``; and of each measured number
+    that depends on it, ``..._low`` and ``..._high``, the ends of its band over preparations (those without an
+    equilibrium left out). Where not the same disks reach the floor, ``floor_disk`` has their numbers, in their order
+    along x, so that a band is that of one disk.
 
-    Raises as :func:`sweep` does; SceneError for what is no preparation.
+    Raises as :func:`sweep` does; SceneError for what is no preparation, or one that is given twice. Warns (UserWarning)
+    where a load is on another disk in another preparation.
 
     Examples
     --------
@@ -73,10 +80,54 @@ def preparations(
             chosen.append(base.updated({"preparation": way}).preparation)
         except SceneError as error:
             raise SceneError(f"ways[{name!r}]: {error}") from None
+        if (first := chosen.index(chosen[-1])) < len(chosen) - 1:
+            twin = list(ways)[first]
+            raise SceneError(f"ways[{name!r}]: is the same as {twin!r}; keys that are left out are those of the scene")
     options: dict[str, Any] = {"load_factors": load_factors, "workers": workers, "scheduler": scheduler}
-    found = sweep(base, {"preparation": chosen}, measure, checkpoint=checkpoint, progress=progress, **options)
+    noted = _Noted(measure)
+    found = sweep(base, {"preparation": chosen}, noted, checkpoint=checkpoint, progress=progress, **options)
     found = found.assign_coords(preparation=("preparation", list(ways), found["preparation"].attrs))
-    over = {name: one for name, one in found.data_vars.items() if "preparation" in one.dims and one.dtype.kind in "fiu"}
+    disks = found["loaded_disk"].values
+    if len({tuple(one) for one in disks[np.isfinite(disks).all(axis=1)].tolist()}) > 1:
+        said = ", ".join(f"{way}: {one.tolist()}" for way, one in zip(ways, disks, strict=True))
+        cure = "name a disk by its number"
+        warnings.warn(f"loads are on other disks in other preparations ({said}); {cure}", stacklevel=2)
+    found = _by_disk(found)
+    over = {
+        name: one
+        for name, one in found.data_vars.items()
+        if "preparation" in one.dims and one.dtype.kind in "fiu" and name != "loaded_disk"
+    }
     low = {f"{name}_low": one.min("preparation", keep_attrs=True) for name, one in over.items()}
     high = {f"{name}_high": one.max("preparation", keep_attrs=True) for name, one in over.items()}
     return found.assign(low | high)
+
+
+@dataclass(frozen=True)
+class _Noted:
+    """What is measured, and which disks are loaded."""
+
+    measure: Callable[[Result], Any]
+
+    def __call__(self, result: Result) -> xr.Dataset:
+        disks = xr.DataArray(result.loaded_disks, dims="load_point", attrs={"long_name": "disk of each load"})
+        return as_dataset(self.measure(result)).assign(loaded_disk=disks)
+
+
+def _by_disk(found: xr.Dataset) -> xr.Dataset:
+    """The same with the floor disks by their numbers, where they were numbered from the left in each preparation."""
+    if "preparation" not in getattr(found.get("floor_disk_index"), "dims", ()):
+        return found
+    each = []
+    for k in range(found.sizes["preparation"]):
+        one = found.isel(preparation=[k])
+        index = one["floor_disk_index"].values[0]
+        known = np.flatnonzero(np.isfinite(index))
+        one = one.drop_vars("floor_disk_index").isel(floor_disk=known)
+        each.append(one.assign_coords(floor_disk=("floor_disk", index[known].astype(int))))
+    apart = [name for name, one in found.variables.items() if "preparation" in one.dims and name != "floor_disk_index"]
+    own = [name for name in apart if name in found.data_vars]
+    joined = xr.concat(each, "preparation", data_vars=own, coords="minimal", join="outer", compat="override")
+    if "x" in joined.coords and "preparation" in joined["x"].dims:
+        joined = joined.isel(floor_disk=np.argsort(joined["x"].mean("preparation").values))
+    return joined.assign({name: joined[name].transpose(*found[name].dims) for name in own})

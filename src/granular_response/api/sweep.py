@@ -157,7 +157,7 @@ def _measured(
     solved = memory.result(_solved, scene) if memory else _solved(scene)
     if isinstance(solved, str):
         return solved, []
-    return _dataset(measure(Result(solved))), solved.remarks
+    return as_dataset(measure(Result(solved))), solved.remarks
 
 
 def _solved(scene: Scene) -> Solution | str:
@@ -168,7 +168,7 @@ def _solved(scene: Scene) -> Solution | str:
         return " ".join(str(error).split())
 
 
-def _dataset(measured: Measured) -> xr.Dataset:
+def as_dataset(measured: Measured) -> xr.Dataset:
     """What a measure returned as a dataset."""
     if isinstance(measured, xr.Dataset):
         return measured

@@ -151,7 +151,7 @@ class LoadPath:
     ) -> tuple[float, float]:
         """Between which forces something happens first: after the one and not after the other.
 
-        ``forces`` are neighbours on the path, with known states. The first of them at which it has happened is narrowed
+        ``forces`` are neighbours on the path. The first of them at which it has happened is narrowed
         to the event of the path between it and the one before, or within a piece between two events to ``width`` (per
         force), or to an absolute ``tolerance``. Events are looked at exactly, or so far ``beside`` on both sides, where
         contacts have their status before and after.
@@ -161,13 +161,12 @@ class LoadPath:
         Examples
         --------
         >>> path = gr.studies.LoadPath.of(result.scene)
-        >>> states = path.through([0.1, 1.0, 4.0])
-        >>> sought = gr.studies.happenings(gr.studies.Measures(path), states[0], 0.1)
+        >>> sought = gr.studies.happenings(gr.studies.Measures(path), path.at(0.1), 0.1)
         >>> low, high = path.first([0.1, 1.0, 4.0], sought["linear_range"])
         >>> low < high < 4.0
         True
         """
-        low, high = first_change(forces, (happening.happened(self.known[force]) for force in forces))
+        low, high = first_change(forces, map(happening.happened, self.through(forces)))
         if not np.isfinite(high):
             return low, high
         passed = self.known[high].reached.events
