@@ -10,7 +10,7 @@ import xarray as xr
 
 import granular_response as gr
 from granular_response.api.result import _places
-from granular_response.api.sweep import _dataset, _values
+from granular_response.api.sweep import as_dataset, _values
 from granular_response.scene.given import plain
 from granular_response.solvers.solution import load_programme
 
@@ -128,7 +128,7 @@ def test_arrays_in_laboratory_units_are_reduced():
 
 
 def test_what_a_measure_misses_is_nan():
-    measured = _dataset({"a": np.ma.masked_equal([1, 3], 3), "b": np.ma.masked_equal([1.0, 3.0], 1.0)})
+    measured = as_dataset({"a": np.ma.masked_equal([1, 3], 3), "b": np.ma.masked_equal([1.0, 3.0], 1.0)})
     np.testing.assert_array_equal(measured["a"], [1.0, np.nan])
     np.testing.assert_array_equal(measured["b"], [np.nan, 3.0])
 
