@@ -10,7 +10,7 @@ import xarray as xr
 
 import granular_response as gr
 from granular_response.api.result import _places
-from granular_response.api.sweep import as_dataset, _values
+from granular_response.api.sweep import _values, as_dataset
 from granular_response.scene.given import plain
 from granular_response.solvers.solution import load_programme
 
