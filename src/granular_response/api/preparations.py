@@ -93,11 +93,8 @@ def preparations(
         cure = "name a disk by its number"
         warnings.warn(f"loads are on other disks in other preparations ({said}); {cure}", stacklevel=2)
     found = _by_disk(found)
-    over = {
-        name: one
-        for name, one in found.data_vars.items()
-        if "preparation" in one.dims and one.dtype.kind in "fiu" and name != "loaded_disk"
-    }
+    numbers = found.drop_vars("loaded_disk").data_vars
+    over = {name: one for name, one in numbers.items() if "preparation" in one.dims and one.dtype.kind in "fiu"}
     low = {f"{name}_low": one.min("preparation", keep_attrs=True) for name, one in over.items()}
     high = {f"{name}_high": one.max("preparation", keep_attrs=True) for name, one in over.items()}
     return found.assign(low | high)
@@ -125,8 +122,7 @@ def _by_disk(found: xr.Dataset) -> xr.Dataset:
         known = np.flatnonzero(np.isfinite(index))
         one = one.drop_vars("floor_disk_index").isel(floor_disk=known)
         each.append(one.assign_coords(floor_disk=("floor_disk", index[known].astype(int))))
-    apart = [name for name, one in found.variables.items() if "preparation" in one.dims and name != "floor_disk_index"]
-    own = [name for name in apart if name in found.data_vars]
+    own = [name for name, one in found.data_vars.items() if "preparation" in one.dims]
     joined = xr.concat(each, "preparation", data_vars=own, coords="minimal", join="outer", compat="override")
     if "x" in joined.coords and "preparation" in joined["x"].dims:
         joined = joined.isel(floor_disk=np.argsort(joined["x"].mean("preparation").values))
