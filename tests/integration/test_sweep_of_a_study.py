@@ -34,7 +34,6 @@ SECTIONS = {
             "protocol.stop_kinetic_energy": 1e-9,
         },
         "realizations": 4,
-        "pair_realizations": 3,
         "offsets": [1, 3],
         "forces": [0.2, 1.0],
         "single_forces": [0.5, 1.0],
@@ -42,7 +41,7 @@ SECTIONS = {
         "tolerance": 0.05,
     },
 }
-TASKS = 4 + 4 + 3 * 2  # rest states, single loads, pairs of loads
+TASKS = 4 + 4 + 4 * 2  # rest states, single loads, pairs of loads
 
 
 @pytest.fixture

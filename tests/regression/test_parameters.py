@@ -94,7 +94,6 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"forces": [1.0, 0.5]}, r"forces = \[1.0, 0.5\]: must be two or more growing numbers above 0"),
         ({"forces": [0.2, 0.5]}, r"forces = \[0\.2, 0\.5\]: must have 0\.2 and 1 among them"),
         ({"offsets": [10]}, "must be places from 1 to 9"),
-        ({"pair_realizations": 4}, "pair_realizations = 4: must be from 1 to realizations = 3"),
     ],
     "theory": [
         ({"stiffness_ratio": -0.1}, "stiffness_ratio = .*: must be"),

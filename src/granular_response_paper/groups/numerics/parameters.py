@@ -41,12 +41,11 @@ class Swing(Description):
 
 
 class Disorder(Description):
-    """Responses of disordered slabs whose runs stop early, beside those of the same slabs in equilibrium."""
+    """Responses of disordered slabs whose runs stop early, and after a static finish of the same runs."""
 
     scene: Annotated[
-        Scene, over(Scene(), "loads", "packing.realization", "protocol.method", "protocol.stop_kinetic_energy")
+        Scene, over(Scene(), "loads", "packing.realization", "protocol.method", "protocol.static_finish")
     ] = Scene()
-    stop_kinetic_energy: Positive = Field(description="Per disk, of the runs that stop early.")
     realizations: Count
     width: Positive = Field(description="w of the smoothing Gaussian, in radii.")
     reach: Positive = Field(description="Of the x axis, in radii.")

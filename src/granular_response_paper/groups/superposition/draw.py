@@ -39,12 +39,11 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     diameters = [2 * offset for offset in parameters.offsets]
     scene, distance = parameters.scene, [2.0 * d for d in diameters]
     panels = lettered(f"d = {d:g} diameters" for d in diameters)
-    said = of_scene(scene, force=parameters.forces, distance=distance, realizations=parameters.pair_realizations)
+    said = of_scene(scene, force=parameters.forces, distance=distance, realizations=parameters.realizations)
     found = of_group(
         "superposition",
         {"fig24b_superposition_error": said},
         p=parameters,
-        linear=datasets["linear_range"].sizes["realization"],
         tolerance=100.0 * parameters.tolerance,
         until=LINEAR_UNTIL,
     )

@@ -20,7 +20,6 @@ FORCES = {"fig23_superposition": 0.2, "fig24_superposition": 1.0}
 class Parameters(SceneGroup):
     scene: Annotated[Scene, over(_UNLOADED, "packing.realization", "loads")] = _UNLOADED
     realizations: Count = Field(description="Of the radii.")
-    pair_realizations: Count = Field(description="Those of them with two loads.")
     offsets: Counts = Field(description="Places of the loads to either side of the middle of the top row.")
     forces: Several = Field(description="Each of two loads, in mean disk weights.")
     single_forces: Several = Field(description="The load on the middle disk.")
@@ -29,9 +28,6 @@ class Parameters(SceneGroup):
 
     @model_validator(mode="after")
     def _check(self) -> Parameters:
-        if self.pair_realizations > self.realizations:
-            rule = f"must be from 1 to realizations = {self.realizations}"
-            raise Problem(rule, key=("pair_realizations",), value=self.pair_realizations)
         if not set(FORCES.values()) <= set(self.forces):
             shown = " and ".join(f"{force:g}" for force in FORCES.values())
             raise Problem(

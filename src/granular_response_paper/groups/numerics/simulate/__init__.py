@@ -108,7 +108,6 @@ def _tasks(asked: Parameters, grid: FloatArray) -> Mapping[str, list[partial[Any
     integrated = usual.updated({"protocol.time_step": asked.integrator_time_step})
     slab = disorder.scene.updated({"loads": _loads(asked.force)})
     slabs = [slab.updated({"packing.realization": r}) for r in range(disorder.realizations)]
-    early = disorder.stop_kinetic_energy, grid.tolist(), disorder.width
     return {
         "damping": [
             partial(damp, verlet.updated({"contact.damping_ratio": ratio}), damping.time_step)
@@ -117,7 +116,7 @@ def _tasks(asked: Parameters, grid: FloatArray) -> Mapping[str, list[partial[Any
         "stop_energy": [partial(stopped, _scene(asked, mu), asked.stop_energies) for mu in asked.frictions],
         "restart": [partial(restart, smooth, force, asked.restart.steps, READ_EVERY) for force in asked.restart.forces],
         "swing": [partial(swing, scene, asked.swing.steps, asked.swing.read_every) for scene in bare],
-        "disorder": [partial(disordered, scene, *early) for scene in slabs],
+        "disorder": [partial(disordered, scene, grid.tolist(), disorder.width) for scene in slabs],
         "time_step": [partial(respond, usual.updated({"protocol.time_step": step})) for step in asked.time_steps],
         "integrators": [
             partial(respond, integrated.updated({"protocol.integrator": name})) for name in asked.integrators

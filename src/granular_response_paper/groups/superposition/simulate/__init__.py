@@ -32,18 +32,18 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     SweepError
         If a realization does not come to rest, at rest or under a load: none is left out in silence.
     """
-    asked, offsets, with_pairs = parameters, parameters.offsets, range(parameters.pair_realizations)
-    scenes = {r: asked.base.updated({"packing.realization": r}) for r in range(asked.realizations)}
+    asked, offsets, drawn = parameters, parameters.offsets, range(parameters.realizations)
+    scenes = {r: asked.base.updated({"packing.realization": r}) for r in drawn}
     rests = computed({r: partial(rest_of, scene) for r, scene in scenes.items()}, "rest")
     singles = computed({r: partial(load_single, scene, rests[r], asked) for r, scene in scenes.items()}, "single loads")
-    two = places(with_pairs, offsets)
+    two = places(drawn, offsets)
     both = {at: partial(load_pair, scenes[r], rests[r], offset, asked.forces) for at, (r, offset) in two}
     pairs = computed(both, "pairs of loads")
 
     packing, middle = asked.base.packing.build(), f"from the middle disk on top {RADII}"
-    load_x = [[pairs[r, k].load_x - singles[r].load_x for k in range(len(offsets))] for r in with_pairs]
+    load_x = [[pairs[r, k].load_x - singles[r].load_x for k in range(len(offsets))] for r in drawn]
     where = variables(
-        x=("realization floor_disk", [singles[r].x for r in with_pairs], f"rest position of a floor disk {middle}"),
+        x=("realization floor_disk", [singles[r].x for r in drawn], f"rest position of a floor disk {middle}"),
         load_x=("realization distance side", load_x, f"rest position of the loaded disks {middle}"),
     )
     apart = "places between the two loaded disks, their distance in mean disk diameters"
