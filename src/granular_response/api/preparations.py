@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
@@ -84,7 +84,7 @@ def preparations(
             twin = list(ways)[first]
             raise SceneError(f"ways[{name!r}]: is the same as {twin!r}; keys that are left out are those of the scene")
     options: dict[str, Any] = {"load_factors": load_factors, "workers": workers, "scheduler": scheduler}
-    noted = _Noted(measure)
+    noted = functools.partial(_noted, measure=measure)
     found = sweep(base, {"preparation": chosen}, noted, checkpoint=checkpoint, progress=progress, **options)
     found = found.assign_coords(preparation=("preparation", list(ways), found["preparation"].attrs))
     disks = found["loaded_disk"].values
@@ -100,15 +100,10 @@ def preparations(
     return found.assign(low | high)
 
 
-@dataclass(frozen=True)
-class _Noted:
+def _noted(result: Result, *, measure: Callable[[Result], Any]) -> xr.Dataset:
     """What is measured, and which disks are loaded."""
-
-    measure: Callable[[Result], Any]
-
-    def __call__(self, result: Result) -> xr.Dataset:
-        disks = xr.DataArray(result.loaded_disks, dims="load_point", attrs={"long_name": "disk of each load"})
-        return as_dataset(self.measure(result)).assign(loaded_disk=disks)
+    disks = xr.DataArray(result.loaded_disks, dims="load_point", attrs={"long_name": "disk of each load"})
+    return as_dataset(measure(result)).assign(loaded_disk=disks)
 
 
 def _by_disk(found: xr.Dataset) -> xr.Dataset:

@@ -455,12 +455,9 @@ class Result:
 
     def _moved(self) -> tuple[str, str] | None:
         """How far given disks have moved until the initial equilibrium; None for packings that are made."""
-        if self._solution:
-            moved = self._solution.problem.packing.moved(self.rest.position)
-        else:
-            moved = self._data["distance_from_given"].values[0] if "distance_from_given" in self._data else None
-        if moved is None:
+        if "distance_from_given" not in self._data:
             return None
+        moved = self._data["distance_from_given"].values[0]
         disk = int(np.argmax(moved))
         text = f"median {np.median(moved):.2g}, largest {moved[disk]:.2g} mean radii (disk {disk})"
         return "moved from the given places", text

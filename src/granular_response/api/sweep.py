@@ -29,9 +29,6 @@ from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described
 from .terminal import shown
 
-#: What a measure may return.
-Measured = Any
-
 
 def floor_response(result: Result) -> xr.DataArray:
     """The measure of a sweep that names none."""
@@ -41,7 +38,7 @@ def floor_response(result: Result) -> xr.DataArray:
 def sweep(
     scene: Scene | Mapping[str, Any] | str | os.PathLike[str],
     axes: Mapping[str, Iterable[Any]],
-    measure: Callable[[Result], Measured] = floor_response,
+    measure: Callable[[Result], Any] = floor_response,
     *,
     load_factors: Sequence[float] | None = None,
     workers: int | None = None,
@@ -151,7 +148,7 @@ def _comparable(value: Any) -> Any:
 
 
 def _measured(
-    scene: Scene, *, measure: Callable[[Result], Measured], memory: Memory | None
+    scene: Scene, *, measure: Callable[[Result], Any], memory: Memory | None
 ) -> tuple[xr.Dataset | str, list[str]]:
     """What is measured on a scene, or why it has no equilibrium, and the remarks on the solution."""
     solved = memory.result(_solved, scene) if memory else _solved(scene)
@@ -168,7 +165,7 @@ def _solved(scene: Scene) -> Solution | str:
         return " ".join(str(error).split())
 
 
-def as_dataset(measured: Measured) -> xr.Dataset:
+def as_dataset(measured: Any) -> xr.Dataset:
     """What a measure returned as a dataset."""
     if isinstance(measured, xr.Dataset):
         return measured

@@ -99,11 +99,6 @@ def sections() -> list[Section]:
     return [*SECTIONS, *own]
 
 
-def every() -> list[Key]:
-    """All keys, section by section."""
-    return [key for section in sections() for key in section.listed()]
-
-
 def lines() -> str:
     """All keys as Markdown: the parts of a scene, then a table for each."""
     parts = [(f"`{name}`", info.description or "") for name, info in scene.Scene.model_fields.items()]
