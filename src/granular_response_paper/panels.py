@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from granular_response.plot import network, style
 from granular_response.plot.photoelastic import photoelastic
-from granular_response.state import WALL_NORMAL, FloatArray
+from granular_response.state import WALL_NORMAL, FloatArray, foot_points
 
 from .captions import letters
 
@@ -105,7 +105,7 @@ class Contacts:
         first, second = data["contact_disk"].values, data["contact_partner"].values
         pairs = network.pair_points(position, radius, first, second)
         return cls(
-            np.concatenate([pairs, network.wall_points(position, radius, disk, wall)]),
+            np.concatenate([pairs, foot_points(position[disk], radius[disk], wall)]),
             np.concatenate([position[first] - position[second], WALL_NORMAL[wall.astype(int)]]),
         )
 

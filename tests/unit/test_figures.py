@@ -12,7 +12,7 @@ from PIL import Image
 
 from granular_response.plot import network as nd
 from granular_response.plot import style
-from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL
+from granular_response.state import FLOOR, LEFT_WALL
 from granular_response_paper import panels
 
 
@@ -158,8 +158,6 @@ def test_contact_points_lie_between_the_surfaces() -> None:
         distance = np.linalg.norm(point - POSITION[disk], axis=1) - RADIUS[disk]
         other = np.linalg.norm(POSITION[FIRST] - POSITION[SECOND], axis=1) - RADIUS[FIRST] - RADIUS[SECOND]
         np.testing.assert_allclose(distance, 0.5 * other, atol=1e-12)
-    walls = nd.wall_points(POSITION, RADIUS, [0, 0, 3], [FLOOR, LEFT_WALL, RIGHT_WALL])
-    np.testing.assert_allclose(walls, [[1.0, 0.0], [0.0, 1.0], [4.7, 2.5]], atol=1e-15)
 
 
 def test_forces_that_press_together_and_apart_are_told_apart(axes) -> None:

@@ -17,7 +17,7 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike
 
-from ..state import FLOOR, OPEN, Box, FloatArray, foot_points
+from ..state import FLOOR, OPEN, Box, FloatArray
 from . import style
 
 #: Points; a thinner line is lost in print.
@@ -187,13 +187,6 @@ def pair_points(
     distance = np.linalg.norm(between, axis=1)
     from_first = 0.5 * (distance + size[i] - size[j])
     return centre[i] + between * (from_first / distance)[:, None]
-
-
-def wall_points(position: ArrayLike, radius: ArrayLike, disk: ArrayLike, wall: ArrayLike) -> FloatArray:
-    """(w, 2) points where ``disk`` (w,) meets ``wall`` (w,): FLOOR, LEFT_WALL or RIGHT_WALL."""
-    centre, i = _points(position, "position"), np.asarray(disk, dtype=int)
-    size = np.broadcast_to(np.asarray(radius, dtype=float), len(centre))
-    return foot_points(centre[i], size[i], wall)
 
 
 def draw_force_chains(

@@ -7,9 +7,10 @@ figure of its own, made by pyplot.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import reprlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -23,9 +24,10 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from ..errors import GranularError
+from ..observe import positive
 from ..observe.floor import origin_of
 from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
-from ..state import OPEN, SLIDING, Box, FloatArray, wall_normals
+from ..state import OPEN, SLIDING, Box, FloatArray, foot_points, wall_normals
 from ..store import atomic
 from . import network, style
 from .field import draw_field, root_norm
@@ -43,9 +45,19 @@ class PictureError(GranularError, ValueError):
 
 def check_positive(**given: float | None) -> None:
     """PictureError, with its name, for the first of ``given`` that is no number greater than 0; None is left out."""
-    for name, value in given.items():
-        if value is not None and not (np.isfinite(value) and value > 0.0):
-            raise PictureError(f"{name} = {value}: must be a number greater than 0")
+    try:
+        positive.check_positive(**{name: value for name, value in given.items() if value is not None})
+    except ValueError as error:
+        raise PictureError(str(error)) from None
+
+
+@contextlib.contextmanager
+def written(output: str | os.PathLike[str]) -> Iterator[None]:
+    """A file that cannot be written within it is a PictureError."""
+    try:
+        yield
+    except OSError as error:
+        raise PictureError(f"{output}: cannot be written: {error.strerror or error}") from error
 
 
 class HasDataset(Protocol):
@@ -240,14 +252,13 @@ def forces(
     added = shown.index > 0 if added is None else added
     if scale not in network.SCALES:
         raise PictureError(f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}")
-    if vmax is not None and not vmax > 0.0:
-        raise PictureError(f"vmax = {vmax}: must be positive")
-    check_positive(half_width=half_width)
+    check_positive(vmax=vmax, half_width=half_width)
     pair, wall = shown.forces(added)
     normal = shown.box.separation(*(shown.position[disks] for disks in shown.pairs))
     inward = wall_normals(shown.values("wall_index"))
     between = network.pair_points(shown.position, shown.radius, *shown.pairs, box=shown.box)
-    feet = network.wall_points(shown.position, shown.radius, shown.values("wall_disk"), shown.values("wall_index"))
+    at_wall = shown.values("wall_disk")
+    feet = foot_points(shown.position[at_wall], shown.radius[at_wall], shown.values("wall_index"))
     point = np.concatenate([between, feet])
     force, direction = np.concatenate([pair, wall]), np.concatenate([normal, inward])
     reference = float(np.linalg.norm(force, axis=1).max(initial=0.0)) if vmax is None else vmax
@@ -530,12 +541,10 @@ def save(
     if path.suffix not in (".pdf", ".png", ".svg"):
         raise PictureError(f"{path}: format {path.suffix!r} is unknown, must be .pdf, .png or .svg")
     drawn = style.render(page(result, what, state=state, scale=scale, figure=Figure()), path.suffix[1:])
-    try:
+    with written(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         atomic.check_output(path, inputs)
         atomic.write_bytes(path, drawn)
-    except OSError as error:
-        raise PictureError(f"{path}: cannot be written: {error.strerror or error}") from error
     return path
 
 

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from .moduli import Moduli
+from .moduli import peak_criterion as criterion
 
 Rotations = Literal["suppressed", "free"]
 
@@ -92,7 +93,7 @@ def peak_criterion(beta: float, rotations: Rotations = "suppressed") -> float:
         raise ValueError(f"beta = {beta}: must not be negative")
     a, b, c = 1.0 + 3.0 * beta, 9.0 + 3.0 * beta, 3.0 - 3.0 * beta
     d = 6.0 + (2.0 * beta if rotations == "suppressed" else 0.0)
-    return (a * b - c * (c + d)) / (b * d)
+    return criterion(a, b, c, d)
 
 
 def peak_criterion_root(rotations: Rotations = "suppressed") -> float:
