@@ -124,7 +124,7 @@ def forces(
         return
     here = slice(None) if shown is None else shown
     scale = {"length_per_force": longest / largest, "width_per_force": WIDEST / largest, "smallest": LEAST * largest}
-    network.draw_signed_forces(axes, contacts.point[here], vector[here], contacts.normal[here], **scale)
+    network.draw_forces(axes, contacts.point[here], vector[here], contacts.normal[here], **scale)
 
 
 def force_key(

@@ -272,7 +272,7 @@ def forces(
         inches = axes.figure.get_figure(root=True).get_size_inches()[0] * axes.get_position().width
         widest = crowded * float(np.clip(72.0 * inches / np.ptp(axes.get_xlim()), 0.8, 5.0))
         look = {"length_per_force": 4.0 * crowded, "width_per_force": widest, "smallest": 0.02, **lines}
-        kinds = network.draw_signed_forces(axes, point, drawn, direction, **look)
+        kinds = network.draw_forces(axes, point, drawn, direction, **look)
         handles = [
             Line2D([], [], color=lines.get("color", network.FORCE_LINES[name]["color"]), linewidth=1.6, label=name)
             for name in (kinds if added else ())
@@ -346,7 +346,7 @@ def stress(
     component : indices of the tensor, the force's first.
     width : of the Gaussian in mean radii (Sec. V.C).
     vmax : end of the colour scale, in mean disk weights per mean radius; by default the largest magnitude.
-    half_width : draw what is within this distance of the loaded disks, in mean radii; by default all.
+    half_width : as of :func:`forces`.
     cmap : colour map of matplotlib; zero is in its middle.
     mesh : goes to ``Axes.pcolormesh``.
 
