@@ -110,8 +110,8 @@ SIGNED = "RdBu"
 #: Greys of things that are there for orientation only.
 FAINT, MUTED = "#C8C8C8", "#707070"
 
-#: What the paper says, on a plot: lines with its value beside them.
-PAPER = "#9A7B4F"
+#: What the paper says, on a plot: lines with its value beside them, or a band.
+PAPER, PAPER_BAND = "#9A7B4F", "#F1E9DA"
 #: What others published, as somebody read it off their picture.
 DIGITISED = "#8C8C8C"
 
