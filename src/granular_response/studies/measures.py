@@ -116,10 +116,9 @@ class Measures:
 
     def _matched(self, state: State) -> tuple[State, State, NDArray[np.bool_]]:
         """The rest state and this one on one list of candidates, which dynamics may have made anew, and those near."""
-        if self.rest.pairs.same_candidates(state.pairs) and self.rest.walls.same_candidates(state.walls):
-            return self.rest, state, self.near
         rest, state = common_candidates([self.rest, state], self._radius)
-        return rest, state, network.interior_contacts(rest, self.width, self.width / 3.0)
+        near = self.near if rest is self.rest else network.interior_contacts(rest, self.width, self.width / 3.0)
+        return rest, state, near
 
     def mobilised(self, state: State) -> list[int]:
         """Number of contacts of disks within each of ``MARGINS`` of the Coulomb limit."""
