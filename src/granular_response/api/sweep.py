@@ -29,6 +29,10 @@ from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described
 from .terminal import shown
 
+#: Dimensions that lose labels that differ, for another coordinate: steps of a load programme have none in common with
+#: those of another, and floor disks lie in order along x, which their indices do not.
+_KEPT_AS = {"load": "load_factor", "floor_disk": "floor_disk_index"}
+
 
 def floor_response(result: Result) -> xr.DataArray:
     """The measure of a sweep that names none."""
@@ -245,33 +249,25 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
 
 
 def _labelled_alike(results: Sequence[xr.Dataset]) -> tuple[list[xr.Dataset], set[Any]]:
-    """Results with the same labels along each dimension, and the dimensions that have none.
-
-    A step of one load programme is no step of another, though both be at the same factor: where programmes differ,
-    ``load`` loses its labels, which ``load_factor`` has too.
-    """
+    """Results with the same labels along each dimension, and the dimensions that have none."""
     plain = [one.reset_index([name for name in one.xindexes if name not in one.dims]) for one in results]
     for dim in {dim for one in plain for dim in one.dims if dim in one.coords}:
         labels = [one.get_index(dim) if dim in one.dims else None for one in plain]
         if all(one is not None and one.equals(labels[0]) for one in labels):
             continue
-        if dim == "load":
-            plain = [_without_labels(one, "load", "load_factor") for one in plain]
-        elif dim == "floor_disk":  # in order along x, which indices of disks are not
-            plain = [_without_labels(one, "floor_disk", "floor_disk_index") for one in plain]
+        if dim in _KEPT_AS:
+            plain = [_without_labels(one, dim) for one in plain]
         elif not all(one is None or one.is_unique for one in labels):
             raise SweepError(f"measure: {dim} has a label twice, must have different ones or the same in each result")
     bare = {dim for one in plain for dim in one.dims if dim not in one.coords}
     return list(xr.align(*plain, join="outer", exclude=bare)), bare
 
 
-def _without_labels(one: xr.Dataset, dim: str, kept: str) -> xr.Dataset:
-    """Without labels along ``dim``, which the coordinate ``kept`` has in place of them."""
-    if dim not in one.coords:
-        return one
-    if kept not in one.variables:
-        one = one.assign_coords({kept: one[dim].variable.to_base_variable()})
-    return one.drop_vars(dim)
+def _without_labels(one: xr.Dataset, dim: str) -> xr.Dataset:
+    """Without labels along ``dim``, which a coordinate of ``_KEPT_AS`` has in place of them."""
+    if dim in one.coords and _KEPT_AS[dim] not in one.variables:
+        one = one.assign_coords({_KEPT_AS[dim]: one[dim].variable.to_base_variable()})
+    return one.drop_vars(dim, errors="ignore")
 
 
 def _without_objects(values: np.ndarray) -> np.ndarray:
