@@ -15,24 +15,24 @@ from numpy.typing import NDArray
 from ..state import OPEN, Contacts, FloatArray, State
 
 
-def require_same(rest: Contacts, loaded: Contacts) -> None:
+def require_same(rest: Contacts, loaded: Contacts, kind: str = "contacts") -> None:
     """Raise ``ValueError`` unless both list the same candidate contacts in the same order."""
     if not rest.same_candidates(loaded):
         raise ValueError(
-            f"the two states list different candidate contacts ({rest.first.size} and {loaded.first.size}); "
+            f"{kind}: the two states list different candidate contacts ({rest.first.size} and {loaded.first.size}); "
             "bring them to one list with match_candidates"
         )
 
 
 def pair_force_difference(rest: State, loaded: State) -> FloatArray:
     """(m, 2) force on ``pairs.first`` that the load adds; gravity subtracted as a vector (Sec. III.C)."""
-    require_same(rest.pairs, loaded.pairs)
+    require_same(rest.pairs, loaded.pairs, "pairs")
     return loaded.pair_force() - rest.pair_force()
 
 
 def wall_force_difference(rest: State, loaded: State) -> FloatArray:
     """(w, 2) force on ``walls.first`` that the load adds; gravity subtracted as a vector (Sec. III.C)."""
-    require_same(rest.walls, loaded.walls)
+    require_same(rest.walls, loaded.walls, "walls")
     return loaded.wall_force() - rest.wall_force()
 
 

@@ -19,16 +19,7 @@ from ..state import FloatArray
 from ..store import atomic
 from . import chains, style
 from .chains import draw_chains, draw_key, draw_response
-from .pictures import (
-    HasDataset,
-    PictureError,
-    Shown,
-    _has_response,
-    _new_figure,
-    _why_no_response,
-    check_positive,
-    written,
-)
+from .pictures import HasDataset, PictureError, Shown, _new_figure, check_positive, written
 
 Results = HasDataset | xr.Dataset | Mapping[str, HasDataset | xr.Dataset]
 
@@ -135,8 +126,8 @@ class Frames:
         self.columns = {title: Shown.of(one) for title, one in given.items()}
         shown = [*self.columns.values()]
         for one in shown:
-            if not _has_response(one):
-                raise PictureError(f"results: {_why_no_response(one)}, so there is no response")
+            if one.lack:
+                raise PictureError(f"results: {one.lack}, so there is no response")
         forces = [np.atleast_1d(one.data["total_force"].values) for one in shown]
         if any(one.shape != forces[0].shape or not np.allclose(one, forces[0], rtol=1e-6) for one in forces):
             raise PictureError("results: must have the same forces, one for each frame")

@@ -141,6 +141,19 @@ class Shown:
         )
         return pair, wall
 
+    @property
+    def lack(self) -> str:
+        """Why there is no response, which is divided by the force of the loads; empty where there is one."""
+        if np.isfinite(self.data["floor_response"].values).any():
+            return ""
+        if not self.data.sizes["load_point"]:
+            return "no loads"
+        if self.data.sizes["state"] == 1:
+            return "no state under load"
+        if "reaction" not in self.data and not self.data["applied_load"].values[:, :2].any():
+            return "no load has a force"
+        return "the loads apply no force in any state"
+
     @cached_property
     def loads(self) -> list[tuple[int, FloatArray, float]]:
         """Disk, force and torque of each load in this state."""
@@ -167,10 +180,8 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
     >>> gr.plot.response(result).figure.savefig("response.png")
     """
     shown = Shown.of(result)
-    if not _has_response(shown):
-        raise PictureError(
-            f"result: {_why_no_response(shown)}, so there is no response; floor draws the forces on the floor"
-        )
+    if shown.lack:
+        raise PictureError(f"result: {shown.lack}, so there is no response; floor draws the forces on the floor")
     with style.context():
         axes = _axes(ax, 0.36)
         curves = np.atleast_2d(shown.data["floor_response"].values)
@@ -494,7 +505,7 @@ def page(
         raise PictureError(f"what: nothing to draw, must be among {', '.join(PICTURES)}")
     shown = Shown.of(result, state)
     if what is None:
-        what = ("response" if _has_response(shown) else "floor", "forces", "contacts", "stress")
+        what = ("floor" if shown.lack else "response", "forces", "contacts", "stress")
     half_width = NEAR * shown.top
     with style.context():
         columns = 1 if len(what) == 1 or _aspect(shown, half_width) < 0.6 else 2
@@ -556,21 +567,6 @@ def _title(what: str, shown: Shown) -> str:
         load = f"torque ${turning:.4g}\\,{style.TORQUE_UNIT}$"
     names = {"floor": "floor forces", "forces": "incremental forces" if shown.index else "forces"}
     return style.RESPONSE if what == "response" else f"{names.get(what, what)}, {load}"
-
-
-def _has_response(shown: Shown) -> bool:
-    """Whether a load applies a force: the response is divided by it."""
-    return bool(np.isfinite(shown.data["floor_response"].values).any())
-
-
-def _why_no_response(shown: Shown) -> str:
-    if not shown.data.sizes["load_point"]:
-        return "no loads"
-    if shown.data.sizes["state"] == 1:
-        return "no state under load"
-    if "reaction" not in shown.data and not shown.data["applied_load"].values[:, :2].any():
-        return "no load has a force"
-    return "the loads apply no force in any state"
 
 
 def _axes(ax: Axes | None, aspect: float) -> Axes:
