@@ -448,8 +448,11 @@ class Result:
             if stopped := state.reached.stopped_rattlers:
                 text += f", {stopped} rolling rattler{'s' if stopped > 1 else ''} stopped by hand"
             rows.append((name, text))
-        if "distance_from_given" in self._data:
-            moved = self._data["distance_from_given"].values[0]
+        if self._solution:  # which is asked without a dataset of it
+            moved = self._solution.problem.packing.moved(self.rest.position)
+        else:
+            moved = self._data["distance_from_given"].values[0] if "distance_from_given" in self._data else None
+        if moved is not None:
             disk = int(np.argmax(moved))
             text = f"median {np.median(moved):.2g}, largest {moved[disk]:.2g} mean radii (disk {disk})"
             rows.append(("moved from the given places", text))
