@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from granular_response.plot import network, style
 from granular_response.plot.photoelastic import photoelastic
-from granular_response.state import WALL_NORMAL, FloatArray
+from granular_response.state import WALL_NORMAL, FloatArray, foot_points
 
 from .captions import letters
 
@@ -105,7 +105,7 @@ class Contacts:
         first, second = data["contact_disk"].values, data["contact_partner"].values
         pairs = network.pair_points(position, radius, first, second)
         return cls(
-            np.concatenate([pairs, network.wall_points(position, radius, disk, wall)]),
+            np.concatenate([pairs, foot_points(position[disk], radius[disk], wall)]),
             np.concatenate([position[first] - position[second], WALL_NORMAL[wall.astype(int)]]),
         )
 
@@ -124,7 +124,7 @@ def forces(
         return
     here = slice(None) if shown is None else shown
     scale = {"length_per_force": longest / largest, "width_per_force": WIDEST / largest, "smallest": LEAST * largest}
-    network.draw_signed_forces(axes, contacts.point[here], vector[here], contacts.normal[here], **scale)
+    network.draw_forces(axes, contacts.point[here], vector[here], contacts.normal[here], **scale)
 
 
 def force_key(

@@ -65,7 +65,7 @@ class Scalars:
         return cls(
             response_at_centre=m.centre(state),
             central_dip=m.dip(state),
-            peak_count=peaks.peak_count(x, response, interior=m.interior),
+            peak_count=len(peaks.find_peaks(x, response, interior=m.interior)),
             double_peaked=m.double_peaked(state),
             third_peak=third > 0.0,
             third_peak_prominence=third / largest,
@@ -74,7 +74,7 @@ class Scalars:
             peak_height=largest,
             half_maximum_width=half_maximum_width(x, response),
             opened_contacts=m.opened(state),
-            sliding_contacts=network.sliding_count(state, walls=False) if m.friction > 0.0 else 0,
+            sliding_contacts=int(np.count_nonzero(state.pairs.sliding)) if m.friction > 0.0 else 0,
             teardrop_depth=region.depth,
             teardrop_width=region.width,
             reaches_floor=region.reaches_floor,

@@ -185,7 +185,6 @@ def test_run_by_another_method(folder):
         (["draw", "theory"], ["data/theory.nc: no such file"]),
         (["groups", "--collection", "extras"], ["extras: no such collection, must be one of paper, extensions"]),
         (["keys", "magic"], ["no key of a scene begins with magic", "protocol"]),
-        (["keys", "--page", "scene.yaml"], ["scene.yaml: the tables are Markdown, the name must end in .md"]),
     ],
 )
 def test_expected_errors_are_one_line_and_code_2(folder, arguments, parts):

@@ -90,7 +90,7 @@ def test_what_cannot_be_animated_is_said(result, tmp_path) -> None:
         gr.plot.animate(gr.solve({**SCENE, "loads": []}))
     with pytest.raises(PictureError, match=r"format '.mp4' is unknown, must be .gif, .webp, .html"):
         gr.plot.animate(result, output=tmp_path / "growing.mp4")
-    with pytest.raises(PictureError, match="fps = 0: must be a number greater than 0"):
+    with pytest.raises(PictureError, match="fps = 0: must be a finite number greater than 0"):
         gr.plot.animate(result, fps=0)
     with pytest.raises(PictureError, match="cannot be written: No such file"):
         gr.plot.animate(result, output=tmp_path / "none" / "growing.gif", figure=Figure())

@@ -313,7 +313,7 @@ def test_events_are_not_known_without_a_path(method):
     ("arguments", "said"),
     [
         ((None, 0.0, 1.0), "happened = None: must be a kind of event, or a function of the result"),
-        (("opens", "0", 1.0), "low = '0', high = 1.0: must be numbers"),
+        (("opens", "0", 1.0), "low = '0', high = 1.0: must be finite numbers, and low below high"),
     ],
 )
 def test_what_find_event_cannot_look_for_is_one_line(arguments, said):

@@ -12,7 +12,7 @@ from PIL import Image
 
 from granular_response.plot import network as nd
 from granular_response.plot import style
-from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL
+from granular_response.state import FLOOR, LEFT_WALL
 from granular_response_paper import panels
 
 
@@ -158,21 +158,19 @@ def test_contact_points_lie_between_the_surfaces() -> None:
         distance = np.linalg.norm(point - POSITION[disk], axis=1) - RADIUS[disk]
         other = np.linalg.norm(POSITION[FIRST] - POSITION[SECOND], axis=1) - RADIUS[FIRST] - RADIUS[SECOND]
         np.testing.assert_allclose(distance, 0.5 * other, atol=1e-12)
-    walls = nd.wall_points(POSITION, RADIUS, [0, 0, 3], [FLOOR, LEFT_WALL, RIGHT_WALL])
-    np.testing.assert_allclose(walls, [[1.0, 0.0], [0.0, 1.0], [4.7, 2.5]], atol=1e-15)
 
 
 def test_forces_that_press_together_and_apart_are_told_apart(axes) -> None:
     """Each has the colour of its kind, whatever its direction is."""
     point, normal = np.zeros((4, 2)), np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
     force = np.array([[2.0, 1.0], [0.0, -1.0], [-1.0, 3.0], [0.0, 2.0]])
-    drawn = nd.draw_signed_forces(axes, point, force, normal, length_per_force=1.0, width_per_force=1.0)
+    drawn = nd.draw_forces(axes, point, force, normal, length_per_force=1.0, width_per_force=1.0)
     vectors = {name: np.diff(np.array(one.get_segments()), axis=1)[:, 0] for name, one in drawn.items()}
     np.testing.assert_allclose(vectors["force increased"], force[[0, 2]])
     np.testing.assert_allclose(vectors["force decreased"], force[[1, 3]])
     colours = {name: to_hex(one.get_colors()[0]).upper() for name, one in drawn.items()}
     assert colours == {"force increased": style.INCREASED, "force decreased": style.DECREASED}
-    only = nd.draw_signed_forces(axes, point[:1], force[:1], normal[:1], length_per_force=1.0, width_per_force=1.0)
+    only = nd.draw_forces(axes, point[:1], force[:1], normal[:1], length_per_force=1.0, width_per_force=1.0)
     assert list(only) == ["force increased"]
 
 
@@ -187,4 +185,4 @@ def test_arrays_that_do_not_fit_are_named(axes) -> None:
     with pytest.raises(ValueError, match=r"position: must have shape \(n, 2\)"):
         nd.draw_disks(axes, [1.0, 2.0], 1.0)
     with pytest.raises(ValueError, match="force: 1 given for 2"):
-        nd.draw_force_chains(axes, POSITION[:2], POSITION[:1], length_per_force=1.0, width_per_force=1.0)
+        nd.draw_forces(axes, POSITION[:2], POSITION[:1], POSITION[:1], length_per_force=1.0, width_per_force=1.0)

@@ -116,7 +116,8 @@ def test_parameters_of_a_law_are_validated_stored_and_listed():
     weak = gr.LaboratoryUnits().reduced_scene({"contact": {"law": "cohesive", "parameters": {"strength": 6.57e-4}}})
     force = gr.LaboratoryUnits().to_reduced("force", 6.57e-4)
     assert weak["contact"]["parameters"]["strength"] == pytest.approx(force)
-    (listed,) = (one for one in scene_reference.every() if one.path == "contact.parameters.strength")
+    every = (one for section in scene_reference.sections() for one in section.listed())
+    (listed,) = (one for one in every if one.path == "contact.parameters.strength")
     assert (listed.default, listed.unit) == ("0.1", "mg") and listed.meaning.startswith("Pull")
 
 

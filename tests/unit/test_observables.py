@@ -1,5 +1,7 @@
 """Observables of results against what they mean."""
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -112,8 +114,13 @@ def test_moduli_of_a_lattice_are_those_of_the_theory():
     found = gr.elastic_moduli(gr.solve(scene, progress=False), prestress=False)
     lame = np.sqrt(3.0) / 4.0 * 1e5
     np.testing.assert_allclose(found.values[:2, :2], lame * np.array([[3.0, 1.0], [1.0, 3.0]]), rtol=2e-3)
-    with pytest.raises(ValueError, match="periodic sides"):
-        gr.elastic_moduli(gr.solve(gr.Scene(packing=gr.Slab(layers=3, disks_per_row=5), loads=[]), progress=False))
+    for packing, said in (
+        (gr.Slab(layers=3, disks_per_row=5), "packing.sides = walls: must be periodic"),
+        (gr.Slab(layers=2, disks_per_row=5, sides="periodic"), "packing.layers = 2: must be 3 or greater"),
+        (gr.Pile(layers=3), "packing.kind = pile: must be slab"),
+    ):
+        with pytest.raises(ValueError, match=f"^{re.escape(said)}"):
+            gr.elastic_moduli(gr.solve(gr.Scene(packing=packing, loads=[]), progress=False))
 
 
 def test_the_work_of_a_load_is_stored_or_slides_away(result, smooth):

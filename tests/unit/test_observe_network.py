@@ -2,8 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from observe_states import contacts, opened, pair_index, slab, state, with_pairs
+from observe_states import contacts, opened, pair_index, slab, state
 
+from granular_response.observe import network
 from granular_response.observe.network import (
     FALLING,
     HORIZONTAL,
@@ -12,36 +13,22 @@ from granular_response.observe.network import (
     contact_angle,
     contact_angle_histogram,
     contact_centre,
-    contact_changes,
     coordination_number,
     interior_contacts,
     lattice_direction,
     mirror_disks,
     network_asymmetry,
     rattlers,
-    sliding_count,
-    unmatched_contacts,
 )
 from granular_response.state import FLOOR, OPEN, SLIDING, STICKING
 
 
-def test_contact_changes_between_all_statuses():
+def test_contacts_open_between_all_statuses():
     before = np.repeat([OPEN, STICKING, SLIDING], 3)
     after = np.tile([OPEN, STICKING, SLIDING], 3)
     links = [(0, k) for k in range(1, 10)]
-    changes = contact_changes(contacts(links, status=before), contacts(links, status=after))
-    assert np.flatnonzero(changes.opened).tolist() == [3, 6]
-    assert np.flatnonzero(changes.closed).tolist() == [1, 2]
-    assert np.flatnonzero(changes.started_sliding).tolist() == [2, 5]
-    assert np.flatnonzero(changes.stopped_sliding).tolist() == [6, 7]
-
-
-def test_sliding_count_with_and_without_walls():
-    position = np.array([[1.0, 1.0], [3.0, 1.0], [5.0, 1.0]])
-    pairs = contacts([(0, 1), (1, 2)], status=np.array([SLIDING, STICKING]))
-    walls = contacts([(0, FLOOR), (1, FLOOR), (2, FLOOR)], status=np.array([SLIDING, SLIDING, OPEN]))
-    assert sliding_count(state(position, pairs, walls)) == 3
-    assert sliding_count(state(position, pairs, walls), walls=False) == 1
+    found = network.opened(contacts(links, status=before), contacts(links, status=after))
+    assert np.flatnonzero(found).tolist() == [3, 6]
 
 
 def test_lattice_directions_do_not_depend_on_the_order_of_partners():
@@ -99,8 +86,6 @@ def chain_with_loose_ends():
 def test_rattlers_are_removed_one_after_the_other():
     s = chain_with_loose_ends()
     assert np.flatnonzero(rattlers(s)).tolist() == [3, 4, 5]
-    assert np.flatnonzero(rattlers(s, 1)).tolist() == []
-    assert np.flatnonzero(rattlers(s, 3)).tolist() == [0, 1, 2, 3, 4, 5]
 
 
 def test_a_disk_that_touches_another_by_rounding_is_a_rattler_still():
@@ -160,16 +145,5 @@ def test_network_asymmetry_counts_contacts_without_an_image():
     assert network_asymmetry(s.pairs, mirror) == 0.0
     left, right = pair_index(s, 0, 1), pair_index(s, 1, 2)
     lopsided = opened(s, np.array([left]))
-    assert np.flatnonzero(unmatched_contacts(lopsided.pairs, mirror)).tolist() == [right]
     assert network_asymmetry(lopsided.pairs, mirror) == pytest.approx(1 / (s.pairs.first.size - 1))
     assert network_asymmetry(opened(s, np.array([left, right])).pairs, mirror) == 0.0
-
-
-def test_network_asymmetry_of_the_sliding_contacts():
-    s = slab(2, 3)
-    mirror = mirror_disks(s.position, 3.0)
-    left, middle = pair_index(s, 0, 3), pair_index(s, 3, 4)
-    sliding = with_pairs(s, np.array([left, middle]), status=SLIDING)
-    assert network_asymmetry(sliding.pairs, mirror) == 0.0
-    assert network_asymmetry(sliding.pairs, mirror, sliding=True) == 0.5
-    assert network_asymmetry(s.pairs, mirror, sliding=True) == 0.0

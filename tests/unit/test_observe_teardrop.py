@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from observe_states import ROW, opened, pair_index, slab
 
+from granular_response.observe import network
 from granular_response.observe.network import interior_contacts
-from granular_response.observe.teardrop import teardrop
+from granular_response.observe.teardrop import open_region
 
 LAYERS, LONG = 7, 21
 WIDTH = 2.0 * LONG
@@ -22,6 +23,11 @@ def row_pairs(row, *middles):
         assert hit.size == 1
         found.append(int(hit[0]))
     return found
+
+
+def teardrop(rest, loaded, disk, **options):
+    """The region that opens below ``disk``."""
+    return open_region(rest, network.opened(rest.pairs, loaded.pairs), rest.position[disk], **options)
 
 
 def test_region_is_the_component_nearest_to_the_load():

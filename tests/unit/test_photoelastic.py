@@ -112,5 +112,5 @@ def test_periodic_sides_show_a_disk_at_both() -> None:
 
 @pytest.mark.parametrize("name", ["fringe", "half_width", "pixels"])
 def test_numbers_that_are_not_positive_are_refused(result, name: str) -> None:
-    with pytest.raises(PictureError, match=f"{name} = 0: must be a number greater than 0"):
+    with pytest.raises(PictureError, match=f"{name} = 0: must be a finite number greater than 0"):
         gr.plot.photoelastic(result, **{name: 0})

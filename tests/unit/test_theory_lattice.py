@@ -19,17 +19,16 @@ SETS = [
 ]
 
 
-@pytest.mark.parametrize("relax", [True, False])
 @pytest.mark.parametrize("springs", SETS)
-def test_periodic_lattice_has_the_moduli_of_the_paper(springs: Springs, relax: bool) -> None:
-    measured = lattice.measured_moduli(springs, "suppressed", relax=relax, cells=(3, 4))
+def test_periodic_lattice_has_the_moduli_of_the_paper(springs: Springs) -> None:
+    measured = lattice.measured_moduli(springs, "suppressed")
     expected = lattice.moduli(springs, "suppressed").matrix()
     np.testing.assert_allclose(measured, expected, rtol=0, atol=1e-13 * expected.max())
 
 
 @pytest.mark.parametrize("springs", SETS)
 def test_free_rotations_change_the_shear_modulus_only(springs: Springs) -> None:
-    measured = lattice.measured_moduli(springs, "free", cells=(3, 4))
+    measured = lattice.measured_moduli(springs, "free")
     expected = lattice.moduli(springs, "free").matrix()
     np.testing.assert_allclose(measured, expected, rtol=0, atol=1e-13 * expected.max())
     suppressed = lattice.moduli(springs, "suppressed").matrix()

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import granular_response as gr
+from granular_response.observe import network
 from granular_response.observe.floor import floor_disks, floor_force, smoothed_response
 from granular_response.observe.profile import force_profile
 from granular_response.observe.stress import (
@@ -14,7 +15,7 @@ from granular_response.observe.stress import (
     line_stress,
     load_forces,
 )
-from granular_response.observe.teardrop import teardrop
+from granular_response.observe.teardrop import open_region
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.close_pairs import close_pairs
 from granular_response.solvers.solution import solve_scene
@@ -135,7 +136,8 @@ def test_what_is_measured_of_contacts_does_not_depend_on_where_the_side_is():
         size = {"packing.layers": 8, "packing.disks_per_row": 21}
         solution = solve_scene(slab(0, **size, **{"contact.friction": 0.0, "loads": [load]}))
         disk = int(solution.problem.load_disk[0])
-        region = teardrop(solution.rest, solution.loaded[0], disk)
+        opened = network.opened(solution.rest.pairs, solution.loaded[0].pairs)
+        region = open_region(solution.rest, opened, solution.rest.position[disk])
         profile = force_profile(solution.rest, solution.loaded[0], disk, 2.5 * 3**0.5)
         inside = np.abs(profile[0]) < 20.0  # those half a box away are on either side
         found.append((int(region.contacts.sum()), region.width, region.depth, *(part[inside] for part in profile)))

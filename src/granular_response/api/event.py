@@ -10,11 +10,9 @@ from typing import Any
 
 from ..observe.positive import check_positive
 from ..scene import Scene, SceneError
-from ..solvers.solution import Solution
 from ..state import Event
-from ..studies.brackets import Bracket, EventNotBracketed
 from ..studies.path import Happening, LoadPath
-from ..studies.search import bisect_event, unchanged
+from ..studies.search import Bracket, EventNotBracketed, bisect_event, unchanged
 from ..sweeps.tasks import Progress
 from .event_table import check_kind
 from .result import Result, described, solve, vouched
@@ -95,10 +93,9 @@ def find_event(
         raise ValueError(f"happened = {happened!r}: must be a kind of event, or a function of the result")
     elif where is not None:
         raise ValueError("where: is asked of events, must be left out with a function of the result")
-    if not all(isinstance(end, Real) for end in (low, high)):
-        raise ValueError(f"low = {low!r}, high = {high!r}: must be numbers")
-    if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        raise ValueError(f"low = {low}, high = {high}: must be finite, and low below high")
+    ends: tuple[Any, Any] = low, high
+    if not (all(isinstance(end, Real) and math.isfinite(end) for end in ends) and low < high):
+        raise ValueError(f"low = {low!r}, high = {high!r}: must be finite numbers, and low below high")
     low, high = float(low), float(high)
     if key == "load" and not base.loads:
         raise SceneError("loads: none in this scene, must be one or more to look along the load; or name a key")
@@ -107,38 +104,27 @@ def find_event(
         raise ValueError(f"low = {low}: must be {least}, a factor of the scene's loads")
     tolerance = 1e-3 * (high - low) if tolerance is None else tolerance
     check_positive(tolerance=tolerance)
-    with shown(progress) as report:
+    with shown(progress) as asked_for:
+        report: Progress = asked_for or (lambda *_: None)
         if kind is not None and key == "load":
-            if report:
-                report(0, 1, "event")
+            report(0, 1, "event")
             bracket = _first(solve(base, load_factors=[high], progress=False), kind, where, low)
         else:
             asked = happened if callable(happened) else lambda result: bool(_events(result, happened, where))
             bracket = _searched(base, asked, key, low, high, tolerance, report)
-        if report:
-            report(bracket.evaluations, bracket.evaluations, "event")
+        report(bracket.evaluations, bracket.evaluations, "event")
     return bracket
 
 
 def _events(result: Result, kind: str, where: Callable[[Event], bool] | None) -> list[Event]:
     """The events of a kind on the way to the last state. Raises SceneError where no path was followed."""
-    method = _method(result)
-    if method != "path":
+    choice = result._solved.load_choice
+    if choice is None or choice.method != "path":
         raise SceneError(
             f"protocol.method = {result.scene.protocol.method}: must be path where events are asked for, "
-            f"this scene's loads are followed by {method}"
+            f"this scene's loads are followed by {choice.method if choice else 'none'}"
         )
     return [event for event in result.events.of(kind) if where is None or where(event)]
-
-
-def _method(result: Result) -> str:
-    choice = _solution(result).load_choice
-    return "none" if choice is None else choice.method
-
-
-def _solution(result: Result) -> Solution:
-    assert result._solution is not None  # solved here, not read
-    return result._solution
 
 
 def _first(result: Result, kind: str, where: Callable[[Event], bool] | None, low: float) -> Bracket:
@@ -151,7 +137,7 @@ def _first(result: Result, kind: str, where: Callable[[Event], bool] | None, low
     begin, end = float(event.load_factor), max(float(event.load_factor), float(event.until))
     within = result.loaded[-1].reached.events_within
     if within is not None and begin == end:
-        begin = max(end - LONGER * within / _solution(result).problem.load_size, 0.0)
+        begin = max(end - LONGER * within / result._solved.problem.load_size, 0.0)
     return Bracket(low=begin, high=end, at_low=False, evaluations=1)
 
 
@@ -162,33 +148,26 @@ def _searched(
     low: float,
     high: float,
     tolerance: float,
-    report: Progress | None,
+    report: Progress,
 ) -> Bracket:
     """By bisection; along the load among the events of the path first, each looked at from both sides."""
-    total = 2 + _halvings(high - low, tolerance)
+    total = 2 + max(math.ceil(math.log2(high - low) - math.log2(tolerance)), 0)  # both ends, and each halving
     known: dict[float, bool] = {}
     path: LoadPath | None = None
 
     def says(value: float) -> bool:
         if value not in known:
-            if report:
-                report(len(known), max(total, len(known) + 1), "event")
+            report(len(known), max(total, len(known) + 1), "event")
             one = vouched(path.solution(value)) if path else solve(base.updated({key: value}), progress=False)
             known[value] = bool(happened(one))
         return known[value]
 
     if key != "load":
         return bisect_event(says, low, high, tolerance)
-    if report:
-        report(0, total, "event")
-    path = LoadPath.from_solution(_solution(solve(base, load_factors=[low, high], progress=False)))
+    report(0, total, "event")
+    path = LoadPath.from_solution(solve(base, load_factors=[low, high], progress=False)._solved)
     if says(low) == says(high):
         raise EventNotBracketed(unchanged(says(low), low, high))
     changed = Happening(lambda state: says(state.load_factor) != says(low), "what is asked for has changed")
     ends = path.first([low, high], changed, tolerance=tolerance, beside=BESIDE / path.problem.load_size)
     return Bracket(*ends, says(low), len(known))
-
-
-def _halvings(width: float, least: float) -> int:
-    """How often a width is halved until it is at most the least one."""
-    return max(math.ceil(math.log2(width) - math.log2(least)), 0)

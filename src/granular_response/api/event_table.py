@@ -35,8 +35,6 @@ class Events(Sequence[Event]):
         self._events = tuple(events)
         #: For each event the index of the state that it leads to; 0 is the initial equilibrium.
         self.states = tuple(states)
-        if len(self.states) != len(self._events):
-            raise ValueError(f"states: {len(self.states)} given, must be one for each of {len(self._events)} events")
 
     @overload
     def __getitem__(self, place: int) -> Event: ...

@@ -15,10 +15,14 @@ from ..scene.laboratory import FORCE, LENGTH, MASS, TIME
 from ..solvers.motion import trajectory
 from ..solvers.solution import Progress
 from ..state import State
+from ..store import variables
 from ..store.result import UNITS
 from . import compiling
 from .result import described
 from .terminal import shown
+
+#: What is known of each disk at each time.
+_OF_DISKS = ("position", "velocity", "angle", "angular_velocity")
 
 
 def motion(
@@ -74,37 +78,24 @@ def motion(
     with shown(progress) as report, compiling.logged(report):
         found = trajectory(asked, times, start=start, progress=report)
     packing, states = found.problem.packing, found.states
+    data = {name: variables.described(name, [getattr(one, name) for one in states], along="time") for name in _OF_DISKS}
+    data |= {name: variables.described(name, getattr(packing, name)) for name in ("radius", "mass")}
+    factors = [one.load_factor for one in states]
+    data["load_factor"] = variables.described("state_load_factor", factors, along="time")
+    moved = variables.labelled(xr.Dataset(data))
     work, velocity = f"{FORCE} * {LENGTH}", f"{LENGTH} / {TIME}"
-    momentum = {"momentum": f"{MASS} * {velocity}", "angular_momentum": f"{MASS} * {LENGTH} * {velocity}"}
-    of_disks = {"position": LENGTH, "velocity": velocity, "angle": "radian", "angular_velocity": f"radian / {TIME}"}
-    columns: dict[str, tuple[np.ndarray, str]] = {
-        **{name: (np.stack([getattr(state, name) for state in states]), unit) for name, unit in of_disks.items()},
-        **{name: (values, momentum.get(name, work)) for name, values in found.sums().items()},
-        "contacts": (np.array([state.pairs.touching.sum() + state.walls.touching.sum() for state in states]), "1"),
-        "load_factor": (np.array([state.load_factor for state in states]), "1"),
-    }
-    data = {
-        name: (_dimensions(name, name in of_disks), values, {"long_name": name.replace("_", " "), "units": unit})
-        for name, (values, unit) in columns.items()
-    }
-    data["radius"], data["mass"] = (
-        (("disk",), values, {"long_name": name, "units": unit})
-        for name, values, unit in (("radius", packing.radius, LENGTH), ("mass", packing.mass, MASS))
+    units = {"momentum": f"{MASS} * {velocity}", "angular_momentum": f"{MASS} * {LENGTH} * {velocity}", "contacts": "1"}
+    closed = np.array([one.pairs.touching.sum() + one.walls.touching.sum() for one in states])
+    for name, values in {**found.sums(), "contacts": closed}.items():
+        labels = {"long_name": name.replace("_", " "), "units": units.get(name, work)}
+        moved[name] = ("time", "axis")[: values.ndim], values, labels
+    return moved.assign_coords(
+        time=("time", found.times, {"long_name": "time", "units": TIME}), axis=["x", "z"]
+    ).assign_attrs(
+        title="motion of a granular packing",
+        scene=asked.to_yaml(),
+        width=packing.width,
+        sides="periodic" if packing.periodic else "walls",
+        time_step=found.time_step,
+        units=UNITS,
     )
-    return xr.Dataset(
-        data,
-        {"time": ("time", found.times, {"long_name": "time", "units": TIME}), "axis": ["x", "z"]},
-        {
-            "title": "motion of a granular packing",
-            "scene": asked.to_yaml(),
-            "width": packing.width,
-            "sides": "periodic" if packing.periodic else "walls",
-            "time_step": found.time_step,
-            "units": UNITS,
-        },
-    )
-
-
-def _dimensions(name: str, of_disks: bool) -> tuple[str, ...]:
-    axis = ("axis",) if name in ("position", "velocity", "momentum") else ()
-    return ("time", *(("disk",) if of_disks else ()), *axis)

@@ -12,28 +12,24 @@ import numpy as np
 import xarray as xr
 
 from ..observe import network
+from ..observe.positive import check_positive
 from ..scene.laboratory import FORCE, LENGTH
 from ..solvers.modes import lowest_modes
 from ..solvers.modes import stiffness_matrix as _stiffness
 from ..solvers.strain import Following, strained
 from ..solvers.work import slid, stored
 from ..solvers.work import work as done_by_loads
-from ..state import Contacts, State
+from ..state import Contacts
 from ..store.result import common_candidates, load_coordinates
 from .result import Result
 
 _AXES = ["x", "z"]
 #: Strains and stresses in the order of moduli.
 _COMPONENTS = ["xx", "zz", "xz"]
-_ENERGY = f"{FORCE} * {LENGTH}"
-
-
-def _states(result: Result) -> tuple[State, ...]:
-    return (result.rest, *result.loaded)
 
 
 def _along(result: Result) -> dict[str, Any]:
-    factors = [state.load_factor for state in _states(result)]
+    factors = [state.load_factor for state in result._states]
     return {"state_load_factor": ("state", factors, {"long_name": "load factor"})}
 
 
@@ -51,8 +47,7 @@ def coordination_number(result: Result) -> xr.Dataset:
     >>> found["coordination_number"].values.round(3), found["rattlers"].values
     (array([4.382, 4.382]), array([0, 0]))
     """
-
-    states = _states(result)
+    states = result._states
     loose = [network.rattlers(state) for state in states]
     columns = {
         "coordination_number": [network.coordination_number(state) for state in states],
@@ -77,7 +72,7 @@ def fabric_tensor(result: Result) -> xr.DataArray:
     >>> round(float(fabric.sel(axis="x", other_axis="x") + fabric.sel(axis="z", other_axis="z")), 12)
     1.0
     """
-    tensors = [network.fabric_tensor(state) for state in _states(result)]
+    tensors = [network.fabric_tensor(state) for state in result._states]
     coordinates = {**_along(result), "axis": _AXES, "other_axis": _AXES}
     return xr.DataArray(np.stack(tensors), coordinates, ("state", "axis", "other_axis"), "fabric_tensor")
 
@@ -95,7 +90,7 @@ def mobilization(result: Result) -> xr.Dataset:
     >>> float(found.max()) <= 1.0 + 1e-9, int((found > 1 - 1e-6).sum("contact")[-1])
     (True, 22)
     """
-    scene, states = result.scene, common_candidates(_states(result), result.to_dataset()["radius"].values)
+    scene, states = result.scene, common_candidates(result._states, result.to_dataset()["radius"].values)
 
     def along(kind: str, friction: float) -> np.ndarray:
         return np.stack([_mobilized(getattr(state, kind), friction) for state in states])
@@ -127,11 +122,10 @@ def force_distribution(result: Result, *, state: int = -1, bins: int = 24, to: f
     >>> density.sizes["force"], round(float(density.sum() * 0.5), 6)
     (12, 1.0)
     """
-    chosen = _states(result)[result._index(state)].pairs
+    chosen = result._states[result._index(state)].pairs
     if isinstance(bins, bool) or not isinstance(bins, (int, np.integer)) or bins < 1:
         raise ValueError(f"bins = {bins!r}: must be a whole number, 1 or greater")
-    if not (np.isfinite(to) and to > 0.0):
-        raise ValueError(f"to = {to!r}: must be a finite number greater than 0")
+    check_positive(to=to)
     forces = chosen.normal_force[chosen.touching]
     if not len(forces) or not forces.mean() > 0.0:
         raise ValueError("result: no contacts between disks that bear a force")
@@ -202,8 +196,8 @@ def elastic_moduli(
 
     Dimensions ``stress`` and ``strain``: "xx", "zz", "xz".
 
-    Raises ValueError for a packing without rows or periodic sides, granular_response.SolveError for a state that is not
-    stable.
+    Raises ValueError for a packing that is no slab of three rows or more between periodic sides,
+    granular_response.SolveError for a state that is not stable.
 
     Examples
     --------
@@ -243,11 +237,12 @@ def work(result: Result) -> xr.Dataset:
     if not result.loaded:
         raise ValueError("result: no loads in this scene, so no work")
     problem = result._solved.problem
-    states = common_candidates(_states(result), problem.packing.radius)
+    states = common_candidates(result._states, problem.packing.radius)
     energy = np.array([stored(problem, state) for state in states])
     steps = list(itertools.pairwise(states))
     done = np.array([done_by_loads(problem, before, after) for before, after in steps])
     lost = np.array([slid(problem, before, after).total for before, after in steps])
     columns = {"work": done, "stored": np.diff(energy), "dissipated": done - np.diff(energy), "slid": lost}
-    data = {name: ("load", values, {"long_name": name, "units": _ENERGY}) for name, values in columns.items()}
+    unit = f"{FORCE} * {LENGTH}"
+    data = {name: ("load", values, {"long_name": name, "units": unit}) for name, values in columns.items()}
     return xr.Dataset(data, load_coordinates(result.load_factors))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
@@ -17,6 +17,9 @@ from ..scene.errors import show
 from ..sweeps.tasks import Progress
 from .result import Result, described
 from .sweep import as_dataset, floor_response, sweep
+
+#: The dimension of floor disks in a sweep that joins them by their numbers, where others are counted from the left.
+_BY_NUMBER = "floor_disk_number"
 
 #: Preparations that are compared unless others are given.
 WAYS: Mapping[str, Preparation] = MappingProxyType(
@@ -84,7 +87,7 @@ def preparations(
             twin = list(ways)[first]
             raise SceneError(f"ways[{name!r}]: is the same as {twin!r}; keys that are left out are those of the scene")
     options: dict[str, Any] = {"load_factors": load_factors, "workers": workers, "scheduler": scheduler}
-    noted = _Noted(measure)
+    noted = functools.partial(_noted, measure=measure)
     found = sweep(base, {"preparation": chosen}, noted, checkpoint=checkpoint, progress=progress, **options)
     found = found.assign_coords(preparation=("preparation", list(ways), found["preparation"].attrs))
     disks = found["loaded_disk"].values
@@ -92,7 +95,10 @@ def preparations(
         said = ", ".join(f"{way}: {one.tolist()}" for way, one in zip(ways, disks, strict=True))
         cure = "name a disk by its number"
         warnings.warn(f"loads are on other disks in other preparations ({said}); {cure}", stacklevel=2)
-    found = _by_disk(found)
+    if _BY_NUMBER in found.dims:
+        found = found.rename({_BY_NUMBER: "floor_disk"})
+        if "x" in found.coords and "preparation" in found["x"].dims:
+            found = found.isel(floor_disk=np.argsort(found["x"].mean("preparation").values))
     numbers = found.drop_vars("loaded_disk").data_vars
     over = {name: one for name, one in numbers.items() if "preparation" in one.dims and one.dtype.kind in "fiu"}
     low = {f"{name}_low": one.min("preparation", keep_attrs=True) for name, one in over.items()}
@@ -100,30 +106,8 @@ def preparations(
     return found.assign(low | high)
 
 
-@dataclass(frozen=True)
-class _Noted:
-    """What is measured, and which disks are loaded."""
-
-    measure: Callable[[Result], Any]
-
-    def __call__(self, result: Result) -> xr.Dataset:
-        disks = xr.DataArray(result.loaded_disks, dims="load_point", attrs={"long_name": "disk of each load"})
-        return as_dataset(self.measure(result)).assign(loaded_disk=disks)
-
-
-def _by_disk(found: xr.Dataset) -> xr.Dataset:
-    """The same with the floor disks by their numbers, where they were numbered from the left in each preparation."""
-    if "preparation" not in getattr(found.get("floor_disk_index"), "dims", ()):
-        return found
-    each = []
-    for k in range(found.sizes["preparation"]):
-        one = found.isel(preparation=[k])
-        index = one["floor_disk_index"].values[0]
-        known = np.flatnonzero(np.isfinite(index))
-        one = one.drop_vars("floor_disk_index").isel(floor_disk=known)
-        each.append(one.assign_coords(floor_disk=("floor_disk", index[known].astype(int))))
-    own = [name for name, one in found.data_vars.items() if "preparation" in one.dims]
-    joined = xr.concat(each, "preparation", data_vars=own, coords="minimal", join="outer", compat="override")
-    if "x" in joined.coords and "preparation" in joined["x"].dims:
-        joined = joined.isel(floor_disk=np.argsort(joined["x"].mean("preparation").values))
-    return joined.assign({name: joined[name].transpose(*found[name].dims) for name in own})
+def _noted(result: Result, *, measure: Callable[[Result], Any]) -> xr.Dataset:
+    """What is measured, floor disks by their numbers, and which disks are loaded."""
+    disks = xr.DataArray(result.loaded_disks, dims="load_point", attrs={"long_name": "disk of each load"})
+    measured = as_dataset(measure(result)).assign(loaded_disk=disks)
+    return measured.rename({name: _BY_NUMBER for name in measured.dims if name == "floor_disk"})

@@ -100,11 +100,10 @@ class Result:
     def events(self) -> Events:
         """What happened on the load path, in order: contacts that change, and equilibria that are lost.
 
-        ``result.events.of("opens")`` has one kind of them, ``result.events.lost`` the lost equilibria,
-        ``result.events.to_dataframe()`` a table. Without a path, by dynamics or by minimisation, no contact events are
-        known. Where events were taken together, as in packings of many thousand disks, ``reached.events_within`` of a
-        state is the load within which they were (mg), and ``reached.events_error`` an estimate, no
-        bound, of what that leaves out of a force of the floor or a wall since the state before, per load.
+        Without a path, by dynamics or by minimisation, no contact events are known. Where events were taken together,
+        as in packings of many thousand disks, ``reached.events_within`` of a state is the load within which they were
+        (mg), and ``reached.events_error`` an estimate, no bound, of what that leaves out of a force of the floor or a
+        wall since the state before, per load.
         """
         found = [(k, event) for k, state in enumerate(self._states) for event in state.reached.events]
         return Events((event for _, event in found), (k for k, _ in found))
@@ -258,17 +257,16 @@ class Result:
         ----------
         x : places from the loaded disk, as in ``floor_response``; every mean radius across the box if left out.
         z : heights above the floor; every mean radius up to the highest disk if left out.
-        state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
-        added : the part that the load adds (Fig. 14) rather than the whole stress; True by default but there.
+        state : as of :meth:`contacts_table`, with its errors.
+        added : the part that the load adds (Fig. 14) rather than the whole stress; by default so for states under load.
         width : of the Gaussian (Sec. V.C: two mean radii).
 
         Returns
         -------
         Dimensions ``z``, ``x``, ``force`` and ``branch`` ("x", "z"): the first index of the tensor is the force's.
 
-        Raises IndexError, TypeError for a state that there is not, and for a ``state`` that is no integer; ValueError
-        unless ``x`` and ``z`` are lists of finite numbers and ``width`` is positive, and for the added part of the
-        initial equilibrium.
+        Raises ValueError unless ``x`` and ``z`` are lists of finite numbers and ``width`` is positive, and for the
+        added part of the initial equilibrium.
 
         Examples
         --------
@@ -304,7 +302,7 @@ class Result:
 
         Parameters
         ----------
-        state : the one that answers: 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
+        state : the one that answers, as of :meth:`contacts_table`, with its errors.
         sliding : "refuse" a state with contacts at the Coulomb limit, whose answer depends on the direction of the
             load, or take them to "stick".
 
@@ -315,9 +313,8 @@ class Result:
         NaN for disks with fewer than two contacts, unless one resists rolling, and along x where nothing holds the
         packing as a whole. 0 where a load holds the disk.
 
-        Raises IndexError, TypeError for a state that there is not, and for a ``state`` that is no integer; ValueError
-        for another ``sliding``; granular_response.SolveError for a state that is not stable, or has contacts at the
-        Coulomb limit where these are refused.
+        Raises ValueError for another ``sliding``; granular_response.SolveError for a state that is not stable, or has
+        contacts at the Coulomb limit where these are refused.
 
         Examples
         --------
@@ -438,7 +435,7 @@ class Result:
         return self._dataset
 
     def _rows(self) -> list[tuple[str, str]]:
-        """A line for each state: which, and what its certificate says."""
+        """A line for each state: which, and what its certificate says; and how far given disks have moved to rest."""
         rows = []
         for k, state in enumerate(self._states):
             touching = int(state.pairs.touching.sum())
@@ -451,19 +448,15 @@ class Result:
             if stopped := state.reached.stopped_rattlers:
                 text += f", {stopped} rolling rattler{'s' if stopped > 1 else ''} stopped by hand"
             rows.append((name, text))
-        return [*rows, *([moved] if (moved := self._moved()) else [])]
-
-    def _moved(self) -> tuple[str, str] | None:
-        """How far given disks have moved until the initial equilibrium; None for packings that are made."""
-        if self._solution:
+        if self._solution:  # which is asked without a dataset of it
             moved = self._solution.problem.packing.moved(self.rest.position)
         else:
             moved = self._data["distance_from_given"].values[0] if "distance_from_given" in self._data else None
-        if moved is None:
-            return None
-        disk = int(np.argmax(moved))
-        text = f"median {np.median(moved):.2g}, largest {moved[disk]:.2g} mean radii (disk {disk})"
-        return "moved from the given places", text
+        if moved is not None:
+            disk = int(np.argmax(moved))
+            text = f"median {np.median(moved):.2g}, largest {moved[disk]:.2g} mean radii (disk {disk})"
+            rows.append(("moved from the given places", text))
+        return rows
 
     def _size(self) -> str:
         return f"{len(self.rest.position)} disks in a box {self.rest.box.width:g} wide"

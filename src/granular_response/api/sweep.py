@@ -29,8 +29,9 @@ from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described
 from .terminal import shown
 
-#: What a measure may return.
-Measured = Any
+#: Dimensions that lose labels that differ, for another coordinate: steps of a load programme have none in common with
+#: those of another, and floor disks lie in order along x, which their indices do not.
+_KEPT_AS = {"load": "load_factor", "floor_disk": "floor_disk_index"}
 
 
 def floor_response(result: Result) -> xr.DataArray:
@@ -41,7 +42,7 @@ def floor_response(result: Result) -> xr.DataArray:
 def sweep(
     scene: Scene | Mapping[str, Any] | str | os.PathLike[str],
     axes: Mapping[str, Iterable[Any]],
-    measure: Callable[[Result], Measured] = floor_response,
+    measure: Callable[[Result], Any] = floor_response,
     *,
     load_factors: Sequence[float] | None = None,
     workers: int | None = None,
@@ -151,7 +152,7 @@ def _comparable(value: Any) -> Any:
 
 
 def _measured(
-    scene: Scene, *, measure: Callable[[Result], Measured], memory: Memory | None
+    scene: Scene, *, measure: Callable[[Result], Any], memory: Memory | None
 ) -> tuple[xr.Dataset | str, list[str]]:
     """What is measured on a scene, or why it has no equilibrium, and the remarks on the solution."""
     solved = memory.result(_solved, scene) if memory else _solved(scene)
@@ -168,7 +169,7 @@ def _solved(scene: Scene) -> Solution | str:
         return " ".join(str(error).split())
 
 
-def as_dataset(measured: Measured) -> xr.Dataset:
+def as_dataset(measured: Any) -> xr.Dataset:
     """What a measure returned as a dataset."""
     if isinstance(measured, xr.Dataset):
         return measured
@@ -248,33 +249,25 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
 
 
 def _labelled_alike(results: Sequence[xr.Dataset]) -> tuple[list[xr.Dataset], set[Any]]:
-    """Results with the same labels along each dimension, and the dimensions that have none.
-
-    A step of one load programme is no step of another, though both be at the same factor: where programmes differ,
-    ``load`` loses its labels, which ``load_factor`` has too.
-    """
+    """Results with the same labels along each dimension, and the dimensions that have none."""
     plain = [one.reset_index([name for name in one.xindexes if name not in one.dims]) for one in results]
     for dim in {dim for one in plain for dim in one.dims if dim in one.coords}:
         labels = [one.get_index(dim) if dim in one.dims else None for one in plain]
         if all(one is not None and one.equals(labels[0]) for one in labels):
             continue
-        if dim == "load":
-            plain = [_without_labels(one, "load", "load_factor") for one in plain]
-        elif dim == "floor_disk":  # in order along x, which indices of disks are not
-            plain = [_without_labels(one, "floor_disk", "floor_disk_index") for one in plain]
+        if dim in _KEPT_AS:
+            plain = [_without_labels(one, dim) for one in plain]
         elif not all(one is None or one.is_unique for one in labels):
             raise SweepError(f"measure: {dim} has a label twice, must have different ones or the same in each result")
     bare = {dim for one in plain for dim in one.dims if dim not in one.coords}
     return list(xr.align(*plain, join="outer", exclude=bare)), bare
 
 
-def _without_labels(one: xr.Dataset, dim: str, kept: str) -> xr.Dataset:
-    """Without labels along ``dim``, which the coordinate ``kept`` has in place of them."""
-    if dim not in one.coords:
-        return one
-    if kept not in one.variables:
-        one = one.assign_coords({kept: one[dim].variable.to_base_variable()})
-    return one.drop_vars(dim)
+def _without_labels(one: xr.Dataset, dim: str) -> xr.Dataset:
+    """Without labels along ``dim``, which a coordinate of ``_KEPT_AS`` has in place of them."""
+    if dim in one.coords and _KEPT_AS[dim] not in one.variables:
+        one = one.assign_coords({_KEPT_AS[dim]: one[dim].variable.to_base_variable()})
+    return one.drop_vars(dim, errors="ignore")
 
 
 def _without_objects(values: np.ndarray) -> np.ndarray:

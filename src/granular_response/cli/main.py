@@ -274,23 +274,15 @@ def plot(
         typer.echo(str(animate))
 
 
-@commands.command("keys", "keys protocol", "keys --page docs/_generated/scene-keys.md")
+@commands.command("keys", "keys protocol")
 def keys(
     part: Annotated[str, typer.Argument(help="Beginning of the keys, such as contact.")] = "",
-    page: Annotated[Path | None, typer.Option(help="Write all tables to this file (Markdown).")] = None,
     imported: Import = None,
 ) -> None:
     """Print the keys of a scene file: default, what is allowed, unit and meaning."""
     from . import scene_reference
 
-    if page is None:
-        typer.echo(scene_reference.plain(part))
-    else:
-        from ..store import atomic
-
-        if page.suffix != ".md":  # a scene is easily named here, and would be gone
-            raise GranularError(f"{page}: the tables are Markdown, the name must end in .md")
-        atomic.write_bytes(page, f"{scene_reference.lines()}\n".encode())
+    typer.echo(scene_reference.plain(part))
 
 
 @commands.command(

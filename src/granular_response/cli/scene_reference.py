@@ -5,7 +5,7 @@ What is allowed is not written down a second time either: it is what the message
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple, get_args
 
@@ -99,29 +99,6 @@ def sections() -> list[Section]:
     return [*SECTIONS, *own]
 
 
-def every() -> list[Key]:
-    """All keys, section by section."""
-    return [key for section in sections() for key in section.listed()]
-
-
-def lines() -> str:
-    """All keys as Markdown: the parts of a scene, then a table for each."""
-    parts = [(f"`{name}`", info.description or "") for name, info in scene.Scene.model_fields.items()]
-    found = [_table(("part", "meaning"), parts)]
-    for section in sections():
-        rows = [
-            (
-                f"`{key.path}`",
-                f"`{key.default}`" if key.default else "must be given",
-                f"{key.allowed} [{key.unit}]" if key.unit else key.allowed,
-                key.meaning,
-            )
-            for key in section.listed()
-        ]
-        found += [f"## {section.title}", _table(("key", "default", "allowed [unit]", "meaning"), rows)]
-    return "\n\n".join(found)
-
-
 def plain(part: str = "") -> str:
     """The keys whose path begins with ``part``, for a terminal. Raises SceneError if there is none."""
     if text := "\n".join(line for section in sections() for line in _paragraphs(section, part)):
@@ -142,9 +119,3 @@ def _paragraphs(section: Section, part: str) -> Iterator[str]:
 def _spelled(value: Any) -> str:
     plain = value.model_dump() if isinstance(value, Description) else value
     return yaml_text.write(plain).removesuffix("...\n").strip()
-
-
-def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
-    """A Markdown table; a bar within a cell would end it."""
-    texts = [head, ("---",) * len(head), *(tuple(cell.replace("|", "\\|") for cell in row) for row in rows)]
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in texts)

@@ -73,12 +73,13 @@ def _alike(builder, kinds, values):
 
 
 def _define(operation, result, instruction, *operands):
-    """Let an operator work on lanes, for these types of its operands."""
+    """Let an operator work on lanes or masks, for these types of its operands; other numbers are taken as doubles."""
 
     @infer_global(operation)
     class Typing(AbstractTemplate):
         def generic(self, args, kws):
-            return signature(result, *(LANES if a == LANES else types.float64 for a in args)) if LANES in args else None
+            kinds = tuple(kind if isinstance(kind, _VectorType) else types.float64 for kind in args)
+            return signature(result, *kinds) if kinds in operands else None
 
     def lower(context, builder, sig, args):
         return instruction(builder, *_alike(builder, sig.args, args))
@@ -101,21 +102,8 @@ _BINARY = {
 for _operator, _defined in _BINARY.items():
     _define(_operator, *_defined, (LANES, LANES), (LANES, types.float64), (types.float64, LANES))
 _define(operator.neg, LANES, ir.IRBuilder.fneg, (LANES,))
-
-
-def _define_for_masks(operation, instruction):
-    """Let an operator work on masks, as it does on truth values."""
-
-    @infer_global(operation)
-    class Typing(AbstractTemplate):
-        def generic(self, args, kws):
-            return signature(MASK, MASK, MASK) if args == (MASK, MASK) else None
-
-    lower_builtin(operation, MASK, MASK)(lambda context, builder, sig, args: instruction(builder, *args))
-
-
-_define_for_masks(operator.and_, ir.IRBuilder.and_)
-_define_for_masks(operator.or_, ir.IRBuilder.or_)
+_define(operator.and_, MASK, ir.IRBuilder.and_, (MASK, MASK))
+_define(operator.or_, MASK, ir.IRBuilder.or_, (MASK, MASK))
 
 
 def _kind(like):

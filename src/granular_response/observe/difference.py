@@ -15,14 +15,8 @@ from numpy.typing import NDArray
 from ..state import OPEN, Contacts, FloatArray, State
 
 
-def require_same_candidates(rest: State, loaded: State) -> None:
-    """Raise ``ValueError`` unless both states list the same candidate contacts in the same order."""
-    for kind in ("pairs", "walls"):
-        require_same(getattr(rest, kind), getattr(loaded, kind), kind)
-
-
 def require_same(rest: Contacts, loaded: Contacts, kind: str = "contacts") -> None:
-    """The same for contacts of one kind."""
+    """Raise ``ValueError`` unless both list the same candidate contacts in the same order."""
     if not rest.same_candidates(loaded):
         raise ValueError(
             f"{kind}: the two states list different candidate contacts ({rest.first.size} and {loaded.first.size}); "
@@ -32,13 +26,13 @@ def require_same(rest: Contacts, loaded: Contacts, kind: str = "contacts") -> No
 
 def pair_force_difference(rest: State, loaded: State) -> FloatArray:
     """(m, 2) force on ``pairs.first`` that the load adds; gravity subtracted as a vector (Sec. III.C)."""
-    require_same_candidates(rest, loaded)
+    require_same(rest.pairs, loaded.pairs, "pairs")
     return loaded.pair_force() - rest.pair_force()
 
 
 def wall_force_difference(rest: State, loaded: State) -> FloatArray:
     """(w, 2) force on ``walls.first`` that the load adds; gravity subtracted as a vector (Sec. III.C)."""
-    require_same_candidates(rest, loaded)
+    require_same(rest.walls, loaded.walls, "walls")
     return loaded.wall_force() - rest.wall_force()
 
 

@@ -6,8 +6,6 @@ and can open first. Masks are over candidate contacts, (m,). Lengths are in mean
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,34 +22,13 @@ HORIZONTAL, RISING, FALLING = 0, 1, 2
 BoolArray = NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class ContactChanges:
-    """What a load changes in the contacts of one kind; masks of shape (m,)."""
-
-    opened: BoolArray
-    closed: BoolArray
-    started_sliding: BoolArray  #: slides now and did not before; a contact that closed sliding is one of them
-    stopped_sliding: BoolArray  #: slid before and does not now, be it that it sticks or that it opened
-
-
-def contact_changes(rest: Contacts, loaded: Contacts) -> ContactChanges:
-    """Changes between two lists of the same candidates (pairs or walls), Figs. 4, 8 and 9.
+def opened(rest: Contacts, loaded: Contacts) -> BoolArray:
+    """(m,) contacts that touch at rest and not under load (Figs. 4, 8 and 9), of pairs or walls.
 
     Raises ``ValueError`` if the candidates differ.
     """
     require_same(rest, loaded)
-    slid, slides = rest.sliding, loaded.sliding
-    return ContactChanges(
-        opened=rest.touching & ~loaded.touching,
-        closed=~rest.touching & loaded.touching,
-        started_sliding=slides & ~slid,
-        stopped_sliding=slid & ~slides,
-    )
-
-
-def sliding_count(state: State, *, walls: bool = True) -> int:
-    """Number of sliding contacts, with or without those at the walls (Sec. V.E)."""
-    return int(np.count_nonzero(state.pairs.sliding) + (np.count_nonzero(state.walls.sliding) if walls else 0))
+    return rest.touching & ~loaded.touching
 
 
 def contact_centre(state: State) -> FloatArray:
@@ -91,17 +68,17 @@ def bulk_disks(state: State, width: float, side_margin: float = 10.0, vertical_m
     return (x >= side_margin) & (x <= width - side_margin) & (z >= vertical_margin) & (z <= z.max() - vertical_margin)
 
 
-def rattlers(state: State, minimum_contacts: int = 2) -> BoolArray:
-    """(n,) disks with fewer than ``minimum_contacts`` contacts of more than ``ROUNDING``, removed again and again.
+def rattlers(state: State) -> BoolArray:
+    """(n,) disks with fewer than two contacts of more than ``ROUNDING``, removed again and again.
 
     Walls count. A disk whose partners are rattlers loses those contacts too. Under gravity two contacts hold a disk
-    (Sec. III.C asks for at least two), so what is left out by default are disks that lie loose.
+    (Sec. III.C asks for at least two), so rattlers are disks that lie loose.
     """
     pairs, at_wall = state.pairs, state.walls.normal_force > ROUNDING
     loose = np.zeros(len(state.position), dtype=bool)
     while True:
         live = (pairs.normal_force > ROUNDING) & ~loose[pairs.first] & ~loose[pairs.second]
-        found = (state.contact_count(live, walls=at_wall) < minimum_contacts) & ~loose
+        found = (state.contact_count(live, walls=at_wall) < 2) & ~loose
         if not found.any():
             return loose
         loose |= found
@@ -175,22 +152,12 @@ def mirror_disks(position: FloatArray, axis: float, tolerance: float = 0.1) -> N
     return index.astype(np.intp)
 
 
-def unmatched_contacts(contacts: Contacts, mirror: NDArray[np.intp], *, sliding: bool = False) -> BoolArray:
-    """(m,) touching (with ``sliding``: sliding) pairs whose mirror image does not do the same.
+def network_asymmetry(contacts: Contacts, mirror: NDArray[np.intp]) -> float:
+    """Fraction of the touching pairs whose mirror image does not touch: 0 symmetric, 1 nothing in common (Sec. V.E).
 
-    ``mirror`` comes from :func:`mirror_disks`. An image that is no candidate counts as open.
+    ``mirror`` comes from :func:`mirror_disks`. An image that is no candidate counts as open. 0 without contacts.
     """
-    here = contacts.sliding if sliding else contacts.touching
-    present = pair_numbers(contacts.first, contacts.second, mirror.size)[here]
-    return here & ~np.isin(pair_numbers(mirror[contacts.first], mirror[contacts.second], mirror.size), present)
-
-
-def network_asymmetry(contacts: Contacts, mirror: NDArray[np.intp], *, sliding: bool = False) -> float:
-    """Fraction of the touching (or sliding) pairs without a mirror image: 0 symmetric, 1 nothing in common.
-
-    Measures the loss of symmetry of the network in Sec. V.E. Zero for a network without such contacts.
-    """
-    total = np.count_nonzero(contacts.sliding if sliding else contacts.touching)
-    if total == 0:
-        return 0.0
-    return float(np.count_nonzero(unmatched_contacts(contacts, mirror, sliding=sliding)) / total)
+    first, second = contacts.first[contacts.touching], contacts.second[contacts.touching]
+    images = pair_numbers(mirror[first], mirror[second], mirror.size)
+    unmatched = ~np.isin(images, pair_numbers(first, second, mirror.size))
+    return float(np.count_nonzero(unmatched) / len(first)) if len(first) else 0.0

@@ -4,7 +4,7 @@ A peak is a local maximum, not at an end of the samples, whose prominence is at 
 times the largest magnitude of the response. Prominence is the height above the ground that must be crossed
 on the way to higher samples, or down to the end of the samples on a side that has no higher ones. Maxima
 separated by shallower dips are one peak, whose position is the middle of its highest samples; samples that
-differ by less than ``rounding`` times that magnitude count as equally high. So a symmetric profile has
+differ by less than ``ROUNDING`` times that magnitude count as equally high. So a symmetric profile has
 symmetric peaks, and rounding noise neither makes nor moves one.
 
 ``x`` is measured from the loaded disk and strictly increasing. ``interior`` (a mask over the samples, see
@@ -64,7 +64,6 @@ def find_peaks(
     *,
     interior: Interior = None,
     relative_prominence: float = RELATIVE_PROMINENCE,
-    rounding: float = ROUNDING,
 ) -> Peaks:
     """Peaks of a response sampled at ``x`` (both (k,)); the definition is in the module's docstring.
 
@@ -74,7 +73,7 @@ def find_peaks(
     x, r = _samples(x, response, interior)
     check_positive(relative_prominence=relative_prominence)
     scale = float(np.max(np.abs(r)))
-    threshold, tie = relative_prominence * scale, rounding * scale
+    threshold, tie = relative_prominence * scale, ROUNDING * scale
     last = r.size - 1
     found: list[tuple[float, float, float]] = []
 
@@ -121,13 +120,6 @@ def find_peaks(
     return Peaks(position=columns[:, 0], height=columns[:, 1], prominence=columns[:, 2])
 
 
-def peak_count(
-    x: ArrayLike, response: ArrayLike, *, interior: Interior = None, relative_prominence: float = RELATIVE_PROMINENCE
-) -> int:
-    """Number of peaks."""
-    return len(find_peaks(x, response, interior=interior, relative_prominence=relative_prominence))
-
-
 def central_dip(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) -> float:
     """How far the response at x = 0 lies below the lower of the maxima beside it, per largest response.
 
@@ -147,15 +139,13 @@ def central_dip(x: ArrayLike, response: ArrayLike, *, interior: Interior = None)
     return (sides - float(np.interp(0.0, x, r))) / scale
 
 
-def is_double_peaked(
-    x: ArrayLike, response: ArrayLike, *, interior: Interior = None, relative_prominence: float = RELATIVE_PROMINENCE
-) -> bool:
+def is_double_peaked(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) -> bool:
     """Whether the response has two peaks in the sense of the paper's crossover (Secs. IV.A, V.A and V.B).
 
     That is: on each side of x = 0 there is a peak that exceeds the response at x = 0 by at least
-    ``relative_prominence`` times the largest response. A small third peak at x = 0 does not matter.
+    ``RELATIVE_PROMINENCE`` times the largest response. A small third peak at x = 0 does not matter.
     """
-    return _outer_peaks(x, response, interior, relative_prominence) is not None
+    return _outer_peaks(x, response, interior) is not None
 
 
 def third_peak(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) -> float:
@@ -163,7 +153,7 @@ def third_peak(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) 
 
     0 without one.
     """
-    peaks = _outer_peaks(x, response, interior, RELATIVE_PROMINENCE)
+    peaks = _outer_peaks(x, response, interior)
     return 0.0 if peaks is None else float(peaks.prominence[np.abs(peaks.position) <= CENTRE].max(initial=0.0))
 
 
@@ -190,13 +180,13 @@ def asymmetry_sign(x: FloatArray, response: FloatArray) -> int:
     return int(np.sign(response[x > 1e-6].sum() - response[x < -1e-6].sum()))
 
 
-def _outer_peaks(x: ArrayLike, response: ArrayLike, interior: Interior, relative_prominence: float) -> Peaks | None:
+def _outer_peaks(x: ArrayLike, response: ArrayLike, interior: Interior) -> Peaks | None:
     """All peaks, if there are peaks above the centre on both sides of it; else None."""
-    peaks = find_peaks(x, response, interior=interior, relative_prominence=relative_prominence)
+    peaks = find_peaks(x, response, interior=interior)
     x, r = _samples(x, response, interior)
     if not x[0] < 0.0 < x[-1]:
         raise ValueError(f"x: runs from {x[0]} to {x[-1]}; it must have samples on both sides of 0")
-    high = peaks.height >= np.interp(0.0, x, r) + relative_prominence * np.max(np.abs(r))
+    high = peaks.height >= np.interp(0.0, x, r) + RELATIVE_PROMINENCE * np.max(np.abs(r))
     both = np.any(high & (peaks.position < 0.0)) and np.any(high & (peaks.position > 0.0))
     return peaks if both else None
 

@@ -10,7 +10,6 @@ walls have thinned the forces, are no teardrop. All lengths are measured in the 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..state import FLOOR, Box, FloatArray, State
-from .difference import require_same_candidates
-from .network import contact_centre, contact_changes
+from .network import contact_centre
 
 BoolArray = NDArray[np.bool_]
 
@@ -38,17 +36,6 @@ class OpenRegion:
         return int(np.count_nonzero(self.contacts))
 
 
-def teardrop(rest: State, loaded: State, loaded_disk: int, **region: Any) -> OpenRegion:
-    """Region of the pairs that touch at rest and are open under load, nearest to ``loaded_disk`` (Fig. 5).
-
-    ``region``: ``start``, ``lattice_constant``, ``reach`` and ``start_distance`` of :func:`open_region`.
-    Raises ``ValueError`` if the states list different candidates.
-    """
-    require_same_candidates(rest, loaded)
-    opened = contact_changes(rest.pairs, loaded.pairs).opened
-    return open_region(rest, opened, rest.position[loaded_disk], **region)
-
-
 def open_region(
     state: State,
     opened: BoolArray,
@@ -59,7 +46,7 @@ def open_region(
     reach: float = 1.2,
     start_distance: float = 5.0,
 ) -> OpenRegion:
-    """Connected region of the ``opened`` pairs ((m,) mask) that begins nearest to ``origin`` ((2,)).
+    """Connected region of the ``opened`` pairs ((m,) mask) that begins nearest to ``origin`` ((2,)), Fig. 5.
 
     ``state`` gives the geometry. ``start`` (a mask over pairs, such as ``interior_contacts``) can narrow where the
     region may begin. Contacts that are equally near to the origin (within a hundredth of a lattice constant) all begin

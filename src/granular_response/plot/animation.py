@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import os
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +19,7 @@ from ..state import FloatArray
 from ..store import atomic
 from . import chains, style
 from .chains import draw_chains, draw_key, draw_response
-from .pictures import HasDataset, PictureError, Shown, _has_response, _new_figure, _why_no_response, check_positive
+from .pictures import HasDataset, PictureError, Shown, _new_figure, check_positive, written
 
 Results = HasDataset | xr.Dataset | Mapping[str, HasDataset | xr.Dataset]
 
@@ -83,7 +82,7 @@ def check_target(output: str | os.PathLike[str] | None) -> None:
         return
     if (ending := Path(output).suffix) not in FORMATS:
         raise PictureError(f"{output}: format {ending!r} is unknown, must be {', '.join(FORMATS)}")
-    with _said(output):
+    with written(output):
         atomic.check_writable(output)
 
 
@@ -94,17 +93,9 @@ def animated(
     figure.set_dpi(dpi)
     animation = FuncAnimation(figure, draw, frames=count, interval=1000.0 / fps, blit=False)
     if output is not None:
-        with _said(output):
+        with written(output):
             atomic.write_bytes(output, rendered(animation, Path(output).suffix, fps=fps, dpi=dpi))
     return animation
-
-
-@contextlib.contextmanager
-def _said(output: str | os.PathLike[str]) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise PictureError(f"{output}: cannot be written: {error.strerror or error}") from error
 
 
 def rendered(animation: FuncAnimation, ending: str = ".gif", *, fps: float = 6.0, dpi: float = 120.0) -> bytes:
@@ -135,8 +126,8 @@ class Frames:
         self.columns = {title: Shown.of(one) for title, one in given.items()}
         shown = [*self.columns.values()]
         for one in shown:
-            if not _has_response(one):
-                raise PictureError(f"results: {_why_no_response(one)}, so there is no response")
+            if one.lack:
+                raise PictureError(f"results: {one.lack}, so there is no response")
         forces = [np.atleast_1d(one.data["total_force"].values) for one in shown]
         if any(one.shape != forces[0].shape or not np.allclose(one, forces[0], rtol=1e-6) for one in forces):
             raise PictureError("results: must have the same forces, one for each frame")

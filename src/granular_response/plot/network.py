@@ -17,7 +17,7 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike
 
-from ..state import FLOOR, OPEN, Box, FloatArray, foot_points
+from ..state import FLOOR, OPEN, Box, FloatArray
 from . import style
 
 #: Points; a thinner line is lost in print.
@@ -104,7 +104,7 @@ def draw_contact_changes(
     *,
     touching_before: ArrayLike,
     touching: ArrayLike,
-    sliding: ArrayLike | None = None,
+    sliding: ArrayLike,
     box: Box | None = None,
     **lines: Any,
 ) -> dict[str, LineCollection]:
@@ -123,10 +123,10 @@ def draw_contact_changes(
     return drawn
 
 
-def _changes(before: ArrayLike, now: ArrayLike, sliding: ArrayLike | None = None) -> dict[str, np.ndarray]:
+def _changes(before: ArrayLike, now: ArrayLike, sliding: ArrayLike = False) -> dict[str, np.ndarray]:
     """(m,) masks of what became of contacts."""
     touched, touches = np.asarray(before, dtype=bool), np.asarray(now, dtype=bool)
-    slides = np.zeros(len(touches), dtype=bool) if sliding is None else np.asarray(sliding, dtype=bool) & touches
+    slides = np.asarray(sliding, dtype=bool) & touches
     return {
         "unchanged": touched & touches & ~slides,
         "sliding": touched & slides,
@@ -189,39 +189,6 @@ def pair_points(
     return centre[i] + between * (from_first / distance)[:, None]
 
 
-def wall_points(position: ArrayLike, radius: ArrayLike, disk: ArrayLike, wall: ArrayLike) -> FloatArray:
-    """(w, 2) points where ``disk`` (w,) meets ``wall`` (w,): FLOOR, LEFT_WALL or RIGHT_WALL."""
-    centre, i = _points(position, "position"), np.asarray(disk, dtype=int)
-    size = np.broadcast_to(np.asarray(radius, dtype=float), len(centre))
-    return foot_points(centre[i], size[i], wall)
-
-
-def draw_force_chains(
-    axes: Axes,
-    point: ArrayLike,
-    force: ArrayLike,
-    *,
-    length_per_force: float,
-    width_per_force: float,
-    smallest: float = 0.0,
-    **lines: Any,
-) -> LineCollection:
-    """Draw each force (m, 2) as a line along it, centred at its contact ``point`` (m, 2) (Figs. 2, 13, 17, 18).
-
-    Length (radii) and width (points) are both proportional to the magnitude, the width down to :data:`THINNEST`. Forces
-    below ``smallest`` are left out, which keeps the files of large packings small.
-    """
-    centre, vector = _points(point, "point"), _points(force, "force")
-    if len(centre) != len(vector):
-        raise ValueError(f"force: {len(vector)} given for {len(centre)} contact points")
-    magnitude = np.linalg.norm(vector, axis=1)
-    shown = magnitude > smallest
-    half = 0.5 * length_per_force * vector[shown]
-    keywords: dict[str, Any] = {"color": style.BLACK, "capstyle": "butt", **lines}
-    keywords["linewidths"] = np.maximum(width_per_force * magnitude[shown], THINNEST)
-    return _segments(axes, centre[shown] - half, centre[shown] + half, keywords)
-
-
 #: How forces are drawn that press what touches together more (or at all), and less: colour and order.
 FORCE_LINES: dict[str, dict[str, Any]] = {
     "force increased": {"color": style.INCREASED, "zorder": 4},
@@ -229,20 +196,37 @@ FORCE_LINES: dict[str, dict[str, Any]] = {
 }
 
 
-def draw_signed_forces(
-    axes: Axes, point: ArrayLike, force: ArrayLike, normal: ArrayLike, **chains: Any
+def draw_forces(
+    axes: Axes,
+    point: ArrayLike,
+    force: ArrayLike,
+    normal: ArrayLike,
+    *,
+    length_per_force: float,
+    width_per_force: float,
+    smallest: float = 0.0,
+    **lines: Any,
 ) -> dict[str, LineCollection]:
-    """:func:`draw_force_chains` in the colours of :data:`FORCE_LINES`; ``normal`` (m, 2) is along the contacts.
+    """Draw each force (m, 2) as a line along it, centred at its contact ``point`` (m, 2) (Figs. 2, 13, 17, 18).
 
-    A force along its normal presses together. Kinds without a line are left out of the returned collections.
+    Colours are those of :data:`FORCE_LINES`; a force along its ``normal`` (m, 2), that of the contact, presses
+    together. Length (radii) and width (points) are both proportional to the magnitude, the width down to
+    :data:`THINNEST`. Forces below ``smallest`` are left out, which keeps the files of large packings small. Kinds
+    without a line are left out of the returned collections.
     """
-    pushes = np.sum(np.asarray(force) * np.asarray(normal), axis=1) >= 0.0
-    drawn: dict[str, LineCollection] = {}
-    for (name, look), mask in zip(FORCE_LINES.items(), (pushes, ~pushes), strict=True):
-        if mask.any():
-            keywords = {**look, **chains}
-            lines = draw_force_chains(axes, np.asarray(point)[mask], np.asarray(force)[mask], **keywords)
-            drawn |= {name: lines} if lines.get_segments() else {}
+    centre, vector = _points(point, "point"), _points(force, "force")
+    if len(centre) != len(vector):
+        raise ValueError(f"force: {len(vector)} given for {len(centre)} contact points")
+    magnitude = np.linalg.norm(vector, axis=1)
+    pushes = np.sum(vector * np.asarray(normal), axis=1) >= 0.0
+    drawn = {}
+    for (name, look), kind in zip(FORCE_LINES.items(), (pushes, ~pushes), strict=True):
+        shown = kind & (magnitude > smallest)
+        if shown.any():
+            half = 0.5 * length_per_force * vector[shown]
+            widths = np.maximum(width_per_force * magnitude[shown], THINNEST)
+            keywords = {"capstyle": "butt", **look, **lines, "linewidths": widths}
+            drawn[name] = _segments(axes, centre[shown] - half, centre[shown] + half, keywords)
     return drawn
 
 

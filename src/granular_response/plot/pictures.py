@@ -7,9 +7,10 @@ figure of its own, made by pyplot.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import reprlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -23,9 +24,10 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from ..errors import GranularError
+from ..observe import positive
 from ..observe.floor import origin_of
 from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
-from ..state import OPEN, SLIDING, Box, FloatArray, wall_normals
+from ..state import OPEN, SLIDING, Box, FloatArray, foot_points, wall_normals
 from ..store import atomic
 from . import network, style
 from .field import draw_field, root_norm
@@ -43,9 +45,19 @@ class PictureError(GranularError, ValueError):
 
 def check_positive(**given: float | None) -> None:
     """PictureError, with its name, for the first of ``given`` that is no number greater than 0; None is left out."""
-    for name, value in given.items():
-        if value is not None and not (np.isfinite(value) and value > 0.0):
-            raise PictureError(f"{name} = {value}: must be a number greater than 0")
+    try:
+        positive.check_positive(**{name: value for name, value in given.items() if value is not None})
+    except ValueError as error:
+        raise PictureError(str(error)) from None
+
+
+@contextlib.contextmanager
+def written(output: str | os.PathLike[str]) -> Iterator[None]:
+    """A file that cannot be written within it is a PictureError."""
+    try:
+        yield
+    except OSError as error:
+        raise PictureError(f"{output}: cannot be written: {error.strerror or error}") from error
 
 
 class HasDataset(Protocol):
@@ -129,6 +141,19 @@ class Shown:
         )
         return pair, wall
 
+    @property
+    def lack(self) -> str:
+        """Why there is no response, which is divided by the force of the loads; empty where there is one."""
+        if np.isfinite(self.data["floor_response"].values).any():
+            return ""
+        if not self.data.sizes["load_point"]:
+            return "no loads"
+        if self.data.sizes["state"] == 1:
+            return "no state under load"
+        if "reaction" not in self.data and not self.data["applied_load"].values[:, :2].any():
+            return "no load has a force"
+        return "the loads apply no force in any state"
+
     @cached_property
     def loads(self) -> list[tuple[int, FloatArray, float]]:
         """Disk, force and torque of each load in this state."""
@@ -155,10 +180,8 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
     >>> gr.plot.response(result).figure.savefig("response.png")
     """
     shown = Shown.of(result)
-    if not _has_response(shown):
-        raise PictureError(
-            f"result: {_why_no_response(shown)}, so there is no response; floor draws the forces on the floor"
-        )
+    if shown.lack:
+        raise PictureError(f"result: {shown.lack}, so there is no response; floor draws the forces on the floor")
     with style.context():
         axes = _axes(ax, 0.36)
         curves = np.atleast_2d(shown.data["floor_response"].values)
@@ -240,14 +263,13 @@ def forces(
     added = shown.index > 0 if added is None else added
     if scale not in network.SCALES:
         raise PictureError(f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}")
-    if vmax is not None and not vmax > 0.0:
-        raise PictureError(f"vmax = {vmax}: must be positive")
-    check_positive(half_width=half_width)
+    check_positive(vmax=vmax, half_width=half_width)
     pair, wall = shown.forces(added)
     normal = shown.box.separation(*(shown.position[disks] for disks in shown.pairs))
     inward = wall_normals(shown.values("wall_index"))
     between = network.pair_points(shown.position, shown.radius, *shown.pairs, box=shown.box)
-    feet = network.wall_points(shown.position, shown.radius, shown.values("wall_disk"), shown.values("wall_index"))
+    at_wall = shown.values("wall_disk")
+    feet = foot_points(shown.position[at_wall], shown.radius[at_wall], shown.values("wall_index"))
     point = np.concatenate([between, feet])
     force, direction = np.concatenate([pair, wall]), np.concatenate([normal, inward])
     reference = float(np.linalg.norm(force, axis=1).max(initial=0.0)) if vmax is None else vmax
@@ -261,7 +283,7 @@ def forces(
         inches = axes.figure.get_figure(root=True).get_size_inches()[0] * axes.get_position().width
         widest = crowded * float(np.clip(72.0 * inches / np.ptp(axes.get_xlim()), 0.8, 5.0))
         look = {"length_per_force": 4.0 * crowded, "width_per_force": widest, "smallest": 0.02, **lines}
-        kinds = network.draw_signed_forces(axes, point, drawn, direction, **look)
+        kinds = network.draw_forces(axes, point, drawn, direction, **look)
         handles = [
             Line2D([], [], color=lines.get("color", network.FORCE_LINES[name]["color"]), linewidth=1.6, label=name)
             for name in (kinds if added else ())
@@ -335,7 +357,7 @@ def stress(
     component : indices of the tensor, the force's first.
     width : of the Gaussian in mean radii (Sec. V.C).
     vmax : end of the colour scale, in mean disk weights per mean radius; by default the largest magnitude.
-    half_width : draw what is within this distance of the loaded disks, in mean radii; by default all.
+    half_width : as of :func:`forces`.
     cmap : colour map of matplotlib; zero is in its middle.
     mesh : goes to ``Axes.pcolormesh``.
 
@@ -483,7 +505,7 @@ def page(
         raise PictureError(f"what: nothing to draw, must be among {', '.join(PICTURES)}")
     shown = Shown.of(result, state)
     if what is None:
-        what = ("response" if _has_response(shown) else "floor", "forces", "contacts", "stress")
+        what = ("floor" if shown.lack else "response", "forces", "contacts", "stress")
     half_width = NEAR * shown.top
     with style.context():
         columns = 1 if len(what) == 1 or _aspect(shown, half_width) < 0.6 else 2
@@ -530,12 +552,10 @@ def save(
     if path.suffix not in (".pdf", ".png", ".svg"):
         raise PictureError(f"{path}: format {path.suffix!r} is unknown, must be .pdf, .png or .svg")
     drawn = style.render(page(result, what, state=state, scale=scale, figure=Figure()), path.suffix[1:])
-    try:
+    with written(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         atomic.check_output(path, inputs)
         atomic.write_bytes(path, drawn)
-    except OSError as error:
-        raise PictureError(f"{path}: cannot be written: {error.strerror or error}") from error
     return path
 
 
@@ -547,21 +567,6 @@ def _title(what: str, shown: Shown) -> str:
         load = f"torque ${turning:.4g}\\,{style.TORQUE_UNIT}$"
     names = {"floor": "floor forces", "forces": "incremental forces" if shown.index else "forces"}
     return style.RESPONSE if what == "response" else f"{names.get(what, what)}, {load}"
-
-
-def _has_response(shown: Shown) -> bool:
-    """Whether a load applies a force: the response is divided by it."""
-    return bool(np.isfinite(shown.data["floor_response"].values).any())
-
-
-def _why_no_response(shown: Shown) -> str:
-    if not shown.data.sizes["load_point"]:
-        return "no loads"
-    if shown.data.sizes["state"] == 1:
-        return "no state under load"
-    if "reaction" not in shown.data and not shown.data["applied_load"].values[:, :2].any():
-        return "no load has a force"
-    return "the loads apply no force in any state"
 
 
 def _axes(ax: Axes | None, aspect: float) -> Axes:

@@ -231,7 +231,6 @@ def paper_value(
     along: Literal["x", "y"] = "x",
     at: float = 0.97,
     side: Literal["before", "behind"] = "before",
-    band: float | None = None,
 ) -> None:
     """Mark a ``value`` that the paper prints, in one light style: a dotted line across the axes and ``text`` on it.
 
@@ -240,21 +239,14 @@ def paper_value(
     along : axis that the value is read on.
     at : where the text ends on the other axis, as a part of it.
     side : the text stands before the line (left of it, above it) or behind it.
-    band : a range from ``value`` to this, in place of the line.
     """
     with context():
         upright = along == "x"
-        if band is not None:
-            (axes.axvspan if upright else axes.axhspan)(value, band, color=PAPER_BAND, linewidth=0.0, zorder=0)
-            value = (value + band) / 2.0
-        else:
-            line = axes.axvline if upright else axes.axhline
-            line(value, color=PAPER, linewidth=0.8, linestyle=(0, (1.0, 1.6)), zorder=0.5)
+        line = axes.axvline if upright else axes.axhline
+        line(value, color=PAPER, linewidth=0.8, linestyle=(0, (1.0, 1.6)), zorder=0.5)
         if not text:
             return
-        # on a band in its middle, else beside the line
-        beside = (1.5, "left", "top") if side == "behind" else (-1.5, "right", "bottom")
-        gap, across, over = beside if band is None else (0.0, "center", "center")
+        gap, across, over = (1.5, "left", "top") if side == "behind" else (-1.5, "right", "bottom")
         axes.annotate(
             text,
             (value, at) if upright else (at, value),

@@ -68,11 +68,15 @@ def strained(
         raise ValueError(f"following = {following!r}: must be one of {', '.join(FOLLOWING)}")
     if not 0.0 <= margin < 0.5:
         raise ValueError(f"margin = {margin}: must be from 0 to below 0.5")
-    packing = problem.packing
-    if not packing.periodic or packing.left is None or packing.row.max() < 2:
-        raise ValueError("the packing must have three rows or more and periodic sides")
-    if 2 * _left_out(len(packing.row_count), margin) >= len(packing.row_count):
-        raise ValueError(f"margin = {margin}: leaves none of {len(packing.row_count)} rows")
+    packing, kind, rows = problem.packing, problem.scene.packing.kind, len(problem.packing.row_count)
+    if kind != "slab":
+        raise ValueError(f"packing.kind = {kind}: must be slab to be strained as a whole, with packing.sides: periodic")
+    if not packing.periodic:
+        raise ValueError("packing.sides = walls: must be periodic for a packing to be strained as a whole")
+    if rows < 3:
+        raise ValueError(f"packing.layers = {rows}: must be 3 or greater for a packing to be strained as a whole")
+    if 2 * _left_out(rows, margin) >= rows:
+        raise ValueError(f"margin = {margin}: leaves none of {rows} rows")
     n = problem.n
     system, trial = sticking(_moved_by_hand(problem, state, following), state, "stick")
     if not prestress:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..observe import network, peaks
 from ..observe.floor import floor_disks, floor_response, interior_mask, smoothed_response
-from ..observe.teardrop import OpenRegion, teardrop
+from ..observe.teardrop import OpenRegion, open_region
 from ..state import FloatArray, State
 from ..store.result import common_candidates
 from .path import Happening, LoadPath
@@ -94,7 +94,7 @@ class Measures:
     def opened(self, state: State, anywhere: bool = False) -> int:
         """Number of contacts of disks that the load opened in the central third, or ``anywhere`` in the slab."""
         rest, state, near = self._matched(state)
-        return int(np.count_nonzero(network.contact_changes(rest.pairs, state.pairs).opened & (near | anywhere)))
+        return int(np.count_nonzero(network.opened(rest.pairs, state.pairs) & (near | anywhere)))
 
     def double_peaked(self, state: State) -> bool:
         """Whether the response has two peaks in the sense of the paper's crossover."""
@@ -111,14 +111,14 @@ class Measures:
     def region(self, state: State) -> OpenRegion:
         """The opened contacts below the load."""
         rest, state, near = self._matched(state)
-        return teardrop(rest, state, self.loaded_disk, start=near, lattice_constant=self.lattice_constant)
+        opened, loaded_disk = network.opened(rest.pairs, state.pairs), rest.position[self.loaded_disk]
+        return open_region(rest, opened, loaded_disk, start=near, lattice_constant=self.lattice_constant)
 
     def _matched(self, state: State) -> tuple[State, State, NDArray[np.bool_]]:
         """The rest state and this one on one list of candidates, which dynamics may have made anew, and those near."""
-        if self.rest.pairs.same_candidates(state.pairs) and self.rest.walls.same_candidates(state.walls):
-            return self.rest, state, self.near
         rest, state = common_candidates([self.rest, state], self._radius)
-        return rest, state, network.interior_contacts(rest, self.width, self.width / 3.0)
+        near = self.near if rest is self.rest else network.interior_contacts(rest, self.width, self.width / 3.0)
+        return rest, state, near
 
     def mobilised(self, state: State) -> list[int]:
         """Number of contacts of disks within each of ``MARGINS`` of the Coulomb limit."""

@@ -6,17 +6,14 @@ are sealed pickles: what is damaged or stands under another name counts as absen
 is one that nobody else can write to.
 
 A memory is optional. What cannot be written or is of a kind that is not kept costs one warning, never the result.
+Nothing is ever deleted here: a folder is the caller's to remove.
 """
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import os
 import pickle
-import re
-import shutil
-import time
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -30,10 +27,6 @@ Value = TypeVar("Value")
 
 #: Stands for a value that is not there.
 MISSING: Any = object()
-
-_SHELF = re.compile("[0-9a-f]{32}")
-#: Seconds after which values of other sources go.
-_OLD = 7 * 24 * 3600.0
 
 
 class MemoryWarning(UserWarning):
@@ -87,9 +80,7 @@ class Memory:
             warn(f"{self.folder}: a value is not kept: {error}")
             return
         try:
-            if not self.shelf.is_dir():
-                self._clear()
-                self.shelf.mkdir(parents=True, exist_ok=True)
+            self.shelf.mkdir(parents=True, exist_ok=True)
             # by its seal a file is known that was lost in part
             atomic.write_bytes(self._path(name), data + _seal(name, data), lasting=False)
         except OSError as error:
@@ -102,14 +93,6 @@ class Memory:
 
     def _path(self, name: str) -> Path:
         return self.shelf / f"{name}.kept"
-
-    def _clear(self) -> None:
-        """Remove what other sources have left and nobody has added to for a week."""
-        with contextlib.suppress(OSError):
-            for shelf in self.folder.iterdir():
-                ours = _SHELF.fullmatch(shelf.name) and all(file.suffix == ".kept" for file in shelf.iterdir())
-                if ours and time.time() - shelf.stat().st_mtime > _OLD:
-                    shutil.rmtree(shelf, ignore_errors=True)
 
 
 def warn(message: str) -> None:

@@ -42,13 +42,11 @@ def rest_of(scene: Scene) -> State:
     return rest_state(Problem.from_scene(scene))
 
 
-def _time_step(problem: Problem, *, must_be_stable: bool) -> float | str | None:
-    """The time step, as the scene says it where it is not a stable one and need not be."""
+def _time_step(problem: Problem) -> float | str | None:
+    """The time step, as the scene says it where that is not a stable one: whoever needs it will refuse it."""
     try:
         return resolve_time_step(problem)
     except UnstableTimeStep:
-        if must_be_stable:
-            raise
         return problem.scene.protocol.time_step
 
 
@@ -62,7 +60,7 @@ def name(problem: Problem) -> str:
     if method == "dynamics" or preparation.taps or (problem.rotations and preparation.gravity == "frictionless"):
         numerics = (
             protocol.integrator,
-            _time_step(problem, must_be_stable=method == "dynamics"),
+            _time_step(problem),
             problem.plan.stop_energy,
             problem.plan.quiet_energy,
             protocol.stop_rule,

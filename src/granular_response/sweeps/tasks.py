@@ -1,12 +1,8 @@
 """One map over independent tasks: in this process, over local processes, or over a Dask cluster.
 
-``map_tasks(function, items)`` is ``[function(item) for item in items]`` with progress, with all cores, and
-with what is finished kept: an interrupted run continues where it was, and a worker that dies costs only the
-task it was at. The result does not depend on where the tasks ran.
-
 A task is a function of one argument, of a module, a notebook or a lambda, that draws random numbers only from seeds in
-its item. A script that calls ``map_tasks`` has its own calls under
-``if __name__ == "__main__":``, since workers import it.
+its item. A script that calls ``map_tasks`` has its own calls under ``if __name__ == "__main__":``, since workers import
+it.
 """
 
 from __future__ import annotations
@@ -17,7 +13,6 @@ import logging
 import os
 import reprlib
 from collections.abc import Callable, Generator, Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, SupportsIndex, TypeVar
 
@@ -49,29 +44,25 @@ def map_tasks(
     parts: Sequence[str] = (),
     what: str = "tasks",
 ) -> list[Result]:
-    """Results of ``function`` for all items, in the order of the items.
+    """Results of ``function`` for all items, in the order of the items and the same wherever they are computed.
+
+    An interrupted call with a checkpoint continues where it was; a worker that dies costs only the task it was at.
 
     Parameters
     ----------
-    function, items
-        The task and its arguments.
-    workers
-        Number of local processes; this process if 1. If None, that of the :mod:`.resources` in use, else all cores.
-    scheduler
-        Address of a Dask scheduler (``tcp://host:8786``). If None, the resources in use and
+    function, items : the task and its arguments.
+    workers : number of local processes; this process if 1. If None, that of the :mod:`.resources` in use, else all
+        cores.
+    scheduler : address of a Dask scheduler (``tcp://host:8786``). If None, the resources in use and
         ``DASK_SCHEDULER_ADDRESS`` are asked.
-    progress
-        Called as ``progress(done, total, what)`` at the start and after each task; if None, that of the resources.
-        Where a checkpoint had some of the results, ``what`` says how many.
-    checkpoint
-        Folder in which the result of each finished task is kept until the caller removes it. A later call
+    progress : called as ``progress(done, total, what)`` at the start and after each task; if None, that of the
+        resources. Where a checkpoint had some of the results, ``what`` says how many.
+    checkpoint : folder in which the result of each finished task is kept until the caller removes it. A later call
         finds it there if function, item and the sources of this package, and of those that the resources in use name,
         are the same (see :mod:`.keys`). Of a lambda or a function of a notebook nothing is kept. If None, that of the
         resources in use; nothing is kept if there is none either.
-    parts
-        The sources that the results depend on, as :func:`.keys.sources` takes them; all if none is named.
-    what
-        What the tasks are, for the progress line.
+    parts : the sources that the results depend on, as :func:`.keys.sources` takes them; all if none is named.
+    what : what the tasks are, for the progress line.
 
     Raises SweepError for a set of items, which has no order; if a task raises (the message names its item), if workers
     keep dying at one task, if something cannot be sent to a worker or back, or if the cluster cannot be reached or is
@@ -105,7 +96,7 @@ def map_tasks(
         return results
     count = min(workers or threads.cores(), len(todo))
     # the nodes of a cluster may not share the folder
-    task = _Task(function, None if scheduler else given.rest_states)
+    task = functools.partial(_alone, function, None if scheduler else given.rest_states)
     if scheduler:
         finished = over_dask(task, items, todo, scheduler)
     elif count == 1 and workers in (1, None):
@@ -123,16 +114,10 @@ def map_tasks(
     return results
 
 
-@dataclass(frozen=True)
-class _Task:
-    """A function with what it may use where it runs."""
-
-    function: Callable
-    rest_states: Path | None
-
-    def __call__(self, item: Any) -> Any:
-        with using(**vars(Resources(rest_states=self.rest_states))):
-            return self.function(item)
+def _alone(function: Callable, rest_states: Path | None, item: Any) -> Any:
+    """Call a function where it may use ``rest_states`` and nothing else of the resources."""
+    with using(**vars(Resources(rest_states=rest_states))):
+        return function(item)
 
 
 def _here(function: Callable, items: Sequence[Any], todo: Sequence[int]) -> Generator[tuple[int, Any], None, None]:

@@ -26,11 +26,14 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from .moduli import Moduli
+from .moduli import peak_criterion as criterion
 
 Rotations = Literal["suppressed", "free"]
 
 #: R^2 / A with the area A = 2 sqrt(3) R^2 of a unit cell.
 _R2_PER_AREA = 1.0 / (2.0 * math.sqrt(3.0))
+#: Disks a side of the lattice of :func:`measured_moduli`.
+CELLS = 4
 
 
 @dataclass(frozen=True)
@@ -92,7 +95,7 @@ def peak_criterion(beta: float, rotations: Rotations = "suppressed") -> float:
         raise ValueError(f"beta = {beta}: must not be negative")
     a, b, c = 1.0 + 3.0 * beta, 9.0 + 3.0 * beta, 3.0 - 3.0 * beta
     d = 6.0 + (2.0 * beta if rotations == "suppressed" else 0.0)
-    return (a * b - c * (c + d)) / (b * d)
+    return criterion(a, b, c, d)
 
 
 def peak_criterion_root(rotations: Rotations = "suppressed") -> float:
@@ -114,21 +117,15 @@ def poisson_ratio(normal: float, tangential: float) -> float:
     return (normal - tangential) / (3.0 * normal + tangential)
 
 
-def measured_moduli(
-    springs: Springs, rotations: Rotations = "suppressed", *, relax: bool = True, cells: tuple[int, int] = (4, 4)
-) -> NDArray[np.float64]:
+def measured_moduli(springs: Springs, rotations: Rotations = "suppressed") -> NDArray[np.float64]:
     """(3, 3) stress per strain, in the order of ``Moduli.matrix``, of a periodic lattice actually strained.
 
-    Each of the strains eps_xx, eps_zz, eps_xz is imposed on ``cells[0] x cells[1]`` disks with periodic
-    boundaries, the displacements about the affine ones (unless ``relax`` is False) and the rotations (if
-    free) are relaxed by minimising the elastic energy, and the symmetric mean stress is summed
-    over the bonds. Nothing here uses eqs. (7)-(10). Raises ValueError for fewer than one cell a side.
+    Each of the strains eps_xx, eps_zz, eps_xz is imposed on :data:`CELLS` squared disks with periodic boundaries, the
+    displacements about the affine ones and the rotations (if free) are relaxed by minimising the elastic energy, and
+    the symmetric mean stress is summed over the bonds. Nothing here uses eqs. (7)-(10).
     """
     _check_rotations(rotations)
-    nx, nz = cells
-    if nx < 1 or nz < 1:
-        raise ValueError(f"cells = {cells}: both must be at least 1")
-    disks = nx * nz
+    disks = CELLS**2
     # Per disk, with lengths in R: the bond to each of three neighbours and the cell it lies in.
     bonds = (
         ((2.0, 0.0), (1, 0), springs.k1n, springs.k1t),
@@ -136,11 +133,11 @@ def measured_moduli(
         ((-1.0, np.sqrt(3.0)), (-1, 1), springs.k2n, springs.k2t),
     )
     elongations, affines, virials, stiffnesses = [], [], [], []
-    for column in range(nx):
-        for layer in range(nz):
-            i = column * nz + layer
+    for column in range(CELLS):
+        for layer in range(CELLS):
+            i = column * CELLS + layer
             for (bx, bz), (di, dj), normal, tangential in bonds:
-                j = (column + di) % nx * nz + (layer + dj) % nz
+                j = (column + di) % CELLS * CELLS + (layer + dj) % CELLS
                 for (ex, ez), stiffness, arm in (
                     ((bx / 2.0, bz / 2.0), normal, 0.0),
                     ((-bz / 2.0, bx / 2.0), tangential, 1.0),
@@ -157,12 +154,9 @@ def measured_moduli(
                     stiffnesses.append(stiffness)
     k = np.array(stiffnesses)[:, None]
     elongation = np.array(affines)  # (springs, 3), per unit of each strain
-    free = np.concatenate([np.full(2 * disks, relax), np.full(disks, rotations == "free")])
-    if free.any():
-        # The minimum-norm solution leaves out the uniform translation and any floppy mode.
-        relaxing = np.array(elongations)[:, free]
-        weight = np.sqrt(k)
-        response = np.linalg.lstsq(weight * relaxing, -weight * elongation, rcond=1e-12)[0]
-        elongation = elongation + relaxing @ response
+    relaxing, weight = np.array(elongations)[:, : 3 * disks if rotations == "free" else 2 * disks], np.sqrt(k)
+    # The minimum-norm solution leaves out the uniform translation and any floppy mode.
+    response = np.linalg.lstsq(weight * relaxing, -weight * elongation, rcond=1e-12)[0]
+    elongation = elongation + relaxing @ response
     area = disks * 2.0 * np.sqrt(3.0)
     return np.array(virials).T @ (k * elongation) / area

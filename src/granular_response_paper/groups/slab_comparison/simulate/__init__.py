@@ -80,7 +80,7 @@ def compute(base: Scene, case: Case, layers: int, force: float) -> tuple[Slab, S
         nonlinearity=float(np.abs(response - at_half).max() / response.max()),
         response_sum=float(response.sum()),
         open_at_rest=int(np.count_nonzero(neighbours & ~pairs.touching)),
-        opened=int(np.count_nonzero(network.contact_changes(pairs, full.pairs).opened)),
+        opened=int(np.count_nonzero(network.opened(pairs, full.pairs))),
         sliding=int(np.count_nonzero(full.pairs.status == SLIDING)),
     )
     return slab, full
