@@ -136,8 +136,8 @@ def friction_study():
 
 
 def breaking_study():
-    names = "low high ramp_time time_step"
-    brackets = dataset(**by_row("event", names, [(91.2, 92.0, 20.0, 5e-4), (91.5, 92.5, 100.0, 5e-4)]))
+    rows = [("loss_of_symmetry", 91.2, 92.0, 20.0), ("loss_of_symmetry", 91.5, 92.5, 100.0)]
+    brackets = dataset(**by_row("event", "name low high ramp_time", rows))
     return {"brackets": brackets, "equal_rows": events(("loss_of_symmetry", 1.0, 91.1, 91.9))}
 
 
@@ -314,8 +314,11 @@ def disordered_cases():
     """Coordinates of the cases: the lattice, three frictions at three disorders, and the literal start."""
     cases = [(delta, mu, STARTS[0]) for delta in (0.0, 0.01, 0.1, 0.25) for mu in (0.0, 0.2, 1.0)]
     cases += [(0.01, mu, STARTS[1]) for mu in (0.0, 0.2)]
-    return by_row("case", "polydispersity friction lattice_constant", cases)
+    return by_row("case", "polydispersity friction lattice_constant realizations", [(*case, FEW) for case in cases])
 
+
+#: Packings of each case.
+FEW = 8
 
 #: Draws of the planted bootstrap, the same part of the crossover in every case.
 DRAWS = np.linspace(0.95, 1.05, 41)
@@ -327,10 +330,9 @@ def phases_study():
     grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 9.0], [0.5, 2.0, 4.0], [2.5, 12.0]]
     force = np.array([f for row in grid for f in row])
     mu, delta = cases["friction"][1], cases["polydispersity"][1]
-    n, few = len(mu), 8
+    n, few = len(mu), FEW
     dip = np.where(mu == 0.0, 0.8, -0.05)
     labels = {**cases, "width": [3.0, 6.0], "level": [0.025, 0.5, 0.975]}
-    number = {"realizations": ("case", [few] * n)}
     dips = dip[:, None] + np.array([-0.02, 0.0, 0.02])
     scatter = np.where(mu == 0.0, 0.005, 0.001)[:, None]
     each = 0.05 * rng.standard_normal((n, few, 3)) + dip[:, None, None]
@@ -357,7 +359,7 @@ def phases_study():
     away = np.maximum(0.0, small / (apart * np.repeat(ends, 2)[:, None, None]) - 1.0)
     return {
         "crossovers": dataset(
-            labels | number,
+            labels,
             **crossovers,
             seen=("width case", 0.9),
             seen_interval=("width case level", [0.8, 0.9, 0.95]),
@@ -378,13 +380,13 @@ def phases_study():
             largest_step_interval=("width case level", [0.08, 0.1, 0.12]),
         ),
         "realizations": dataset(
-            labels | number,
+            labels,
             {"realization": few, "step": 3},
             collapse_force=("case realization", np.where(np.arange(few) < 4, 20.0, np.nan)),
             **over("width case realization step", shape=each, asymmetry=0.1, difference=0.2),
         ),
         "starts": dataset(
-            labels | number,
+            labels,
             dip_of_means=("width case level", dips),
             dip_of_means_interval=("width case level end", dips[..., None] + [-0.01, 0.01]),
         ),

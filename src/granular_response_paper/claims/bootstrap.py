@@ -9,29 +9,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import betaincinv
 
-from granular_response.state import FloatArray
-
 from .claim import NotMeasured, Quantity
 
-Statistic = Callable[..., FloatArray]
+Statistic = Callable[..., Any]
 
-#: Draws, the part of them that an interval leaves out on both sides together, and its levels.
-DRAWS, OUTSIDE = 2000, 0.05
-LEVELS = (0.5 * OUTSIDE, 1.0 - 0.5 * OUTSIDE)
+#: Number of draws, and the ends of an interval that holds 95 % of them.
+DRAWS, LEVELS = 2000, (0.025, 0.975)
 
 #: A part of samples below this is rare: they lie outside of the central 95 %.
 RARE = LEVELS[0]
 
 
-def of_draws(
-    value: float, draws: ArrayLike | tuple[FloatArray, FloatArray], test: str, samples: int, method: Any = "linear"
-) -> Quantity:
-    """A number with 95 % of its draws (d,), by the quantiles of numpy's ``method``.
-
-    Draws that are known within an interval are the two (d,) of its lower and its upper ends.
+def of_draws(value: float, draws: ArrayLike, test: str, samples: int, method: Any = "linear") -> Quantity:
+    """A number with 95 % of its draws (d,), by the quantiles of numpy's ``method``; (2, d) are ends between which each
+    lies.
     """
-    ends = draws if isinstance(draws, tuple) else (draws, draws)
-    low, high = (float(np.quantile(end, level, method=method)) for end, level in zip(ends, LEVELS, strict=True))
+    ends = np.broadcast_to(draws, (2, np.shape(draws)[-1]))
+    low, high = (float(np.quantile(one, level, method=method)) for one, level in zip(ends, LEVELS, strict=True))
     return Quantity(float(value), low, high, "confidence", test, samples)
 
 
@@ -73,17 +67,17 @@ def part_of(hits: ArrayLike, unknown: ArrayLike = False) -> Quantity:
     return Quantity(value, low, high, "confidence", "exact binomial interval", number)
 
 
-def over_brackets(each: Sequence[Quantity]) -> Quantity:
+def over_brackets(each: Sequence[Quantity], median: Statistic = np.median) -> Quantity:
     """Median of realizations of which each is known within an interval of its own, some without an upper end.
 
     The interval is that of the draws, from the medians of lower ends to those of upper ends: it holds what realizations
-    differ by and what is not known of each.
-
-    Raises NotMeasured with fewer than three.
+    differ by and what is not known of each. One realization is what it is; raises NotMeasured for two or none.
     """
+    if len(each) == 1:
+        return each[0]
     picked = _picked(len(each))
     low, high = (np.array([getattr(one, end) for one in each]) for end in ("low", "high"))
-    middle = float(np.median([one.value if np.isfinite(one.value) else 0.5 * (one.low + one.high) for one in each]))
-    middle = middle if np.isfinite(middle) else float("nan")
-    drawn = np.median(low[picked], axis=1), np.median(high[picked], axis=1)
+    middle = median([one.value if np.isfinite(one.value) else 0.5 * (one.low + one.high) for one in each], axis=0)
+    drawn = [median(end[picked], axis=1) for end in (low, high)]
+    middle = middle if np.isfinite(middle) else np.nan
     return of_draws(middle, drawn, "bootstrap of the median", len(each), "inverted_cdf")

@@ -3,19 +3,18 @@
 A test has one of
 
 ``event``
-    the name of an event in the group's dataset ``events`` (or in ``table``, or of another ``group``); with
-    a ``friction`` and other labels ``at``, and ``prepared: true`` if the same event in other preparations makes the
-    second column, or ``prepared: only`` if nothing else is looked at;
+    the name of an event in the group's dataset ``events``, or ``dataset.name``, at the labels ``at``; with
+    ``prepared: true`` the same event in other preparations makes the second column, with ``prepared: only`` nothing
+    else is looked at;
 ``value``
     ``dataset.variable``, at the labels ``at`` or where coordinates lie in ``where``; ``over`` reduces what is left,
     dimension by dimension (``max``, ``min``, ``average``, ``first``, ``last``, or ``interval`` with the stored ends);
-    with ``unlike``, another one, their largest difference per its largest value;
-``trend``
-    the same, smallest ratio of neighbours along the dimension ``along`` (``falling: true`` turns it round);
+    with ``unlike``, another one, their largest difference per its largest value; with ``rises`` or ``falls``, the
+    smallest ratio of one value to the next along that dimension, or of the next to it;
 
-and may have ``per``, a number of the same kind by which it is divided, ``scale`` and ``case`` (a value of what the text
-leaves open). What else is measured has a function in the group's ``claims.py``, which ``numbers`` of the claim names,
-with its arguments if it has some. It is called with the data and yields for each case its name (a text or a
+and may have ``per``, a number or a test by whose it is divided, another ``group`` and ``case`` (a value of what the
+text leaves open). What else is measured has a function in the group's ``claims.py``, which ``numbers`` of the claim
+names, with its arguments if it has some. It is called with the data and yields for each case its name (a text or a
 :class:`Case`) and a number for each of the claim's tests, None for none, or with its bound where the data say it.
 
 Every other test has a ``bound``, see :func:`bound`, and may have a ``unit`` and say ``what`` is measured, with ``{}``
@@ -27,7 +26,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from importlib import import_module, resources
 from typing import Any
@@ -41,14 +39,14 @@ from . import preparations
 from .bootstrap import RARE
 from .claim import Bound, Case, Claim, Data, NotMeasured, Numbers, Quantity, Test, at, needs, rise
 from .stored import ClaimsError
-from .words import WORDS, Words
+from .words import WORDS
 
 #: Beside a group's ``claims.py``.
 TEXTS = "claims.yaml"
 
-_KINDS = ("event", "value", "trend")
-_KEYS = {*_KINDS, "table", "friction", "prepared", "at", "where", "over", "along", "falling", "per", "scale", "unit"}
-_KEYS |= {"case", "bound", "what", "group", "unlike"}
+_KINDS = ("event", "value")
+_KEYS = {*_KINDS, "at", "where", "over", "rises", "falls", "unlike", "per", "group", "case", "prepared"}
+_KEYS |= {"what", "unit", "bound"}
 
 #: By the kind of a bound: its ends, from its number v and the threshold t of its term.
 _ENDS: dict[str, Callable[[Any, float], Sequence[float]]] = {
@@ -66,11 +64,10 @@ _ENDS: dict[str, Callable[[Any, float], Sequence[float]]] = {
 }
 _ENDS |= dict.fromkeys(WORDS, lambda v, t: ((1.0 - t) * v, (1.0 + t) * v))
 
-
 _SIMPLE: dict[str, Callable[..., Any]] = {"max": np.max, "min": np.min, "average": np.mean}
 
 
-def bound(what: Mapping[str, Any], words: Words) -> Bound:
+def bound(what: Mapping[str, Any], words: Mapping[str, float]) -> Bound:
     """The bound of a test, with a number or the threshold t of a qualitative term.
 
     ``about: 20`` (or another term) is off 20 by t of it at most; ``sampled: 20`` that the force 20 is the first sampled
@@ -104,23 +101,18 @@ def read(package: str) -> list[Claim]:
         numbers = said.pop("numbers", None)
         for one in tests:
             _check(f"{group}: {id}", one, declares=not numbers)
-        rows: Callable[[Data], Numbers] = partial(_rows, group, tests)
+        function = None
         if numbers:
             ((name, given),) = numbers.items() if isinstance(numbers, dict) else [(numbers, {})]
             function = getattr(import_module(f"{package}.claims"), name, None)
             if function is None:
                 raise ClaimsError(f"{group}: {id}: numbers: {name}, must be a function of the group's claims.py")
-            rows = partial(function, **given)
-        missing = said.pop("missing", None)
-        measure = partial(_missing, missing) if missing else partial(_measured, group, said["measured"], tests, rows)
-        figures = tuple(said.pop("figures", _figures(said["place"])))
+            function = partial(function, **given)
+        measure = partial(_measured, group, said["measured"], tests, function, said.pop("missing", ""))
+        named = re.findall(r"\d+", "".join(re.findall(r"Figs?\. (.*)", said["place"])))  # as in V.F, Fig. 17e, f
+        figures = [int(number) for number in said.pop("figures", named)]
         found.append(Claim(id, measure=measure, group=group, figures=figures, **said))
     return found
-
-
-def _figures(place: str) -> tuple[int, ...]:
-    """The figures in a place of the paper such as "V.F, Fig. 17e, f"."""
-    return tuple(int(number) for number in re.findall(r"\d+", "".join(re.findall(r"Figs?\. (.*)", place))))
 
 
 def _check(name: str, test: Mapping[str, Any], declares: bool = True) -> None:
@@ -134,73 +126,66 @@ def _measured(
     group: str,
     what: str,
     tests: Sequence[Mapping[str, Any]],
-    rows: Callable[[Data], Numbers],
+    function: Callable[[Data], Numbers] | None,
+    missing: str,
     data: Data,
 ) -> list[Test]:
+    needs(not missing, missing)
     found = []
     try:
-        for case, *numbers in rows(data):
-            for spec, number in zip(tests, numbers, strict=True):
-                if number is None:
-                    continue
-                number, asked = number if isinstance(number, tuple) else (number, bound(spec["bound"], data.words))
-                of, prepared = (case.of, case.prepared) if isinstance(case, Case) else ("", "")
-                name = spec.get("what", what).replace("{}", of)
-                number = number if isinstance(number, Quantity) else Quantity.exact(number)
-                found.append(Test(name, number, asked, str(case), spec.get("unit", ""), prepared))
+        for spec, case, number in _of_function(tests, function(data)) if function else _declared(group, tests, data):
+            case = Case(case) if isinstance(case, str) else case
+            number, asked = number if isinstance(number, tuple) else (number, bound(spec["bound"], data.words))
+            number = number if isinstance(number, Quantity) else Quantity.exact(number)
+            name = spec.get("what", what).replace("{}", case.of)
+            found.append(Test(name, number, asked, case.name, spec.get("unit", ""), case.prepared))
     except NotMeasured as lacking:
         named = str(lacking).startswith("data/")
         raise NotMeasured(str(lacking) if named else f"data/{group}.nc: {lacking}") from None
     return found
 
 
-def _missing(what: str, data: Data) -> list[Test]:
-    raise NotMeasured(what)
+def _of_function(tests: Sequence[Mapping[str, Any]], rows: Numbers) -> Numbers:
+    """Each test with a case and its number there, as the function of the claim yields them."""
+    for case, *numbers in rows:
+        for spec, number in zip(tests, numbers, strict=True):
+            if number is not None:
+                yield spec, case, number
 
 
-def _rows(group: str, tests: Sequence[Mapping[str, Any]], data: Data) -> Numbers:
-    """What declared tests measure: each one's number by itself, and the event's in other preparations."""
-    for k, spec in enumerate(tests):
-        before, after = [None] * k, [None] * (len(tests) - k - 1)
+def _declared(group: str, tests: Sequence[Mapping[str, Any]], data: Data) -> Numbers:
+    """The same of declared tests: each one's number, and that in other preparations."""
+    for spec in tests:
         if spec.get("prepared") != "only":
-            yield spec.get("case", ""), *before, _number(group, spec, data), *after
+            yield spec, spec.get("case", ""), _number(group, spec, data)
         if "prepared" in spec:
-            frictions = [one["friction"] for one in (spec, spec.get("per")) if one]
-            own = {frictions[-1]: _number(group, spec["per"], data)} if "per" in spec else {}
-            for way, ends in preparations.along(data, spec["event"], frictions, own):
-                yield way, *before, ends[0].per(ends[1]) if "per" in spec else ends[0], *after
+            yield from ((spec, *found) for found in preparations.along(data, partial(_number, group, spec)))
 
 
 def _number(group: str, spec: Mapping[str, Any], data: Data) -> Quantity:
     if "event" in spec:
-        labels = {name: spec[name] for name in ("friction", "table") if name in spec} | spec.get("at", {})
-        found = data.event(spec.get("group", group), spec["event"], **labels)
-    elif "trend" in spec:
-        values = _selected(group, spec, spec["trend"], data).sortby(spec["along"])
-        along = [_reduced(values.isel({spec["along"]: k}), spec) for k in range(values.sizes[spec["along"]])]
-        found = rise(along[::-1] if spec.get("falling") else along)
+        found = data.event(spec.get("group", group), spec["event"], **spec.get("at", {}))
     else:
-        values = _selected(group, spec, spec["value"], data)
+        values = _selected(group, spec, data)
         if "unlike" in spec:
-            other = _selected(group, spec["unlike"], spec["unlike"]["value"], data)
+            other = _selected(group, spec["unlike"], data)
             values = np.abs(values.drop_vars(values.coords) - other.drop_vars(other.coords)).max() / other.max()
-        found = _reduced(values, spec)
-    if "per" in spec:
-        found = found.per(_number(group, spec["per"], data))
-    scale = float(spec.get("scale", 1.0))
-    return replace(found, value=scale * found.value, low=scale * found.low, high=scale * found.high)
+        if along := spec.get("rises") or spec.get("falls"):
+            values = values.sortby(along, ascending="rises" in spec)
+            found = rise(_reduced(values.isel({along: k}), spec) for k in range(values.sizes[along]))
+        else:
+            found = _reduced(values, spec)
+    if per := spec.get("per"):
+        found = found.per(_number(group, per, data) if isinstance(per, dict) else Quantity.exact(per))
+    return found
 
 
-def _where(study: xr.Dataset, spec: Mapping[str, Any]) -> xr.Dataset:
-    for name, (low, high) in spec.get("where", {}).items():
-        inside = (study[name].values >= low) & (study[name].values <= high)
-        study = study.isel({study[name].dims[0]: inside})
-    return study
-
-
-def _selected(group: str, spec: Mapping[str, Any], source: str, data: Data) -> xr.DataArray:
-    name, _, variable = source.rpartition(".")
-    return at(_where(data.get(spec.get("group", group), name), spec), **spec.get("at", {}))[variable]
+def _selected(group: str, spec: Mapping[str, Any], data: Data) -> xr.DataArray:
+    name, _, variable = spec["value"].rpartition(".")
+    study = data.get(spec.get("group", group), name)
+    for label, (low, high) in spec.get("where", {}).items():
+        study = study.isel({study[label].dims[0]: (study[label].values >= low) & (study[label].values <= high)})
+    return at(study, **spec.get("at", {}))[variable]
 
 
 def _reduced(values: xr.DataArray, spec: Mapping[str, Any]) -> Quantity:
@@ -215,4 +200,4 @@ def _reduced(values: xr.DataArray, spec: Mapping[str, Any]) -> Quantity:
         else:
             raise ClaimsError(f"over {dimension}: {how}, must be first, last, interval, {', '.join(_SIMPLE)}")
     needs(values.size == 1, f"{values.name}: {values.size} numbers in place of one")
-    return Quantity.exact(float(values.values.reshape(-1)[0]))
+    return Quantity.exact(values.item())

@@ -1,12 +1,13 @@
 """The claims against the stored datasets: the table with a verdict for each, which ``figures/claims.json`` holds.
 
-:func:`collect` reads what is stored, :func:`evaluate` judges, :func:`document` makes the JSON that ``dvc metrics
-show``, the page and the README quote. Nothing is judged anywhere else.
+:func:`document` makes the JSON that ``dvc metrics show``, the page and the README quote. Nothing is judged anywhere
+else.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 from collections.abc import Sequence
@@ -19,17 +20,14 @@ from granular_response.store import files as store
 
 from ..registry import PAPER, Collection, collection_of, group_path
 from . import preparations
-from .claim import Claim, Data, Quantity
+from .claim import PREPARATION, Claim, Data, Quantity
 from .declared import TEXTS, read
 from .stored import OUTPUT, PARTS, ClaimsError
-from .verdict import MEANINGS, SCHEME, Verdict, judge, key, rounded
+from .verdict import MEANINGS, SCHEME, Verdict, judge, key
 from .words import WORDS
 
 #: Sections of the paper, in order.
 SECTIONS = ("abstract", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "beyond")
-
-#: Intervals as they are named for readers.
-KINDS = {"bracket": "bracket", "confidence": "95 % confidence", "range": "range"}
 
 
 def claims_of(group: str) -> list[Claim]:
@@ -38,16 +36,11 @@ def claims_of(group: str) -> list[Claim]:
     return read(f"{collection_of(group).package}.{group}") if there else []
 
 
-def part_of(claim: Claim) -> str:
-    """The part of the table in which a claim stands."""
-    return "extension" if claim.extension else "disorder" if claim.disorder else "ordered"
-
-
 def _place(claim: Claim) -> tuple[int, int, str, str, int, str]:
     """Statements on order, then disorder, then what goes beyond; each by section."""
     section, _, further = re.split(r"[ ,;]", claim.place)[0].partition(".")
     letter, number, part = re.fullmatch(r"([A-Z])(\d+)([a-z]?)", claim.id).groups()  # type: ignore[union-attr]
-    return list(PARTS).index(part_of(claim)), SECTIONS.index(section), further, letter, int(number), part
+    return list(PARTS).index(claim.part), SECTIONS.index(section), further, letter, int(number), part
 
 
 @cache
@@ -72,7 +65,7 @@ def collect(
     """
     groups = {path.stem: store.read(path) for path in _paths(folder, collection) if path.exists()}
     if Path(others).exists():
-        groups[preparations.GROUP] = groups.get(preparations.GROUP, {}) | store.read(Path(others))
+        groups[PREPARATION] = groups.get(PREPARATION, {}) | store.read(Path(others))
     return Data(groups)
 
 
@@ -80,15 +73,10 @@ def _paths(folder: str | os.PathLike[str], collection: Collection) -> list[Path]
     return [Path(folder) / f"{group}.nc" for group in groups_read(collection)]
 
 
-def evaluate(data: Data, claims: Sequence[Claim]) -> list[Verdict]:
-    """The verdict on each claim."""
-    return [judge(claim, data) for claim in claims]
-
-
 def document(entries: Sequence[Verdict]) -> dict[str, Any]:
     """Everything about the verdicts, as it is stored; ``counts`` are scalars for ``dvc metrics show``."""
     counts = {
-        part: {key(kind): sum(e.verdict == kind and part_of(e.claim) == part for e in entries) for kind in MEANINGS}
+        part: {key(kind): sum(e.verdict == kind and e.claim.part == part for e in entries) for kind in MEANINGS}
         for part in PARTS
     }
     return {
@@ -101,12 +89,10 @@ def document(entries: Sequence[Verdict]) -> dict[str, Any]:
 
 
 def _row(entry: Verdict) -> dict[str, Any]:
-    claim = entry.claim
     return {
-        **_named(claim, "id", "place", "paper", "source", "measured", "figures", "group"),
-        "part": part_of(claim),
+        **_named(entry.claim, "id", "place", "paper", "source", "measured", "figures", "group", "part"),
         **_named(entry, "verdict", "star", "elsewhere", "here", "cases", "preparations"),
-        "remark": claim.remark,
+        "remark": entry.claim.remark,
         **_interval(entry.tests[0].found if entry.tests else None),
         "tests": [
             _named(test, "what", "case", "prepared", "outcome")
@@ -119,37 +105,40 @@ def _row(entry: Verdict) -> dict[str, Any]:
 
 
 def _named(one: object, *names: str) -> dict[str, Any]:
-    """Attributes by name, as JSON has them."""
-    values = {name: getattr(one, name) for name in names}
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
+    return {name: getattr(one, name) for name in names}
 
 
 def _interval(quantity: Quantity | None) -> dict[str, Any]:
     """A value with its interval and the kind of it; null without them, and for an end that is open."""
     if quantity is None or quantity.kind == "none":
-        return {"value": quantity and rounded(quantity.value), "interval": None, "interval_kind": ""}
-    ends = [rounded(quantity.low), rounded(quantity.high)]
-    return {"value": rounded(quantity.value), "interval": ends, "interval_kind": KINDS[quantity.kind]}
+        return {"value": quantity and _rounded(quantity.value), "interval": None, "interval_kind": ""}
+    kind = "95 % confidence" if quantity.kind == "confidence" else quantity.kind
+    ends = [_rounded(quantity.low), _rounded(quantity.high)]
+    return {"value": _rounded(quantity.value), "interval": ends, "interval_kind": kind}
+
+
+def _rounded(value: float) -> float | None:
+    """To six digits, so that the last ones of a machine do not show; None for nan and inf, which JSON lacks."""
+    return float(f"{value:.6g}") if math.isfinite(value) else None
 
 
 def write(
     output: str | os.PathLike[str] = OUTPUT,
     folder: str | os.PathLike[str] = "data",
     others: str | os.PathLike[str] = preparations.OUTPUT,
-    keep: Sequence[str | os.PathLike[str]] = (),
     collection: Collection = PAPER,
 ) -> dict[str, Any]:
     """Judge the claims of a collection on the datasets in ``folder`` and store the result; returns it.
 
     Raises ClaimsError if there are none, StoreError if one cannot be read, OSError if the output cannot be written
-    or is one of the files that are read or of those to ``keep``.
+    or is one of the files that are read.
     """
-    target = Path(output)
-    atomic.check_output(target, [*_paths(folder, collection), Path(others), *keep])
-    data = collect(folder, others, collection)
-    if not any(path.exists() for path in _paths(folder, collection)):
+    target, read_ = Path(output), _paths(folder, collection)
+    atomic.check_output(target, [*read_, Path(others)])
+    if not any(path.exists() for path in read_):
         raise ClaimsError(f"{folder}: holds none of the datasets that claims read; make them with dvc repro")
-    found = document(evaluate(data, claims_in(collection)))
+    data = collect(folder, others, collection)
+    found = document([judge(claim, data) for claim in claims_in(collection)])
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, (json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode())
     return found

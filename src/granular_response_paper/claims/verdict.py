@@ -5,10 +5,9 @@ The scheme, as the page and the notes print it, is :data:`SCHEME`.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from granular_response_paper import TOO_LITTLE
@@ -54,8 +53,8 @@ def together(outcomes: Iterable[Outcome]) -> Outcome:
     return "no" if "no" in found else "cannot tell" if "cannot tell" in found else "yes"
 
 
-def _outcomes(tests: Sequence[Test], of: str) -> dict[str, Outcome]:
-    """The outcome for each value of what the text leaves open (``of`` "case"), or each preparation ("prepared")."""
+def _outcomes(tests: Sequence[Test], of: Literal["case", "prepared"]) -> dict[str, Outcome]:
+    """The outcome for each value of what the text leaves open, or in each other preparation."""
     chosen = [test for test in tests if bool(test.prepared) is (of == "prepared")]
     names = dict.fromkeys(getattr(test, of) for test in chosen)
     return {name: together(test.outcome for test in chosen if getattr(test, of) == name) for name in names}
@@ -87,10 +86,10 @@ class Verdict:
 
     claim: Claim
     verdict: Kind
-    tests: tuple[Test, ...] = ()
+    tests: Sequence[Test] = ()
     missing: str = ""
     elsewhere: Elsewhere = "not tried"
-    star: tuple[str, ...] = ()
+    star: Sequence[str] = field(default_factory=list)
 
     @property
     def here(self) -> str:
@@ -129,23 +128,16 @@ def judge(claim: Claim, data: Data) -> Verdict:
 
     def under(word: str, factor: float) -> Kind:
         """The verdict with the threshold of one term changed."""
-        return verdict_of(claim.measure(Data(data.groups, words(word, factor))), claim)
+        return verdict_of(claim.measure(replace(data, words=words(word, factor))), claim)
 
     try:
-        tests = tuple(claim.measure(data))
-        verdict = verdict_of(tests, claim)
-        elsewhere = elsewhere_of(tests)
+        tests = claim.measure(data)
+        verdict, elsewhere = verdict_of(tests, claim), elsewhere_of(tests)
         used = sorted({test.bound.word for test in tests if test.bound.word and not test.prepared})
-        star = tuple(word for word in used if any(under(word, f) != verdict for f in FACTORS))
+        star = [word for word in used if any(under(word, factor) != verdict for factor in FACTORS)]
+        return Verdict(claim, verdict, tests, "", elsewhere, star)
     except NotMeasured as missing:
         return Verdict(claim, "not measured", missing=str(missing))
     except TOO_LITTLE as error:
         problem = " ".join(f"{type(error).__name__}: {error}".split())
         return Verdict(claim, "not measured", missing=f"data/{claim.group}.nc holds too little ({problem})")
-    return Verdict(claim, verdict, tests, "", elsewhere, star)
-
-
-def rounded(value: float) -> float | None:
-    """As it is stored: six digits, so that the last ones of a machine do not show; None for nan and inf, which JSON
-    lacks."""
-    return float(f"{value:.6g}") if math.isfinite(value) else None

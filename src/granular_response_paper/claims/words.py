@@ -9,7 +9,6 @@ beside a verdict says that it changes with a threshold halved or doubled. Number
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 #: Each term with its threshold, a part of what is compared, and what it says.
 WORDS: dict[str, tuple[float, str]] = {
@@ -38,9 +37,6 @@ WORDS: dict[str, tuple[float, str]] = {
     "marked": (0.5, "Marked, significant, strong, considerable, very distinct: by at least half."),
     "several": (3.0, "Several hundred is at least three hundred."),
 }
-
-#: Thresholds by term.
-Words = Mapping[str, float]
 
 #: By what the thresholds are multiplied to see whether a verdict hangs on them.
 FACTORS = (0.5, 2.0)

@@ -2,27 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import xarray as xr
 
 from granular_response.state import FloatArray
 from granular_response_paper.claims.bootstrap import over_brackets, over_realizations
 from granular_response_paper.claims.claim import Data, Numbers, Quantity, materials
-
-#: Realizations from which on they have an interval of confidence.
-FEWEST = 3
-
-
-def over_packings(each: Sequence[Quantity]) -> Quantity:
-    """One packing as it is; of several the median with its interval, of two what they span."""
-    if len(each) == 1:
-        return each[0]
-    if len(each) >= FEWEST:
-        return over_brackets(each)
-    middle = float(np.median([one.value for one in each]))
-    return Quantity(middle, min(one.low for one in each), max(one.high for one in each), "range")
 
 
 def _brackets(event: xr.Dataset) -> list[Quantity]:
@@ -34,7 +19,7 @@ def ranges(data: Data) -> Numbers:  # B2
         linear, reversible = (_brackets(one.sel(event=event)) for event in ("linear_range", "reversible_range"))
         there = [k for k, end in enumerate(linear) if np.isfinite(end.low)]  # realizations that are
         if any(linear[k].happens for k in there):
-            yield name, over_packings([reversible[k].per(linear[k]) for k in there])
+            yield name, over_brackets([reversible[k].per(linear[k]) for k in there])
 
 
 def repeated(data: Data) -> Numbers:

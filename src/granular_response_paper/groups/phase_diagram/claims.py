@@ -10,16 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations, groupby, pairwise, product
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.scene.lattice import SlabPacking, touching_largest
 from granular_response.state import FloatArray
-from granular_response_paper.claims.bootstrap import LEVELS, of_draws, over_realizations, part_of
+from granular_response_paper.claims.bootstrap import LEVELS, of_draws, over_brackets, over_realizations, part_of
 from granular_response_paper.claims.claim import Bound, Case, Data, Numbers, Quantity, at, needs
 from granular_response_paper.survey.crossover import ABOVE, BELOW, FOUND, counted
 
@@ -91,27 +91,18 @@ def _by_start(study: xr.Dataset, *frictions: float) -> Iterator[tuple[Slab, list
             yield slabs[0], [slab.of(study) for slab in slabs]
 
 
-def _samples(case: xr.Dataset) -> int:
-    return int(case["realizations"]) if "realizations" in case.variables else 1
-
-
-def _with_interval(case: xr.Dataset, name: str) -> Quantity:
-    """A number of a case with 95 % of its bootstrap draws."""
-    low, high = (float(at(case, level=level)[f"{name}_interval"]) for level in LEVELS)
-    return Quantity(float(case[name]), low, high, "confidence", BOOTSTRAP, _samples(case))
+def _with_interval(case: xr.Dataset, name: str, method: str = BOOTSTRAP) -> Quantity:
+    """A number of a case with 95 % of its draws."""
+    low, high = case[f"{name}_interval"].values[[0, -1]].tolist()
+    return Quantity(float(case[name]), low, high, "confidence", method, int(case["realizations"]))
 
 
 def two_peaks_or_one(data: Data) -> Numbers:
     """D1. The paper shows one mean of each friction, so that what is asked is only that such ones are not rare."""
+    method = f"quantile of means of {SHOWN}, bootstrap"
     for slab, cases in _by_start(at(data.get(GROUP, "starts"), width=NARROW), 0.0, 0.2):
-        yield slab.case(""), *(_tail(case, level) for case, level in zip(cases, LEVELS[::-1], strict=True))
-
-
-def _tail(case: xr.Dataset, level: float) -> Quantity:
-    """A quantile of the dip of means of ``SHOWN`` realizations, with 95 % of its bootstrap draws."""
-    one, method = at(case, level=level), f"quantile of means of {SHOWN}, bootstrap"
-    low, high = one["dip_of_means_interval"].values.tolist()
-    return Quantity(float(one["dip_of_means"]), low, high, "confidence", method, _samples(case))
+        tails = (at(case, level=level) for case, level in zip(cases, LEVELS[::-1], strict=True))
+        yield slab.case(""), *(_with_interval(tail, "dip_of_means", method) for tail in tails)
 
 
 @dataclass(frozen=True)
@@ -127,16 +118,15 @@ class Crossover:
     def of(cls, case: xr.Dataset) -> Crossover:
         """As stored, with its interval; open to one side where it is a bound."""
         force, kind = float(case["force"]), int(case["kind"])
-        low, high = (float(at(case, level=level)["interval"]) for level in LEVELS)
+        low, high = case["interval"].values[[0, -1]].tolist()
         needs(not np.isnan([force, low, high]).any(), "crossovers holds a case without number")
         # at no force two peaks, or at all: what was looked at ends there
         low = 0.0 if kind == BELOW else min(max(low, 0.0), force)
         high = max(high, force) if kind == BELOW else high
-        draws = case["draws"].values.astype(float)
-        smallest, largest = (float(end) for end in case["limits"].values)
-        least = np.where(draws == -np.inf, 0.0, np.where(draws == np.inf, largest, draws))
-        found = Quantity(force, low, high, "confidence", BOOTSTRAP, _samples(case))
-        return cls(found, kind, least, np.where(draws == -np.inf, smallest, draws))
+        smallest, largest = case["limits"].values.tolist()
+        draws = case["draws"].values.astype(float)  # beyond these limits -inf or inf
+        found = Quantity(force, low, high, "confidence", BOOTSTRAP, int(case["realizations"]))
+        return cls(found, kind, np.clip(draws, 0.0, largest), np.maximum(draws, smallest))
 
     def comparable(self, other: Crossover) -> bool:
         """Whether their order can be seen: not of two bounds to the same side."""
@@ -144,11 +134,10 @@ class Crossover:
 
     def per(self, other: Crossover) -> Quantity:
         """The ratio. Cases of as many realizations were drawn alike; what a bound leaves open widens the interval."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            low, high = self.low / other.high, self.high / other.low
-        low, high = np.where(np.isnan(low), 0.0, low), np.where(np.isnan(high), np.inf, high)
+        with np.errstate(divide="ignore"):
+            ends = self.low / other.high, self.high / other.low
         ratio = self.found.per(other.found)
-        return of_draws(ratio.value, (low, high), BOOTSTRAP, ratio.samples, "inverted_cdf")
+        return of_draws(ratio.value, ends, BOOTSTRAP, ratio.samples, "inverted_cdf")
 
 
 def _crossover(data: Data, slab: Slab) -> Crossover:
@@ -176,7 +165,7 @@ def trend(line: Sequence[Crossover]) -> Quantity:
     down = np.mean([after.high < before.low for before, after in pairs], axis=0)
     samples = max(one.found.samples for one in line)
     ends = (2.0 * up - 1.0, 1.0 - 2.0 * down)
-    return of_draws(float(np.median(up - down)), ends, "Kendall's tau of the draws", samples, "inverted_cdf")
+    return of_draws(np.median(up - down), ends, "Kendall's tau of the draws", samples, "inverted_cdf")
 
 
 def _order(line: Sequence[Crossover]) -> tuple[Quantity, int]:
@@ -277,34 +266,28 @@ def missing_horizontal(data: Data) -> Numbers:
         yield slab.case(""), over_realizations(missing["horizontal"] / sum(missing.values()), np.mean)
 
 
-def _away(data: Data) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """(case, step) which forces are known to be far below the crossover at w = 6, and far above.
+def resembles(data: Data) -> Numbers:
+    """D9, at forces that are known to be away from the crossover of their case.
 
     A force inside the interval of its crossover is not known to be away from it; a bound has forces on one side alone.
     """
-    force = data.get(GROUP, "shapes")["applied_force"].transpose("case", "step").values
-    crossovers = at(data.get(GROUP, "crossovers"), width=WIDE)
-    low, high = (at(crossovers, level=level)["interval"].values[:, None] for level in LEVELS)
-    near, crossover = 1.0 + data.words["similar"], crossovers["force"].values[:, None]
-    kind = crossovers["kind"].values[:, None]
-    below = (force < np.minimum(low, crossover / near)) & (kind != BELOW)
-    above = (force > np.maximum(high, crossover * near)) & (kind != ABOVE)
-    return below, above
-
-
-def resembles(data: Data) -> Numbers:
-    """D9, at forces that are known to be away from the crossover of their case."""
-    study = at(data.get(GROUP, "realizations"), width=WIDE)
-    off = study["difference"].transpose("case", "realization", "step").values
-    constant = study["lattice_constant"].values.astype(str)
-    for start in (USUAL, LITERAL):
-        here = (study["polydispersity"].values > 0.0) & (constant == start)
-        known = np.isfinite(off).any(axis=1) & here[:, None]
-        for side, away in zip(("below", "above"), _away(data), strict=True):
-            typical = [np.nanmedian(off[case, :, step]) for case, step in np.argwhere(away & known)]
-            if len(typical) > 2:
-                found = replace(over_realizations(typical), method="bootstrap of the median over cases and forces")
-                yield f"{side} the crossover, {_title(start)}", found
+    near = 1.0 + data.words["similar"]
+    typical: dict[str, list[float]] = {}
+    for slab, (single, shapes, crossover) in _cases(data, "realizations", "shapes", "crossovers", width=WIDE):
+        force, value, kind = shapes["applied_force"], float(crossover["force"]), int(crossover["kind"])
+        low, high = crossover["interval"].values[[0, -1]]
+        off = single["difference"].median("realization")
+        away = {
+            "below": (force < min(low, value / near)) & (kind != BELOW),
+            "above": (force > max(high, value * near)) & (kind != ABOVE),
+        }
+        for side, there in away.items():
+            if slab.start in (USUAL, LITERAL):
+                name = f"{side} the crossover, {_title(slab.start)}"
+                typical.setdefault(name, []).extend(off[there & np.isfinite(off)].values)
+    for name, values in typical.items():
+        if len(values) > 2:
+            yield name, replace(over_realizations(values), method="bootstrap of the median over cases and forces")
 
 
 def _at_15(data: Data, name: str) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
@@ -331,8 +314,7 @@ def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quan
         return float(((first[:, :, None] > second[:, None]).mean(axis=(1, 2)) >= least).mean())
 
     drawn = [part(rng.choice(without, without.size), rng.choice(full, full.size)) for _ in range(200)]
-    method, number = f"samples of {SHOWN}, bootstrap", min(without.size, full.size)
-    return of_draws(part(without, full, 20000), drawn, method, number)
+    return of_draws(part(without, full, 20000), drawn, f"samples of {SHOWN}, bootstrap", min(without.size, full.size))
 
 
 def evident(data: Data) -> Numbers:  # D11
@@ -384,16 +366,9 @@ def shorter(ends: FloatArray, lattice: FloatArray) -> Quantity:
 
 
 def linear_end(ends: FloatArray) -> Quantity:
-    """The median force at which realizations (r, 2) leave their linear range, between those of lower and upper ends.
-
-    Raises NotMeasured for two realizations or none; a lattice has one, without scatter.
-    """
-    needs(len(ends) not in (0, 2), "linear_range holds too few realizations")
-    picked = np.random.default_rng(0).integers(0, len(ends), (2000, len(ends)))
-    low, high = (np.quantile(ends[picked, k], 0.5, axis=1, method="inverted_cdf") for k in (0, 1))
-    value = float(np.quantile(ends[:, 1], 0.5, method="inverted_cdf"))
-    value = value if np.isfinite(value) else float("nan")
-    return of_draws(value, (low, high), "bootstrap of the median", len(ends), "inverted_cdf")
+    """The median force at which realizations (r, 2) leave their linear range; a lattice has one, without scatter."""
+    each = [Quantity(0.5 * (low + high), low, high) for low, high in ends.tolist()]
+    return over_brackets(each, partial(np.quantile, q=0.5, method="inverted_cdf"))
 
 
 def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
