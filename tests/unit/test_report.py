@@ -17,8 +17,7 @@ from granular_response.store import files as store
 from granular_response.store.variables import variable
 from granular_response_paper import report
 from granular_response_paper.claims import table as claims
-from granular_response_paper.claims.claim import Data
-from granular_response_paper.claims.stored import ClaimsError
+from granular_response_paper.claims.claim import ClaimsError, Data
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.sensitivity import simulate as sensitivity
 from granular_response_paper.registry import PAPER

@@ -32,6 +32,10 @@ PREPARATION = "preparation"
 _SAME = 1e-9
 
 
+class ClaimsError(GranularError):
+    """A claim that is not declared as it must be, nothing to judge, or no stored table. The message is one line."""
+
+
 class NotMeasured(GranularError):
     """What a claim needs is not stored. The message names it."""
 
@@ -76,11 +80,6 @@ class Quantity:
         return Quantity(value, low, high, kind, self.method or other.method, max(self.samples, other.samples))
 
     @property
-    def tested(self) -> str:
-        """How it is set against its bound."""
-        return self.method or ("the number itself" if self.kind == "none" else f"both ends of the {self.kind}")
-
-    @property
     def happens(self) -> bool:
         return math.isfinite(self.high)
 
@@ -98,11 +97,10 @@ def shown(value: float, unit: str) -> str:
     return f"{100.0 * value:.3g} %" if unit == "%" else f"{value:.4g}{' ' + unit if unit else ''}"
 
 
-@dataclass(frozen=True)
-class Bound:
+class Bound(NamedTuple):
     """What the text asks of a number: from ``least`` to ``most``, or with ``strict`` between them.
 
-    ``word`` is the qualitative term whose threshold set it, if any did. Raises ValueError without an end.
+    ``word`` is the qualitative term whose threshold set it, if any did.
     """
 
     least: float = -math.inf
@@ -110,14 +108,9 @@ class Bound:
     word: str = ""
     strict: bool = False
 
-    def __post_init__(self) -> None:
-        if not (self.least > -math.inf or self.most < math.inf):
-            raise ValueError("a bound needs an end")
-
     def outcome(self, found: Quantity) -> Outcome:
         """Yes with the whole interval inside, no with all of it outside, cannot tell otherwise."""
         low, high = found.low, found.high
-        needs(not (math.isnan(low) or math.isnan(high)), "no number is stored")
         if self.strict:
             inside = self.least < low and (high < self.most or self.most == math.inf)
             outside = high <= self.least or low >= self.most
@@ -153,10 +146,8 @@ class Test:
 
     @property
     def outcome(self) -> Outcome:
-        try:
-            return self.bound.outcome(self.found)
-        except NotMeasured as missing:
-            raise NotMeasured(f"{self.what}: {missing}") from None
+        needs(not np.isnan([self.found.low, self.found.high]).any(), f"{self.what}: no number is stored")
+        return self.bound.outcome(self.found)
 
 
 class Case(NamedTuple):

@@ -37,8 +37,7 @@ from granular_response.scene import text as yaml
 
 from . import preparations
 from .bootstrap import RARE
-from .claim import Bound, Case, Claim, Data, NotMeasured, Numbers, Quantity, Test, at, needs, rise
-from .stored import ClaimsError
+from .claim import Bound, Case, Claim, ClaimsError, Data, NotMeasured, Numbers, Quantity, Test, at, needs, rise
 from .words import WORDS
 
 #: Beside a group's ``claims.py``.

@@ -1,7 +1,6 @@
 """The claims against the stored datasets: the table with a verdict for each, which ``figures/claims.json`` holds.
 
-:func:`document` makes the JSON that ``dvc metrics show``, the page and the README quote. Nothing is judged anywhere
-else.
+It is what ``dvc metrics show``, the page and the README quote. Nothing is judged anywhere else.
 """
 
 from __future__ import annotations
@@ -15,16 +14,29 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from granular_response.inputs import read_json
 from granular_response.store import atomic
 from granular_response.store import files as store
 
 from ..registry import PAPER, Collection, collection_of, group_path
-from . import preparations
-from .claim import PREPARATION, Claim, Data, Quantity
-from .declared import TEXTS, read
-from .stored import OUTPUT, PARTS, ClaimsError
+from . import declared, preparations
+from .claim import PREPARATION, Claim, ClaimsError, Data, Quantity, Test
 from .verdict import MEANINGS, SCHEME, Verdict, judge, key
 from .words import WORDS
+
+#: Where the table is kept.
+OUTPUT = Path("figures") / "claims.json"
+
+#: Parts of the table, with what each is.
+PARTS = {
+    "ordered": "ordered slabs, piles, theory and method",
+    "disorder": "disordered packings",
+    "extension": "what the paper leaves to words (extensions)",
+}
+
+#: What a stored table holds, and what it lists of each claim.
+KEYS = {"counts", "scheme", "verdicts", "words", "table"}
+LISTED = {"id", "group", "part", "verdict", "star", "elsewhere", "here", "paper", "tests"}
 
 #: Sections of the paper, in order.
 SECTIONS = ("abstract", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "beyond")
@@ -32,8 +44,8 @@ SECTIONS = ("abstract", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "beyon
 
 def claims_of(group: str) -> list[Claim]:
     """The claims of a figure group; none if it has no ``claims.yaml``."""
-    there = (group_path(group) / TEXTS).is_file()
-    return read(f"{collection_of(group).package}.{group}") if there else []
+    there = (group_path(group) / declared.TEXTS).is_file()
+    return declared.read(f"{collection_of(group).package}.{group}") if there else []
 
 
 def _place(claim: Claim) -> tuple[int, int, str, str, int, str]:
@@ -94,13 +106,21 @@ def _row(entry: Verdict) -> dict[str, Any]:
         **_named(entry, "verdict", "star", "elsewhere", "here", "cases", "preparations"),
         "remark": entry.claim.remark,
         **_interval(entry.tests[0].found if entry.tests else None),
-        "tests": [
-            _named(test, "what", "case", "prepared", "outcome")
-            | {"found": test.found.text(test.unit), "bound": test.bound.text(test.unit), "word": test.bound.word}
-            | {"method": test.found.tested, "samples": test.found.samples}
-            | _interval(test.found)
-            for test in entry.tests
-        ],
+        "tests": [_tested(test) for test in entry.tests],
+    }
+
+
+def _tested(test: Test) -> dict[str, Any]:
+    found = test.found
+    ends = "the number itself" if found.kind == "none" else f"both ends of the {found.kind}"
+    return {
+        **_named(test, "what", "case", "prepared", "outcome"),
+        "found": found.text(test.unit),
+        "bound": test.bound.text(test.unit),
+        "word": test.bound.word,
+        "method": found.method or ends,
+        "samples": found.samples,
+        **_interval(found),
     }
 
 
@@ -142,3 +162,43 @@ def write(
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, (json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode())
     return found
+
+
+def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
+    """The stored table. Raises ClaimsError if it is missing or damaged."""
+    try:
+        found = read_json(Path(path))
+    except (OSError, ValueError) as error:
+        problem = getattr(error, "strerror", None) or " ".join(str(error).split())
+        raise ClaimsError(f"{path}: {problem}; make it with granular-response-paper claims") from None
+    try:
+        whole = set(found) >= KEYS and all(set(row) >= LISTED for row in found["table"])
+        whole = whole and all("verdict" in kind for kind in found["verdicts"])
+        quoted(found)
+    except (AttributeError, KeyError, TypeError, ValueError):
+        whole = False
+    if not whole:
+        raise ClaimsError(f"{path}: is not a whole table of claims; make it with granular-response-paper claims")
+    return found
+
+
+def quoted(found: dict[str, Any]) -> str:
+    """The counts in words: a line for each part of the table, and one on thresholds and preparations of the paper's."""
+    lines = []
+    for part, text in PARTS.items():
+        number = found["counts"][part]
+        named = {"derivation": "derivations"} if number["derivation"] > 1 else {}
+        parts = [f"{number[key(kind)]} {named.get(kind, kind)}" for kind in MEANINGS if number[key(kind)]]
+        if parts:
+            lines.append(f"Of {sum(number.values())} statements on {text}: {', '.join(parts)}.")
+    own = [row for row in found["table"] if row["part"] != "extension"]
+    if not own:  # of a collection that goes beyond the paper
+        return "\n".join(lines)
+    starred = sum(bool(row["star"]) for row in own)
+    tried = [row["elsewhere"] for row in own if row["elsewhere"] != "not tried"]
+    lines.append(
+        f"{starred} verdicts on the paper's statements change if the threshold of a qualitative term is halved or "
+        f"doubled. Under another preparation {len(tried)} were tried: {tried.count('yes')} hold, "
+        f"{tried.count('no')} fail, {tried.count('cannot tell')} cannot be told."
+    )
+    return "\n".join(lines)
