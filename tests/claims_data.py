@@ -282,10 +282,11 @@ def frictionless_study():
     size, along = [[20.0, 30.0, 50.0]] + [[40.0, 60.0, 90.0]] * 4, "normal_stiffness force"
     return {
         "events": events(("crossover", 0.0, 3.0, 3.1), ("teardrop_reaches_floor", 0.0, 3.5, 3.6)),
-        "response": dataset(teardrop_depth=("force", [1.0, 5.0, 12.0])),
+        "response": dataset(**over("force", teardrop_depth=[1.0, 5.0, 12.0], reaches_floor=[0, 0, 0])),
         "states": dataset(
             sizes={"force": 3, "contact": len(rows)},
             teardrop=("force contact", 1),
+            teardrop_horizontal=("force", 1.0),
             position=("force disk axis", position),
             **over("contact", contact_disk=first, contact_partner=first + 1),
         ),

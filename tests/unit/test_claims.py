@@ -154,8 +154,6 @@ def by_solid(rows):
     return np.array(rows)[:, None]
 
 
-#: Every other disk is higher: contacts are no longer horizontal.
-TILTED = edited(SLAB, "states", lambda data: data.assign(position=data["position"] + [[0.0, 0.0], [0.0, 1.2]] * 7))
 #: The second protocol loses its symmetry at 97 to 98 mg.
 LATER_WITH_A_SLOW_RAMP = both(
     put("symmetry_breaking", "brackets", "low", [91.2, 97.0]),
@@ -268,7 +266,7 @@ PLANTED = [
       for force, verdict in ((50.0, "cannot tell"), (60.0, "not supported"))),
     *(("F4b", both(moved(SLAB, "crossover", 0.0, *ends), everywhere("crossover", 0.0, *ends)), "not supported")
       for ends in ((3.7, 3.8), (1.0, 1.1))),
-    ("F5a", TILTED, "not supported"),
+    ("F5a", put(SLAB, "states", "teardrop_horizontal", [1.0, 0.9, 1.0]), "not supported"),
     ("F5b", put(SLAB, "response", "teardrop_depth", [5.0, 1.0, 12.0]), "not supported"),
     ("F6", scaled(SLAB, "regions", "teardrop_depth", [[1.0], [0.4], [1.0], [1.0]]), "not supported"),
     ("F6", scaled(SLAB, "regions", "teardrop_width", [[1.0], [0.76], [1.0], [0.76]]), "cannot tell"),
@@ -715,14 +713,11 @@ def test_bounds_are_declared_by_terms_or_numbers(bound, least, most):
     assert made.strict == (kind == "less than") and bool(made.word) == (kind not in ("between", "less than"))
 
 
-def test_what_is_declared_wrongly_is_refused(tmp_path):
+def test_a_bound_of_no_kind_is_refused():
     with pytest.raises(ClaimsError, match="bound roughly: must be"):
         declared.bound({"roughly": 20}, words())
     assert declared.bound({"more than": 0, "word": "visible"}, words()) == Bound(0.0, word="visible", strict=True)
     assert declared.bound({"at least": "rare"}, words()) == Bound(RARE)
-    for wrong, message in (({"bound": {}}, "needs one of"), ({"event": "a", "sizes": 1}, "unknown key sizes")):
-        with pytest.raises(ClaimsError, match=message):
-            declared._check("group: F1", wrong)
 
 
 def test_a_function_yields_a_number_for_each_test(tmp_path, monkeypatch):
@@ -759,6 +754,10 @@ def test_a_function_yields_a_number_for_each_test(tmp_path, monkeypatch):
         made("lacks").measure(Data({}))
     with pytest.raises(ClaimsError, match="F1: numbers: more, must be a function"):
         made("more")
+    for wrong, message in (("{bound: {}}", "needs event or value"), ("{event: a, sizes: 1}", "unknown key sizes")):
+        (package / "claims.yaml").write_text(claim % f"test: {wrong}")
+        with pytest.raises(ClaimsError, match=f"example_of_claims: F1: .*{message}"):
+            declared.read("example_of_claims")
 
 
 def test_a_number_says_its_method_and_how_many_packings_it_has(good):
@@ -770,16 +769,10 @@ def test_a_number_says_its_method_and_how_many_packings_it_has(good):
     assert (rows["U2"][0]["method"], rows["U2"][0]["samples"]) == ("exact binomial interval", 8)
 
 
-def a_path(force, off):
-    """A case of linear ranges whose response at x = 0 is off by so much of itself."""
-    centre = 1.0 + np.array(off)[:, None] * np.zeros((1, len(force))) if np.ndim(off) < 2 else 1.0 + np.array(off)
-    return dataset(applied_force=("step", np.array(force)), response_at_centre=(("realization", "step"), centre))
-
-
 def test_a_path_that_ends_inside_its_linear_range_is_censored():
     """Whether such a packing has a shorter range than a lattice that leaves its own later is not known."""
-    path = a_path([0.1, 1.0, 11.0], [[0.0, 0.001, 0.002], [0.0, 0.02, 0.3], [0.0, 0.0, np.nan]])
-    ends = linear_ends(path, 0.01)
+    off = np.array([[0.0, 0.001, 0.002], [0.0, 0.02, 0.3], [0.0, 0.0, NAN]])
+    ends = linear_ends(np.array([0.1, 1.0, 11.0]), off, 0.01)
     assert ends[0].tolist() == [11.0, np.inf] and ends[2].tolist() == [1.0, np.inf]
     assert 0.1 < ends[1, 0] == ends[1, 1] < 1.0
     lattice = np.array([41.0, 41.0])
@@ -841,7 +834,7 @@ def test_the_power_of_the_trend(cases, scatter, step, power):
     def line():
         for centre in np.arange(cases) * np.log(step) + scatter * rng.standard_normal(cases):
             draws = np.exp(centre + scatter * rng.standard_normal(500))
-            yield Crossover(Quantity.exact(np.exp(centre)), FOUND, draws, draws)
+            yield Crossover(Quantity.exact(np.exp(centre)), FOUND, np.stack([draws, draws]))
 
     assert np.mean([trend(list(line())).low > 0.0 for _ in range(200)]) == pytest.approx(power, abs=0.07)
 
@@ -913,9 +906,10 @@ def test_samples_of_realizations_that_differ_or_not():
 
 
 def test_what_is_not_ordered_widens_a_trend():
-    one = Crossover(Quantity.exact(1.0), FOUND, np.ones(50), np.ones(50))
-    later = Crossover(Quantity.exact(2.0), FOUND, 2.0 * one.low, 2.0 * one.low)
-    bound = Crossover(Quantity.bracket(1.5, NAN), FOUND, 1.5 * one.low, np.inf * one.low)
+    one, later, bound = (
+        Crossover(Quantity.bracket(low, high), FOUND, np.tile([[low], [high]], 50))
+        for low, high in ((1.0, 1.0), (2.0, 2.0), (1.5, np.inf))
+    )
     assert (trend([one, later]).low, trend([later, one]).high) == (1.0, -1.0)
     assert (trend([one, bound]).low, trend([later, bound]).low, trend([later, bound]).high) == (1.0, -1.0, 1.0)
 

@@ -28,9 +28,6 @@ Outcome = Literal["yes", "no", "cannot tell"]
 #: The group whose events are those of other preparations.
 PREPARATION = "preparation"
 
-#: Labels are the same if they differ by less than this part of them.
-_SAME = 1e-9
-
 
 class ClaimsError(GranularError):
     """A claim that is not declared as it must be, nothing to judge, or no stored table. The message is one line."""
@@ -226,7 +223,7 @@ def needs(there: object, what: str) -> None:
 
 
 def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
-    """The first entry with all of the given labels, numbers up to rounding; raises NotMeasured if there is none.
+    """The first entry with all of the given labels, numbers to 1e-9 of them; raises NotMeasured if there is none.
 
     Labels may be of several coordinates along one dimension.
     """
@@ -234,7 +231,7 @@ def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
     for name, label in labels.items():
         (dimension,) = dataset[name].dims
         stored = dataset[name].values
-        same = stored.astype(str) == label if isinstance(label, str) else np.isclose(stored, label, _SAME, 0.0)
+        same = stored.astype(str) == label if isinstance(label, str) else np.isclose(stored, label, 1e-9, 0.0)
         masks[dimension] = masks.get(dimension, True) & same
         needs(masks[dimension].any(), f"nothing is stored at {name} = {label}")
     return dataset.isel({dimension: int(np.flatnonzero(mask)[0]) for dimension, mask in masks.items()})

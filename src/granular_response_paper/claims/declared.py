@@ -43,8 +43,7 @@ from .words import WORDS
 #: Beside a group's ``claims.py``.
 TEXTS = "claims.yaml"
 
-_KINDS = ("event", "value")
-_KEYS = {*_KINDS, "at", "where", "over", "rises", "falls", "unlike", "per", "group", "case", "prepared"}
+_KEYS = {"event", "value", "at", "where", "over", "rises", "falls", "unlike", "per", "group", "case", "prepared"}
 _KEYS |= {"what", "unit", "bound"}
 
 #: By the kind of a bound: its ends, from its number v and the threshold t of its term.
@@ -63,7 +62,9 @@ _ENDS: dict[str, Callable[[Any, float], Sequence[float]]] = {
 }
 _ENDS |= dict.fromkeys(WORDS, lambda v, t: ((1.0 - t) * v, (1.0 + t) * v))
 
-_SIMPLE: dict[str, Callable[..., Any]] = {"max": np.max, "min": np.min, "average": np.mean}
+#: How ``over`` reduces a dimension.
+_OVER: dict[str, Callable[..., Any]] = {"max": np.max, "min": np.min, "average": np.mean}
+_OVER |= {"first": partial(np.take, indices=0), "last": partial(np.take, indices=-1)}
 
 
 def bound(what: Mapping[str, Any], words: Mapping[str, float]) -> Bound:
@@ -98,27 +99,23 @@ def read(package: str) -> list[Claim]:
     for id, said in yaml.read(resources.files(package).joinpath(TEXTS).read_text("utf-8")).items():
         tests = [said.pop("test")] if "test" in said else said.pop("tests", [])
         numbers = said.pop("numbers", None)
+        name, function = f"{group}: {id}", None
         for one in tests:
-            _check(f"{group}: {id}", one, declares=not numbers)
-        function = None
+            if unknown := sorted(set(one) - _KEYS):
+                raise ClaimsError(f"{name}: unknown key {', '.join(unknown)}, must be of {', '.join(sorted(_KEYS))}")
+            if ("event" in one) + ("value" in one) != (numbers is None):
+                raise ClaimsError(f"{name}: a test needs event or value, or its claim the numbers of a function")
         if numbers:
-            ((name, given),) = numbers.items() if isinstance(numbers, dict) else [(numbers, {})]
-            function = getattr(import_module(f"{package}.claims"), name, None)
+            ((called, given),) = numbers.items() if isinstance(numbers, dict) else [(numbers, {})]
+            function = getattr(import_module(f"{package}.claims"), called, None)
             if function is None:
-                raise ClaimsError(f"{group}: {id}: numbers: {name}, must be a function of the group's claims.py")
+                raise ClaimsError(f"{name}: numbers: {called}, must be a function of the group's claims.py")
             function = partial(function, **given)
         measure = partial(_measured, group, said["measured"], tests, function, said.pop("missing", ""))
         named = re.findall(r"\d+", "".join(re.findall(r"Figs?\. (.*)", said["place"])))  # as in V.F, Fig. 17e, f
         figures = [int(number) for number in said.pop("figures", named)]
         found.append(Claim(id, measure=measure, group=group, figures=figures, **said))
     return found
-
-
-def _check(name: str, test: Mapping[str, Any], declares: bool = True) -> None:
-    if unknown := set(test) - _KEYS:
-        raise ClaimsError(f"{name}: unknown key {', '.join(sorted(unknown))}, must be of {', '.join(sorted(_KEYS))}")
-    if sum(kind in test for kind in _KINDS) != declares:
-        raise ClaimsError(f"{name}: a test needs one of {', '.join(_KINDS)}, or its claim the numbers of a function")
 
 
 def _measured(
@@ -192,11 +189,8 @@ def _reduced(values: xr.DataArray, spec: Mapping[str, Any]) -> Quantity:
         if how == "interval":
             value, low, high = values.values.tolist()
             return Quantity(value, low, high, "confidence", "bootstrap of the mean")
-        if how in ("first", "last"):
-            values = values.isel({dimension: 0 if how == "first" else -1})
-        elif how in _SIMPLE:
-            values = values.reduce(_SIMPLE[how], dimension)
-        else:
-            raise ClaimsError(f"over {dimension}: {how}, must be first, last, interval, {', '.join(_SIMPLE)}")
+        if how not in _OVER:
+            raise ClaimsError(f"over {dimension}: {how}, must be interval, {', '.join(_OVER)}")
+        values = values.reduce(_OVER[how], dimension)
     needs(values.size == 1, f"{values.name}: {values.size} numbers in place of one")
     return Quantity.exact(values.item())

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import product
+
 import xarray as xr
 
 from granular_response_paper.claims.claim import Data, Numbers, Quantity, needs
@@ -9,20 +12,16 @@ from granular_response_paper.claims.claim import Data, Numbers, Quantity, needs
 GROUP = "rolling_resistance"
 
 
-def _held(data: Data, rolling: int) -> dict[str, xr.Dataset]:
-    """Piles at the least friction with the smallest rolling friction (0) or the largest (-1), by their names."""
+def _held(data: Data, rolling: int) -> Iterator[tuple[str, xr.Dataset]]:
+    """Piles at the least friction with the smallest rolling friction (0) or the largest (-1), and their names."""
     found = data.get(GROUP, "thresholds").sortby("rolling_friction").isel(rolling_friction=rolling)
-    return {
-        f"{int(size)} layers, gravity {f'in {ramp:g} sqrt(R/g)' if ramp else 'at once'}": found.sel(
-            layers=size, ramp=ramp
-        )
-        for ramp in found["ramp"].values
-        for size in found["layers"].values
-    }
+    for ramp, size in product(found["ramp"].values, found["layers"].values):
+        gravity = f"in {ramp:g} sqrt(R/g)" if ramp else "at once"
+        yield f"{size} layers, gravity {gravity}", found.sel(layers=size, ramp=ramp)
 
 
 def without_resistance(data: Data) -> Numbers:  # B14
-    for name, one in _held(data, 0).items():
+    for name, one in _held(data, 0):
         needs(float(one["rolling_friction"]) == 0.0, "thresholds holds nothing without rolling resistance")
         yield f"the core, {name}", Quantity.bracket(float(one["low"]), float(one["high"])), None
         yield f"every disk, {name}", None, float(one["loose_disks"])
@@ -32,7 +31,7 @@ def no_dip(data: Data) -> Numbers:  # B15
     piles = data.get(GROUP, "piles").sel(case="resisting")
     for size in piles["layers"]:
         yield f"friction of Fig. 17, {int(size)} layers", float(piles["floor_dip"].sel(layers=size))
-    for name, one in _held(data, -1).items():
+    for name, one in _held(data, -1):
         yield f"least friction, {name}", float(one["floor_dip"])
 
 

@@ -137,20 +137,6 @@ def sharp(data: Data) -> Numbers:  # R5b
     yield "", after[0] - before
 
 
-def sliding_drops(data: Data) -> Numbers:  # R6a
-    before, after = _jump(data)
-    left = after.isel(force=0)["mobilised_contacts"] / before["mobilised_contacts"]
-    for margin, part in zip(before["margin"].values, left.values, strict=True):
-        if np.isfinite(part):  # none before
-            yield f"within {margin:.0%}", part
-
-
-def network_asymmetric(data: Data) -> Numbers:
-    """R6b: before, and the smallest part after."""
-    before, after = (runs["network_asymmetry"].values for runs in _jump(data))
-    yield "", before, after.min()
-
-
 def network_changes(data: Data) -> Numbers:  # R6c
     states = data.get(GROUP, "large_force_states")
     states = states.assign_coords(force=states["force"])
@@ -178,13 +164,6 @@ def mirror_images(data: Data) -> Numbers:
         if sign[a] * sign[b] < 0 and 0.0 < force[b] - force[a] <= 4.0
     ]
     yield "", min(apart, default=1.0)
-
-
-def similar_beyond(data: Data) -> Numbers:  # R7b
-    _, after = _jump(data)
-    size = after["asymmetry"] / after["asymmetry"][0]
-    for one in size[size["force"] >= 150.0][[0, -1]]:
-        yield f"{float(one['force']):g} mg", one.item()
 
 
 def crossover_rises(data: Data) -> Numbers:  # R9

@@ -34,6 +34,9 @@ WIDE, NARROW, SHOWN = 6.0, 3.0, 15
 #: How far off a response is no longer linear: the text does not say.
 TOLERANCES = (0.01, 0.02, 0.05)
 
+#: A case by its disorder and its friction.
+WHOLE = "polydispersity {0:g}, friction {1:g}"
+
 #: How intervals over realizations are made.
 BOOTSTRAP = "bootstrap of realizations"
 
@@ -45,18 +48,19 @@ class Slab(NamedTuple):
     start: str
     friction: float
 
-    def of(self, study: xr.Dataset) -> xr.Dataset:
-        """The case of a study. Raises NotMeasured if there is none."""
-        return at(study, polydispersity=self.polydispersity, friction=self.friction, lattice_constant=self.start)
+    def of(self, data: Data, name: str, **labels: float) -> xr.Dataset:
+        """The case in a dataset. Raises NotMeasured if there is none."""
+        study, (delta, start, mu) = data.get(GROUP, name), self
+        return at(study, polydispersity=delta, friction=mu, lattice_constant=start, **labels)
 
     @property
-    def title(self) -> str:
-        return f"polydispersity {self.polydispersity:g}, friction {self.friction:g}"
+    def lattice(self) -> Slab:
+        """The one without disorder."""
+        return Slab(0.0, USUAL, self.friction)
 
-    def case(self, name: str | None = None, of: str = "") -> Case:
+    def case(self, name: str = "polydispersity {0:g}", of: str = "") -> Case:
         """A value of what the text leaves open, or another preparation if the lattice is wider than it need be."""
-        name = f"polydispersity {self.polydispersity:g}" if name is None else name
-        title = ", ".join(filter(None, (name, _title(self.start))))
+        title = ", ".join(filter(None, (name.format(self.polydispersity, self.friction), _title(self.start))))
         wider = self.start != USUAL and float(self.start) > touching_largest(self.polydispersity)
         return Case("" if wider else title, of, title if wider else "")
 
@@ -65,30 +69,24 @@ def _title(start: str) -> str:
     return "largest disks touch at first" if start == USUAL else f"lattice constant {start}"
 
 
-def _slabs(study: xr.Dataset, disordered: bool = True) -> list[Slab]:
-    """Every case: by start this project's first, then by their constants."""
-    columns = (study[name].values.tolist() for name in ("polydispersity", "lattice_constant", "friction"))
-    found = sorted(map(Slab, *columns), key=lambda slab: (slab.polydispersity, slab.start != USUAL, *slab[1:]))
-    return [slab for slab in found if (slab.polydispersity > 0.0) is disordered]
+def _slabs(data: Data, name: str = "crossovers") -> list[Slab]:
+    """Every case of disorder: by start this project's first, then by their constants."""
+    columns = (data.get(GROUP, name)[key].values.tolist() for key in ("polydispersity", "lattice_constant", "friction"))
+    slabs = sorted(map(Slab, *columns), key=lambda slab: (slab.polydispersity, slab.start != USUAL, *slab[1:]))
+    return [slab for slab in slabs if slab.polydispersity > 0.0]
 
 
-def _lines(study: xr.Dataset) -> dict[tuple[float, str], list[Slab]]:
-    """Disordered cases with growing friction, by polydispersity and start."""
-    return {key: list(line) for key, line in groupby(_slabs(study), key=lambda slab: slab[:2])}
+def _lines(data: Data, name: str = "crossovers") -> dict[tuple[float, str], list[Slab]]:
+    """The same with growing friction, by polydispersity and start."""
+    return {key: list(line) for key, line in groupby(_slabs(data, name), key=lambda slab: slab[:2])}
 
 
-def _cases(data: Data, *names: str, **labels: float) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
-    """Every case of disorder with its datasets."""
-    studies = [at(data.get(GROUP, name), **labels) for name in names]
-    yield from ((slab, [slab.of(study) for study in studies]) for slab in _slabs(studies[0]))
-
-
-def _by_start(study: xr.Dataset, *frictions: float) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
-    """Starts of delta = 0.01 with their cases of these frictions."""
-    for (delta, _), line in _lines(study).items():
+def _by_start(data: Data, name: str, *frictions: float) -> Iterator[list[Slab]]:
+    """Those of delta = 0.01 with these frictions, for each start that has them."""
+    for (delta, _), line in _lines(data, name).items():
         slabs = [slab for slab in line if slab.friction in frictions]
         if np.isclose(delta, 0.01) and len(slabs) == len(frictions):
-            yield slabs[0], [slab.of(study) for slab in slabs]
+            yield slabs
 
 
 def _with_interval(case: xr.Dataset, name: str, method: str = BOOTSTRAP) -> Quantity:
@@ -99,34 +97,21 @@ def _with_interval(case: xr.Dataset, name: str, method: str = BOOTSTRAP) -> Quan
 
 def two_peaks_or_one(data: Data) -> Numbers:
     """D1. The paper shows one mean of each friction, so that what is asked is only that such ones are not rare."""
-    method = f"quantile of means of {SHOWN}, bootstrap"
-    for slab, cases in _by_start(at(data.get(GROUP, "starts"), width=NARROW), 0.0, 0.2):
-        tails = (at(case, level=level) for case, level in zip(cases, LEVELS[::-1], strict=True))
-        yield slab.case(""), *(_with_interval(tail, "dip_of_means", method) for tail in tails)
+    for slabs in _by_start(data, "starts", 0.0, 0.2):
+        tails = (
+            slab.of(data, "starts", width=NARROW, level=level) for slab, level in zip(slabs, LEVELS[::-1], strict=True)
+        )
+        method = f"quantile of means of {SHOWN}, bootstrap"
+        yield slabs[0].case(""), *(_with_interval(tail, "dip_of_means", method) for tail in tails)
 
 
 @dataclass(frozen=True)
 class Crossover:
-    """The crossover force of a case, and the interval in which it lies in each draw of the bootstrap: (d,) ends."""
+    """The crossover force of a case, and the interval in which it lies in each draw of the bootstrap: ends (2, d)."""
 
     found: Quantity
     kind: int
-    low: FloatArray
-    high: FloatArray
-
-    @classmethod
-    def of(cls, case: xr.Dataset) -> Crossover:
-        """As stored, with its interval; open to one side where it is a bound."""
-        force, kind = float(case["force"]), int(case["kind"])
-        low, high = case["interval"].values[[0, -1]].tolist()
-        needs(not np.isnan([force, low, high]).any(), "crossovers holds a case without number")
-        # at no force two peaks, or at all: what was looked at ends there
-        low = 0.0 if kind == BELOW else min(max(low, 0.0), force)
-        high = max(high, force) if kind == BELOW else high
-        smallest, largest = case["limits"].values.tolist()
-        draws = case["draws"].values.astype(float)  # beyond these limits -inf or inf
-        found = Quantity(force, low, high, "confidence", BOOTSTRAP, int(case["realizations"]))
-        return cls(found, kind, np.clip(draws, 0.0, largest), np.maximum(draws, smallest))
+    draws: FloatArray
 
     def comparable(self, other: Crossover) -> bool:
         """Whether their order can be seen: not of two bounds to the same side."""
@@ -135,23 +120,31 @@ class Crossover:
     def per(self, other: Crossover) -> Quantity:
         """The ratio. Cases of as many realizations were drawn alike; what a bound leaves open widens the interval."""
         with np.errstate(divide="ignore"):
-            ends = self.low / other.high, self.high / other.low
+            draws = self.draws / other.draws[::-1]
         ratio = self.found.per(other.found)
-        return of_draws(ratio.value, ends, BOOTSTRAP, ratio.samples, "inverted_cdf")
+        return of_draws(ratio.value, draws, BOOTSTRAP, ratio.samples, "inverted_cdf")
 
 
-def _crossover(data: Data, slab: Slab) -> Crossover:
+def crossover(data: Data, slab: Slab) -> Crossover:
     """By the mean of the realizations; by the median one where packings collapse, so that the mean hangs on a few.
 
-    A dip counts from the threshold of "visible" on.
+    A dip counts from the threshold of "visible" on. The interval is open to one side where the force is a bound.
     """
-    medians = slab.of(at(data.get(GROUP, "medians"), width=WIDE))
-    if int(medians["collapsed"]) > 0:
-        return Crossover.of(medians)
-    study, visible = data.get(GROUP, "crossovers"), data.words["visible"]
-    if np.isclose(study.attrs.get("tolerance", visible), visible):
-        return Crossover.of(slab.of(at(study, width=WIDE)))
-    return Crossover.of(slab.of(at(data.get(GROUP, "definitions"), width=WIDE, tolerance=visible)))
+    case, visible = slab.of(data, "medians", width=WIDE), data.words["visible"]
+    if not case["collapsed"]:
+        case = slab.of(data, "crossovers", width=WIDE)
+        if not np.isclose(case.attrs.get("tolerance", visible), visible):
+            case = slab.of(data, "definitions", width=WIDE, tolerance=visible)
+    force, kind = float(case["force"]), int(case["kind"])
+    low, high = case["interval"].values[[0, -1]].tolist()
+    needs(not np.isnan([force, low, high]).any(), "crossovers holds a case without number")
+    # at no force two peaks, or at all: what was looked at ends there
+    low = 0.0 if kind == BELOW else min(max(low, 0.0), force)
+    high = max(high, force) if kind == BELOW else high
+    smallest, largest = case["limits"].values
+    draws = case["draws"].values.astype(float)  # beyond these limits -inf or inf
+    found = Quantity(force, low, high, "confidence", BOOTSTRAP, int(case["realizations"]))
+    return Crossover(found, kind, np.stack([np.clip(draws, 0.0, largest), np.maximum(draws, smallest)]))
 
 
 def trend(line: Sequence[Crossover]) -> Quantity:
@@ -160,11 +153,10 @@ def trend(line: Sequence[Crossover]) -> Quantity:
     Pairs whose order a draw leaves open, such as two bounds to the same side, widen the interval. Cases of as many
     realizations were drawn alike.
     """
-    pairs = list(combinations(line, 2))
-    up = np.mean([after.low > before.high for before, after in pairs], axis=0)
-    down = np.mean([after.high < before.low for before, after in pairs], axis=0)
-    samples = max(one.found.samples for one in line)
-    ends = (2.0 * up - 1.0, 1.0 - 2.0 * down)
+    pairs = list(combinations((one.draws for one in line), 2))
+    up = np.mean([after[0] > before[1] for before, after in pairs], axis=0)
+    down = np.mean([after[1] < before[0] for before, after in pairs], axis=0)
+    samples, ends = max(one.found.samples for one in line), (2.0 * up - 1.0, 1.0 - 2.0 * down)
     return of_draws(np.median(up - down), ends, "Kendall's tau of the draws", samples, "inverted_cdf")
 
 
@@ -179,28 +171,28 @@ def _order(line: Sequence[Crossover]) -> tuple[Quantity, int]:
 
 
 def rises_with_friction(data: Data) -> Numbers:  # D3a
-    for line in _lines(data.get(GROUP, "crossovers")).values():
+    for line in _lines(data).values():
         if len(line) > 1:
-            yield line[0].case(), *_order([_crossover(data, slab) for slab in line])
+            yield line[0].case(), *_order([crossover(data, slab) for slab in line])
 
 
 def falls_with_disorder(data: Data) -> Numbers:  # D3b
-    slabs = _slabs(data.get(GROUP, "crossovers"))
+    slabs = _slabs(data)
     deltas = sorted({slab.polydispersity for slab in slabs}, reverse=True)
     for start, mu in product((USUAL, LITERAL), sorted({slab.friction for slab in slabs})):
         wanted = [Slab(delta, start, mu) for delta in deltas]
         if set(wanted) <= set(slabs):
-            line = [_crossover(data, slab) for slab in wanted]
+            line = [crossover(data, slab) for slab in wanted]
             if any(after.comparable(before) for before, after in pairwise(line)) or start == LITERAL:
                 yield f"friction {mu:g}, {_title(start)}", *_order(line)
 
 
 def gradual(data: Data) -> Numbers:  # D4
-    for slab, (case, single, crossover) in _cases(data, "shapes", "realizations", "crossovers", width=WIDE):
-        if slab.friction == 1.0 and int(crossover["kind"]) == FOUND:
-            dips, leans = (single[name].transpose("realization", "step").values for name in ("shape", "asymmetry"))
-            steps = np.fmax.reduce(np.fmax(np.abs(np.diff(dips)), np.abs(np.diff(leans))), axis=1)
-            yield slab.case(of="mean"), _with_interval(case, "largest_step")
+    for slab in _slabs(data):
+        if slab.friction == 1.0 and slab.of(data, "crossovers", width=WIDE)["kind"] == FOUND:
+            single = slab.of(data, "realizations", width=WIDE)[["shape", "asymmetry"]]
+            yield slab.case(of="mean"), _with_interval(slab.of(data, "shapes", width=WIDE), "largest_step")
+            steps = abs(single.diff("step")).to_array().max(["variable", "step"])
             yield slab.case(of="median realization"), over_realizations(steps)
 
 
@@ -209,41 +201,40 @@ def five_enough(data: Data) -> Numbers:
 
     Where it has none up to the largest force, samples may have one beyond it.
     """
-    for slab, (case,) in _cases(data, "crossovers", width=WIDE):
-        seen = replace(_with_interval(case, "seen"), method="samples of five, bootstrap")
-        if int(case["kind"]) != BELOW:
-            yield slab.case(of=f"{slab.friction:g}"), replace(seen, high=1.0) if int(case["kind"]) == ABOVE else seen
+    for slab in _slabs(data):
+        case = slab.of(data, "crossovers", width=WIDE)
+        seen = _with_interval(case, "seen", "samples of five, bootstrap")
+        if case["kind"] != BELOW:
+            yield slab.case(of=f"{slab.friction:g}"), replace(seen, high=1.0) if case["kind"] == ABOVE else seen
 
 
 def below_lattice(data: Data) -> Numbers:  # D6
-    for slab in _slabs(data.get(GROUP, "crossovers")):
-        found, lattice = (_crossover(data, one) for one in (slab, Slab(0.0, USUAL, slab.friction)))
+    for slab in _slabs(data):
+        found, lattice = (crossover(data, one) for one in (slab, slab.lattice))
         if found.comparable(lattice):
             yield slab.case(of=f"{slab.friction:g}"), found.per(lattice)
 
 
 def preparation(data: Data) -> Numbers:  # D8
     for mu in (0.0, 0.2):
-        usual, literal = (_crossover(data, Slab(0.01, start, mu)) for start in (USUAL, LITERAL))
+        usual, literal = (crossover(data, Slab(0.01, start, mu)) for start in (USUAL, LITERAL))
         yield f"friction {mu:g}", literal.per(usual)
 
 
 def like_the_lattice(data: Data) -> Numbers:
     """D13. One peak under the smallest force, two under larger ones, at the frictions at which the lattice has both."""
-    study = data.get(GROUP, "crossovers")
-    both = {one.friction for one in _slabs(study, disordered=False) if _crossover(data, one).kind == FOUND}
-    for slab in _slabs(study):
-        if slab.friction in both:
-            found = _crossover(data, slab).found
-            smallest, largest = slab.of(study)["limits"].values[-1].tolist()
-            case = slab.case(slab.title, f"{slab.friction:g}")
+    for slab in _slabs(data):
+        if crossover(data, slab.lattice).kind == FOUND:
+            found = crossover(data, slab).found
+            smallest, largest = slab.of(data, "crossovers", width=WIDE)["limits"].values
+            case = slab.case(WHOLE, f"{slab.friction:g}")
             yield case, (found, Bound(smallest, strict=True)), (found, Bound(most=largest))
 
 
 def without_contacts(data: Data) -> Numbers:  # D18
-    for slab, (case,) in _cases(data, "shapes", width=NARROW):
+    for slab in _slabs(data, "shapes"):
         if slab.friction == 0.0:
-            yield slab.case(), _with_interval(case.isel(step=0), "shape")
+            yield slab.case(), _with_interval(slab.of(data, "shapes", width=NARROW).isel(step=0), "shape")
 
 
 #: What is counted as contacts of a disk.
@@ -251,8 +242,9 @@ COUNTED = {"contacts of disks": "", "walls counted": "_with_walls", "away from t
 
 
 def coordination(data: Data, per: float = 1.0) -> Numbers:  # D7a, D14
-    for (slab, (case,)), (name, kind) in product(_by_start(data.get(GROUP, "packings"), 0.0), COUNTED.items()):
-        yield slab.case(name), over_realizations(case[f"coordination_number{kind}"].values / per, np.mean)
+    for (slab,), (name, kind) in product(_by_start(data, "packings", 0.0), COUNTED.items()):
+        contacts = slab.of(data, "packings")[f"coordination_number{kind}"]
+        yield slab.case(name), over_realizations(contacts / per, np.mean)
 
 
 def missing_horizontal(data: Data) -> Numbers:
@@ -261,8 +253,9 @@ def missing_horizontal(data: Data) -> Numbers:
     i, j = packing.neighbour_pairs().T  # type: ignore[union-attr]
     level = packing.row[i] == packing.row[j]
     ideal = {"horizontal": level.sum() / packing.n, "oblique": (~level).sum() / packing.n}
-    for slab, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
-        missing = {name: number - case[f"{name}_contacts"].values for name, number in ideal.items()}
+    for (slab,) in _by_start(data, "packings", 0.0):
+        case = slab.of(data, "packings")
+        missing = {name: number - case[f"{name}_contacts"] for name, number in ideal.items()}
         yield slab.case(""), over_realizations(missing["horizontal"] / sum(missing.values()), np.mean)
 
 
@@ -272,34 +265,34 @@ def resembles(data: Data) -> Numbers:
     A force inside the interval of its crossover is not known to be away from it; a bound has forces on one side alone.
     """
     near = 1.0 + data.words["similar"]
-    typical: dict[str, list[float]] = {}
-    for slab, (single, shapes, crossover) in _cases(data, "realizations", "shapes", "crossovers", width=WIDE):
-        force, value, kind = shapes["applied_force"], float(crossover["force"]), int(crossover["kind"])
-        low, high = crossover["interval"].values[[0, -1]]
-        off = single["difference"].median("realization")
-        away = {
-            "below": (force < min(low, value / near)) & (kind != BELOW),
-            "above": (force > max(high, value * near)) & (kind != ABOVE),
-        }
-        for side, there in away.items():
-            if slab.start in (USUAL, LITERAL):
-                name = f"{side} the crossover, {_title(slab.start)}"
-                typical.setdefault(name, []).extend(off[there & np.isfinite(off)].values)
-    for name, values in typical.items():
-        if len(values) > 2:
-            yield name, replace(over_realizations(values), method="bootstrap of the median over cases and forces")
+    for start in (USUAL, LITERAL):
+        typical: dict[str, list[float]] = {"below": [], "above": []}
+        for slab in _slabs(data):
+            if slab.start == start:
+                single, shapes, case = (slab.of(data, n, width=WIDE) for n in ("realizations", "shapes", "crossovers"))
+                off = single["difference"].median("realization")
+                force = shapes["applied_force"].where(np.isfinite(off))
+                low, high = case["interval"].values[[0, -1]]
+                below = (force < min(low, case["force"] / near)) & (case["kind"] != BELOW)
+                above = (force > max(high, case["force"] * near)) & (case["kind"] != ABOVE)
+                typical["below"] += off.values[below].tolist()
+                typical["above"] += off.values[above].tolist()
+        for side, values in typical.items():
+            if len(values) > 2:
+                found = replace(over_realizations(values), method="bootstrap of the median over cases and forces")
+                yield f"{side} the crossover, {_title(start)}", found
 
 
-def _at_15(data: Data, name: str) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
-    """By start: delta = 0.01 under 15 mg at friction 0 and at 0.2, w = 3."""
-    study = at(data.get(GROUP, name), width=NARROW).assign(applied=data.get(GROUP, "shapes")["applied_force"])
-    for slab, cases in _by_start(study, 0.0, 0.2):
-        yield slab, [one.isel(step=int(np.flatnonzero(np.isclose(one["applied"].values, 15.0))[0])) for one in cases]
+def _at_15(data: Data, slab: Slab, name: str) -> xr.Dataset:
+    """Under 15 mg, with w = 3."""
+    here = np.isclose(slab.of(data, "shapes")["applied_force"].values, 15.0)
+    return slab.of(data, name, width=NARROW).isel(step=np.flatnonzero(here)[0])
 
 
 def fluctuations(data: Data) -> Numbers:  # D10
-    for slab, (without, full) in _at_15(data, "shapes"):
-        yield slab.case(""), _with_interval(without, "spread").per(_with_interval(full, "spread"))
+    for slabs in _by_start(data, "shapes", 0.0, 0.2):
+        without, full = (_with_interval(_at_15(data, slab, "shapes"), "spread") for slab in slabs)
+        yield slabs[0].case(""), without.per(full)
 
 
 def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quantity:
@@ -319,45 +312,43 @@ def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quan
 
 def evident(data: Data) -> Numbers:  # D11
     least = 1.0 - data.words["holds"]
-    for slab, cases in _at_15(data, "realizations"):
-        without, full = (case["shape"].values[np.isfinite(case["shape"].values)] for case in cases)
-        yield slab.case("", f"{least:.0%}"), evident_samples(without, full, least)
+    for slabs in _by_start(data, "realizations", 0.0, 0.2):
+        without, full = (_at_15(data, slab, "realizations")["shape"].dropna("realization").values for slab in slabs)
+        yield slabs[0].case("", f"{least:.0%}"), evident_samples(without, full, least)
 
 
 def collapses(data: Data, **of: float) -> Numbers:
     """D12, D16: the part of the packings that collapse along their load paths, of all cases or of one of them."""
-    for slab, (one,) in _cases(data, "realizations"):
+    for slab in _slabs(data, "realizations"):
         if of.items() <= slab._asdict().items():
-            hits = np.isfinite(one["collapse_force"].values[: int(one["realizations"])])
-            yield slab.case(slab.title), part_of(hits)
+            one = slab.of(data, "realizations")
+            yield slab.case(WHOLE), part_of(np.isfinite(one["collapse_force"].values[: int(one["realizations"])]))
 
 
-#: Names of what is off in the linear range.
-CENTRE, PROFILE = "response_at_centre", "profile_change"
+def linear_ends(force: FloatArray, changes: FloatArray, tolerance: float) -> FloatArray:
+    """(r, 2) the forces between which realizations leave their linear range, by how far off (r, k) they are.
 
-
-def linear_ends(path: xr.Dataset, tolerance: float, measure: str = CENTRE) -> FloatArray:
-    """(r, 2) the forces between which realizations leave their linear range.
-
-    Both ends are the same where the change passes the tolerance between two forces: it is taken as linear in the
+    Both ends are the same where the change passes the tolerance between two forces (k,): it is taken as linear in the
     logarithm of the force. A path that ends inside its linear range is censored: the ends are its last force and inf.
-    ``path`` is a case of ``linear_range``; the ``measure`` is the response at x = 0, or the change of the profile from
-    that to the smallest force. Realizations without two forces are left out.
+    Realizations without two forces are left out.
     """
-    force, value = path["applied_force"].values, path[measure].transpose("realization", "step").values
     found = []
-    for change in value if measure == PROFILE else np.abs(value / value[:, :1] - 1.0):
-        known = np.isfinite(change)
-        if known.sum() < 2:
-            continue
-        off = np.flatnonzero(change[known] > tolerance)
-        if off.size:
-            (low, high), (before, after) = (values[known][off[0] - 1 : off[0] + 1] for values in (force, change))
-            end = low * (high / low) ** ((tolerance - before) / (after - before))
-            found.append((end, end))
-        else:
+    for change in changes:
+        known, k = np.isfinite(change), int(np.argmax(change > tolerance))  # 0 where it never is
+        if k:
+            part = (tolerance - change[k - 1]) / (change[k] - change[k - 1])
+            found.append((force[k - 1] * (force[k] / force[k - 1]) ** part,) * 2)
+        elif known.sum() > 1:
             found.append((force[known][-1], np.inf))
     return np.array(found).reshape(-1, 2)
+
+
+def _ends(data: Data, slab: Slab, tolerance: float, whole: bool) -> FloatArray:
+    """By the response at x = 0, or the ``whole`` response, beside those to the smallest force."""
+    path = slab.of(data, "linear_range").transpose("realization", "step")
+    value = path["response_at_centre"].values
+    off = path["profile_change"].values if whole else np.abs(value / value[:, :1] - 1.0)
+    return linear_ends(path["applied_force"].values, off, tolerance)
 
 
 def shorter(ends: FloatArray, lattice: FloatArray) -> Quantity:
@@ -395,24 +386,20 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
 
 
 def shorter_range(data: Data) -> Numbers:  # D2
-    study = data.get(GROUP, "linear_range")
-    for slab, tolerance in product(_slabs(study), TOLERANCES):
+    for slab, tolerance in product(_slabs(data, "linear_range"), TOLERANCES):
         if np.isclose(slab.polydispersity, 0.01):
-            lattice = slab._replace(polydispersity=0.0, start=USUAL)
-            ends, whole = (linear_ends(one.of(study), tolerance) for one in (slab, lattice))
-            yield slab.case(f"friction {slab.friction:g}", f"{tolerance:.0%}"), shorter(ends, whole[0])
+            ends, lattice = (_ends(data, one, tolerance, whole=False) for one in (slab, slab.lattice))
+            yield slab.case("friction {1:g}", f"{tolerance:.0%}"), shorter(ends, lattice[0])
 
 
 def shorter_with_disorder(data: Data) -> Numbers:
     """A5, by the response as a whole, since that at x = 0 is near zero without friction."""
-    study = data.get(GROUP, "linear_range")
-    lines = _lines(study)
+    lines = _lines(data, "linear_range")
     for start in (USUAL, LITERAL):
         deltas = [delta for delta, one in lines if one == start]
         for slab, tolerance in product(lines[deltas[-1], start] if deltas else (), TOLERANCES):
-            mu = slab.friction
-            cases = [Slab(0.0, USUAL, mu), *(Slab(delta, start, mu) for delta in deltas)]
-            ends = [linear_ends(one.of(study), tolerance, PROFILE) for one in cases]
+            cases = [slab.lattice, *(slab._replace(polydispersity=delta) for delta in deltas)]
+            ends = [_ends(data, one, tolerance, whole=True) for one in cases]
             lattice, least = (linear_end(one) for one in ends[:2])
-            case = Case(f"friction {mu:g}, {tolerance:.0%} off, {_title(start)}", f"{deltas[0]:g}")
+            case = Case(f"friction {slab.friction:g}, {tolerance:.0%} off, {_title(start)}", f"{deltas[0]:g}")
             yield case, lattice.per(least), order_of(ends[1:]) if len(deltas) > 1 else None

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from granular_response_paper.claims.claim import Data, Numbers, at
+from granular_response_paper.survey.crossover import lean
 
 
 def nearly_symmetrical(data: Data) -> Numbers:  # D15
     few = at(data.get("polydisperse_averages", "averages"), width=6.0)
     mean = few["mean_of_few"].transpose("case", "step", "x").values[few["polydispersity"].values > 0.0]
-    with np.errstate(invalid="ignore"):
-        yield "", np.nanmin(np.abs(mean - mean[..., ::-1]).max(axis=-1) / mean.max(axis=-1))
+    yield "", np.nanmin(lean(mean))
 
 
 def preferred_directions(data: Data) -> Numbers:
