@@ -1,9 +1,7 @@
-"""Thresholds of the paper's qualitative terms: one table, used by every claim.
+"""Thresholds of the paper's qualitative terms, such as "about 20 mg": one table, used by every claim.
 
-The paper says "about 20 mg", "almost an order of magnitude", "holds quite well". A verdict needs a bound. These are our
-interpretations of the terms, written when an earlier table of values was known; none is chosen for one claim. A star
-beside a verdict says that it changes with a threshold halved or doubled. Numbers that the paper states itself (1 %,
-1e-22) are no qualitative terms.
+They are our interpretations, written when an earlier table of values was known; none is chosen for one claim. A star
+beside a verdict says that it changes with one of them halved or doubled.
 """
 
 from __future__ import annotations

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
-import xarray as xr
 
 from granular_response.state import FloatArray
 from granular_response_paper.claims.bootstrap import over_brackets, over_realizations
 from granular_response_paper.claims.claim import Data, Numbers, Quantity, materials
 
 
-def _brackets(event: xr.Dataset) -> list[Quantity]:
-    return [Quantity.bracket(*ends) for ends in zip(event["low"].values, event["high"].values, strict=True)]
-
-
 def ranges(data: Data) -> Numbers:  # B2
     for name, one in materials(data.get("hysteresis", "events")):
-        linear, reversible = (_brackets(one.sel(event=event)) for event in ("linear_range", "reversible_range"))
-        there = [k for k, end in enumerate(linear) if np.isfinite(end.low)]  # realizations that are
-        if any(linear[k].happens for k in there):
-            yield name, over_brackets([reversible[k].per(linear[k]) for k in there])
+        events = one.sel(event=["linear_range", "reversible_range"])[["low", "high"]].to_array()
+        brackets = events.transpose("realization", "event", "variable").values
+        pairs = [tuple(Quantity.bracket(*ends) for ends in both) for both in brackets if np.isfinite(both[0, 0])]
+        if any(linear.happens for linear, _ in pairs):
+            yield name, over_brackets([reversible.per(linear) for linear, reversible in pairs])
 
 
 def repeated(data: Data) -> Numbers:

@@ -83,10 +83,11 @@ def _lines(data: Data, name: str = "crossovers") -> dict[tuple[float, str], list
 
 def _by_start(data: Data, name: str, *frictions: float) -> Iterator[list[Slab]]:
     """Those of delta = 0.01 with these frictions, for each start that has them."""
-    for (delta, _), line in _lines(data, name).items():
-        slabs = [slab for slab in line if slab.friction in frictions]
-        if np.isclose(delta, 0.01) and len(slabs) == len(frictions):
-            yield slabs
+    slabs = _slabs(data, name)
+    for start in dict.fromkeys(slab.start for slab in slabs):
+        wanted = [Slab(0.01, start, mu) for mu in frictions]
+        if set(wanted) <= set(slabs):
+            yield wanted
 
 
 def _with_interval(case: xr.Dataset, name: str, method: str = BOOTSTRAP) -> Quantity:
