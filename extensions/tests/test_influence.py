@@ -6,7 +6,7 @@ import xarray as xr
 
 from granular_response_extensions.influence import simulate
 from granular_response_paper.claims.claim import Data
-from granular_response_paper.claims.table import claims_of
+from granular_response_paper.claims.declared import read
 from granular_response_paper.claims.verdict import judge
 
 
@@ -42,4 +42,7 @@ def test_the_claim_follows_the_powers(lattice, disordered, verdict):
             "friction": ("case", [0.0, 0.2]),
         }
     )
-    assert judge(claims_of("influence")[0], Data({"influence": {"saint_venant": study}})).verdict == verdict
+    assert (
+        judge(read("granular_response_extensions.influence")[0], Data({"influence": {"saint_venant": study}})).verdict
+        == verdict
+    )

@@ -95,55 +95,51 @@ def read(package: str) -> list[Claim]:
     ``disorder``, ``remark``; and its ``test`` or ``tests``. Raises ClaimsError for a test that is not declared as it
     must be.
     """
-    group, found = package.rpartition(".")[2], []
-    for id, said in yaml.read(resources.files(package).joinpath(TEXTS).read_text("utf-8")).items():
-        tests = [said.pop("test")] if "test" in said else said.pop("tests", [])
-        numbers = said.pop("numbers", None)
-        name, function = f"{group}: {id}", None
-        for one in tests:
-            if unknown := sorted(set(one) - _KEYS):
-                raise ClaimsError(f"{name}: unknown key {', '.join(unknown)}, must be of {', '.join(sorted(_KEYS))}")
-            if ("event" in one) + ("value" in one) != (numbers is None):
-                raise ClaimsError(f"{name}: a test needs event or value, or its claim the numbers of a function")
-        if numbers:
-            ((called, given),) = numbers.items() if isinstance(numbers, dict) else [(numbers, {})]
-            function = getattr(import_module(f"{package}.claims"), called, None)
-            if function is None:
-                raise ClaimsError(f"{name}: numbers: {called}, must be a function of the group's claims.py")
-            function = partial(function, **given)
-        measure = partial(_measured, group, said["measured"], tests, function, said.pop("missing", ""))
-        named = re.findall(r"\d+", "".join(re.findall(r"Figs?\. (.*)", said["place"])))  # as in V.F, Fig. 17e, f
-        figures = [int(number) for number in said.pop("figures", named)]
-        found.append(Claim(id, measure=measure, group=group, figures=figures, **said))
-    return found
+    texts = yaml.read(resources.files(package).joinpath(TEXTS).read_text("utf-8"))
+    return [_claim(package, id, said) for id, said in texts.items()]
 
 
-def _measured(
-    group: str,
-    what: str,
-    tests: Sequence[Mapping[str, Any]],
-    function: Callable[[Data], Numbers] | None,
-    missing: str,
-    data: Data,
-) -> list[Test]:
-    needs(not missing, missing)
-    found = []
-    try:
-        for spec, case, number in _of_function(tests, function(data)) if function else _declared(group, tests, data):
-            case = Case(case) if isinstance(case, str) else case
-            number, asked = number if isinstance(number, tuple) else (number, bound(spec["bound"], data.words))
-            number = number if isinstance(number, Quantity) else Quantity.exact(number)
-            name = spec.get("what", what).replace("{}", case.of)
-            found.append(Test(name, number, asked, case.name, spec.get("unit", ""), case.prepared))
-    except NotMeasured as lacking:
-        named = str(lacking).startswith("data/")
-        raise NotMeasured(str(lacking) if named else f"data/{group}.nc: {lacking}") from None
-    return found
+def _claim(package: str, id: str, said: dict[str, Any]) -> Claim:
+    group = package.rpartition(".")[2]
+    tests = [said.pop("test")] if "test" in said else said.pop("tests", [])
+    numbers, missing = said.pop("numbers", {}), said.pop("missing", "")
+    for one in tests:
+        if unknown := sorted(set(one) - _KEYS):
+            wrong = f"unknown key {', '.join(unknown)}, must be of {', '.join(sorted(_KEYS))}"
+            raise ClaimsError(f"{group}: {id}: {wrong}")
+        if ("event" in one) + ("value" in one) != (not numbers):
+            raise ClaimsError(f"{group}: {id}: a test needs event or value, or its claim the numbers of a function")
+    rows = partial(_declared, group, tests)
+    for name, given in (numbers if isinstance(numbers, dict) else {numbers: {}}).items():
+        function = getattr(import_module(f"{package}.claims"), name, None)
+        if function is None:
+            raise ClaimsError(f"{group}: {id}: numbers: {name}, must be a function of the group's claims.py")
+        rows = partial(_of_function, tests, partial(function, **given))
+
+    def measure(data: Data) -> list[Test]:
+        needs(not missing, missing)
+        try:
+            return [_test(said["measured"], data, *row) for row in rows(data)]
+        except NotMeasured as lacking:
+            named = str(lacking).startswith("data/")
+            raise NotMeasured(str(lacking) if named else f"data/{group}.nc: {lacking}") from None
+
+    named = re.findall(r"\d+", "".join(re.findall(r"Figs?\. (.*)", said["place"])))  # as in V.F, Fig. 17e, f
+    figures = [int(number) for number in said.pop("figures", named)]
+    return Claim(id, measure=measure, group=group, figures=figures, **said)
 
 
-def _of_function(tests: Sequence[Mapping[str, Any]], rows: Numbers) -> Numbers:
+def _test(measured: str, data: Data, spec: Mapping[str, Any], case: str | Case, number: Any) -> Test:
+    case = Case(case) if isinstance(case, str) else case
+    number, asked = number if isinstance(number, tuple) else (number, bound(spec["bound"], data.words))
+    found = number if isinstance(number, Quantity) else Quantity.exact(number)
+    what = spec.get("what", measured).replace("{}", case.of)
+    return Test(what, found, asked, case.name, spec.get("unit", ""), case.prepared)
+
+
+def _of_function(tests: Sequence[Mapping[str, Any]], function: Callable[[Data], Numbers], data: Data) -> Numbers:
     """Each test with a case and its number there, as the function of the claim yields them."""
-    for case, *numbers in rows:
+    for case, *numbers in function(data):
         for spec, number in zip(tests, numbers, strict=True):
             if number is not None:
                 yield spec, case, number

@@ -18,7 +18,7 @@ from granular_response.inputs import read_json
 from granular_response.store import atomic
 from granular_response.store import files as store
 
-from ..registry import PAPER, Collection, collection_of, group_path
+from ..registry import PAPER, Collection
 from . import declared, preparations
 from .claim import PREPARATION, Claim, ClaimsError, Data, Quantity, Test
 from .verdict import MEANINGS, SCHEME, Verdict, judge, key
@@ -41,12 +41,6 @@ LISTED = {"id", "group", "part", "verdict", "star", "elsewhere", "here", "paper"
 SECTIONS = ("abstract", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "beyond")
 
 
-def claims_of(group: str) -> list[Claim]:
-    """The claims of a figure group; none if it has no ``claims.yaml``."""
-    there = (group_path(group) / declared.TEXTS).is_file()
-    return declared.read(f"{collection_of(group).package}.{group}") if there else []
-
-
 def _place(claim: Claim) -> tuple[int, int, str, str, int, str]:
     """Statements on order, then disorder, then what goes beyond; each by section."""
     section, _, further = re.split(r"[ ,;]", claim.place)[0].partition(".")
@@ -57,7 +51,9 @@ def _place(claim: Claim) -> tuple[int, int, str, str, int, str]:
 @cache
 def claims_in(collection: Collection) -> tuple[Claim, ...]:
     """All claims of a collection in the order of the table."""
-    return tuple(sorted((claim for group in collection.groups for claim in claims_of(group)), key=_place))
+    groups = [group for group in collection.groups if (collection.path / group / declared.TEXTS).is_file()]
+    found = (claim for group in groups for claim in declared.read(f"{collection.package}.{group}"))
+    return tuple(sorted(found, key=_place))
 
 
 def groups_read(collection: Collection) -> list[str]:
@@ -65,11 +61,7 @@ def groups_read(collection: Collection) -> list[str]:
     return sorted({claim.group for claim in claims_in(collection)})
 
 
-def collect(
-    folder: str | os.PathLike[str] = "data",
-    others: str | os.PathLike[str] = preparations.OUTPUT,
-    collection: Collection = PAPER,
-) -> Data:
+def collect(folder: str | os.PathLike[str], others: str | os.PathLike[str], collection: Collection = PAPER) -> Data:
     """The stored datasets that claims read, and the summary of ``others``, preparations that are not the paper's.
 
     A file that is not there is left out; raises StoreError if one cannot be read.
