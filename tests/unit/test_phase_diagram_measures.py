@@ -421,6 +421,6 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
 def test_the_tolerance_is_the_bound_of_the_word() -> None:
     """So that the figure and the claims tell one peak from two alike; others are half and twice as large."""
     section = yaml.safe_load((ROOT / "params.yaml").read_text())["phase_diagram"]
-    visible = words.words()["visible"]
+    visible = words.THRESHOLDS["visible"]
     assert section["tolerance"] == visible
     assert {factor * visible for factor in words.FACTORS} <= set(section["other_tolerances"])

@@ -17,7 +17,7 @@ import xarray as xr
 
 from granular_response.errors import GranularError
 
-from .words import words as thresholds
+from .words import THRESHOLDS
 
 #: What an interval means: none (one deterministic run); the event lies inside; 95 % of the bootstrap draws; the
 #: smallest to the largest value.
@@ -196,7 +196,7 @@ class Data:
     """
 
     groups: Mapping[str, Mapping[str, xr.Dataset]]
-    words: Mapping[str, float] = field(default_factory=thresholds)
+    words: dict[str, float] = field(default_factory=lambda: THRESHOLDS)
     prepared: dict[str, Any] = field(default_factory=dict)
 
     def get(self, group: str, name: str) -> xr.Dataset:

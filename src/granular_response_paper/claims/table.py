@@ -9,6 +9,7 @@ import json
 import math
 import os
 import re
+from collections import Counter
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
@@ -78,12 +79,9 @@ def _paths(folder: str | os.PathLike[str], collection: Collection) -> list[Path]
 
 def document(entries: Sequence[Verdict]) -> dict[str, Any]:
     """Everything about the verdicts, as it is stored; ``counts`` are scalars for ``dvc metrics show``."""
-    counts = {
-        part: {key(kind): sum(e.verdict == kind and e.claim.part == part for e in entries) for kind in MEANINGS}
-        for part in PARTS
-    }
+    number = Counter((entry.claim.part, entry.verdict) for entry in entries)
     return {
-        "counts": counts,
+        "counts": {part: {key(kind): number[part, kind] for kind in MEANINGS} for part in PARTS},
         "scheme": list(SCHEME),
         "verdicts": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
         "words": [{"word": word, "bound": bound, "sentence": text} for word, (bound, text) in WORDS.items()],

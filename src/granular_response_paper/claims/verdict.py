@@ -13,7 +13,7 @@ from typing import Literal
 from granular_response_paper import TOO_LITTLE
 
 from .claim import Claim, Data, NotMeasured, Outcome, Test, needs
-from .words import FACTORS, words
+from .words import FACTORS
 
 SCHEME = (
     "Each sentence has one primary test, which the text fixes: its figure, its forces, its number of samples.",
@@ -126,7 +126,8 @@ def judge(claim: Claim, data: Data) -> Verdict:
 
     def under(word: str, factor: float) -> Kind:
         """The verdict with the threshold of one term changed."""
-        return Verdict(claim, claim.measure(replace(data, words=words(word, factor)))).verdict
+        changed = data.words | {word: factor * data.words[word]}
+        return Verdict(claim, claim.measure(replace(data, words=changed))).verdict
 
     try:
         found = Verdict(claim, claim.measure(data))

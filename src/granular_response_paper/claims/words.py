@@ -36,13 +36,6 @@ WORDS: dict[str, tuple[float, str]] = {
     "several": (3.0, "Several hundred is at least three hundred."),
 }
 
-#: By what the thresholds are multiplied to see whether a verdict hangs on them.
+#: The thresholds alone, and by what they are multiplied to see whether a verdict hangs on them.
+THRESHOLDS = {word: threshold for word, (threshold, _) in WORDS.items()}
 FACTORS = (0.5, 2.0)
-
-
-def words(word: str | None = None, factor: float = 1.0) -> dict[str, float]:
-    """The thresholds of all terms, that of ``word`` multiplied by ``factor``. Raises KeyError for an unknown one."""
-    found = {name: threshold for name, (threshold, _) in WORDS.items()}
-    if word is not None:
-        found[word] *= factor
-    return found
