@@ -39,3 +39,6 @@ WORDS: dict[str, tuple[float, str]] = {
 #: The thresholds alone, and by what they are multiplied to see whether a verdict hangs on them.
 THRESHOLDS = {word: threshold for word, (threshold, _) in WORDS.items()}
 FACTORS = (0.5, 2.0)
+
+#: How far off a response is no longer linear: the text does not say.
+TOLERANCES = (0.01, 0.02, 0.05)

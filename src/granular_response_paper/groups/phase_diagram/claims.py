@@ -21,6 +21,7 @@ from granular_response.scene.lattice import SlabPacking, touching_largest
 from granular_response.state import FloatArray
 from granular_response_paper.claims.bootstrap import LEVELS, of_draws, over_brackets, over_realizations, part_of
 from granular_response_paper.claims.claim import Bound, Case, Data, Numbers, Quantity, at, needs
+from granular_response_paper.claims.words import TOLERANCES
 from granular_response_paper.survey.crossover import ABOVE, BELOW, FOUND, counted
 
 GROUP = "phase_diagram"
@@ -30,9 +31,6 @@ USUAL, LITERAL = "touching-largest", "2.0"
 
 #: Width of smoothing of Figs. 21 and 22, and of Figs. 19 and 20; realizations in each panel of Fig. 19.
 WIDE, NARROW, SHOWN = 6.0, 3.0, 15
-
-#: How far off a response is no longer linear: the text does not say.
-TOLERANCES = (0.01, 0.02, 0.05)
 
 #: A case by its disorder and its friction.
 WHOLE = "polydispersity {0:g}, friction {1:g}"
@@ -58,15 +56,15 @@ class Slab(NamedTuple):
         """The one without disorder."""
         return Slab(0.0, USUAL, self.friction)
 
+    @property
+    def title(self) -> str:
+        return "largest disks touch at first" if self.start == USUAL else f"lattice constant {self.start}"
+
     def case(self, name: str = "polydispersity {0:g}", of: str = "") -> Case:
         """A value of what the text leaves open, or another preparation if the lattice is wider than it need be."""
-        title = ", ".join(filter(None, (name.format(self.polydispersity, self.friction), _title(self.start))))
+        title = ", ".join(filter(None, (name.format(self.polydispersity, self.friction), self.title)))
         wider = self.start != USUAL and float(self.start) > touching_largest(self.polydispersity)
         return Case("" if wider else title, of, title if wider else "")
-
-
-def _title(start: str) -> str:
-    return "largest disks touch at first" if start == USUAL else f"lattice constant {start}"
 
 
 def _slabs(data: Data, name: str = "crossovers") -> list[Slab]:
@@ -74,11 +72,6 @@ def _slabs(data: Data, name: str = "crossovers") -> list[Slab]:
     columns = (data.get(GROUP, name)[key].values.tolist() for key in ("polydispersity", "lattice_constant", "friction"))
     slabs = sorted(map(Slab, *columns), key=lambda slab: (slab.polydispersity, slab.start != USUAL, *slab[1:]))
     return [slab for slab in slabs if slab.polydispersity > 0.0]
-
-
-def _lines(data: Data, name: str = "crossovers") -> dict[tuple[float, str], list[Slab]]:
-    """The same with growing friction, by polydispersity and start."""
-    return {key: list(line) for key, line in groupby(_slabs(data, name), key=lambda slab: slab[:2])}
 
 
 def _by_start(data: Data, name: str, *frictions: float) -> Iterator[list[Slab]]:
@@ -172,9 +165,10 @@ def _order(line: Sequence[Crossover]) -> tuple[Quantity, int]:
 
 
 def rises_with_friction(data: Data) -> Numbers:  # D3a
-    for line in _lines(data).values():
-        if len(line) > 1:
-            yield line[0].case(), *_order([crossover(data, slab) for slab in line])
+    for _, line in groupby(_slabs(data), key=lambda slab: slab[:2]):
+        slabs = list(line)  # with growing friction
+        if len(slabs) > 1:
+            yield slabs[0].case(), *_order([crossover(data, slab) for slab in slabs])
 
 
 def falls_with_disorder(data: Data) -> Numbers:  # D3b
@@ -185,7 +179,7 @@ def falls_with_disorder(data: Data) -> Numbers:  # D3b
         if set(wanted) <= set(slabs):
             line = [crossover(data, slab) for slab in wanted]
             if any(after.comparable(before) for before, after in pairwise(line)) or start == LITERAL:
-                yield f"friction {mu:g}, {_title(start)}", *_order(line)
+                yield f"friction {mu:g}, {wanted[0].title}", *_order(line)
 
 
 def gradual(data: Data) -> Numbers:  # D4
@@ -268,20 +262,20 @@ def resembles(data: Data) -> Numbers:
     near = 1.0 + data.words["similar"]
     for start in (USUAL, LITERAL):
         typical: dict[str, list[float]] = {"below": [], "above": []}
-        for slab in _slabs(data):
-            if slab.start == start:
-                single, shapes, case = (slab.of(data, n, width=WIDE) for n in ("realizations", "shapes", "crossovers"))
-                off = single["difference"].median("realization")
-                force = shapes["applied_force"].where(np.isfinite(off))
-                low, high = case["interval"].values[[0, -1]]
-                below = (force < min(low, case["force"] / near)) & (case["kind"] != BELOW)
-                above = (force > max(high, case["force"] * near)) & (case["kind"] != ABOVE)
-                typical["below"] += off.values[below].tolist()
-                typical["above"] += off.values[above].tolist()
+        slabs = [slab for slab in _slabs(data) if slab.start == start]
+        for slab in slabs:
+            single, shapes, case = (slab.of(data, n, width=WIDE) for n in ("realizations", "shapes", "crossovers"))
+            off = single["difference"].median("realization")
+            force = shapes["applied_force"].where(np.isfinite(off))
+            low, high = case["interval"].values[[0, -1]]
+            below = (force < min(low, case["force"] / near)) & (case["kind"] != BELOW)
+            above = (force > max(high, case["force"] * near)) & (case["kind"] != ABOVE)
+            typical["below"] += off.values[below].tolist()
+            typical["above"] += off.values[above].tolist()
         for side, values in typical.items():
             if len(values) > 2:
                 found = replace(over_realizations(values), method="bootstrap of the median over cases and forces")
-                yield f"{side} the crossover, {_title(start)}", found
+                yield f"{side} the crossover, {slabs[0].title}", found
 
 
 def _at_15(data: Data, slab: Slab, name: str) -> xr.Dataset:
@@ -374,12 +368,8 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
     counts = [counted(rng.integers(0, len(one), (draws, len(one))), len(one)) for one in groups]
     number, value, low, high = 0, 0.0, np.zeros(draws), np.zeros(draws)
     for (first, before), (second, after) in combinations(enumerate(groups), 2):
-        up = after[:, None, 0] > before[None, :, 1]
-        down = after[:, None, 1] < before[None, :, 0]
-        exact = np.isfinite(after[:, None, 1]) & np.isfinite(before[None, :, 1])
-        least = np.where(up, 1.0, np.where(exact & ~down, 0.0, -1.0))
-        most = np.where(down, -1.0, np.where(exact & ~up, 0.0, 1.0))
-        number, value = number + up.size, value + float(up.sum() - down.sum())
+        least, most = np.sign(after[:, None] - before[:, ::-1]).transpose(2, 0, 1)
+        number, value = number + least.size, value + float((least > 0.0).sum() - (most < 0.0).sum())
         low += np.einsum("da,ab,db->d", counts[second], least, counts[first])
         high += np.einsum("da,ab,db->d", counts[second], most, counts[first])
     samples = sum(map(len, groups))
@@ -395,12 +385,14 @@ def shorter_range(data: Data) -> Numbers:  # D2
 
 def shorter_with_disorder(data: Data) -> Numbers:
     """A5, by the response as a whole, since that at x = 0 is near zero without friction."""
-    lines = _lines(data, "linear_range")
     for start in (USUAL, LITERAL):
-        deltas = [delta for delta, one in lines if one == start]
-        for slab, tolerance in product(lines[deltas[-1], start] if deltas else (), TOLERANCES):
+        slabs = [slab for slab in _slabs(data, "linear_range") if slab.start == start]
+        deltas = sorted({slab.polydispersity for slab in slabs})
+        for slab, tolerance in product(slabs, TOLERANCES):
+            if slab.polydispersity < deltas[-1]:
+                continue
             cases = [slab.lattice, *(slab._replace(polydispersity=delta) for delta in deltas)]
             ends = [_ends(data, one, tolerance, whole=True) for one in cases]
             lattice, least = (linear_end(one) for one in ends[:2])
-            case = Case(f"friction {slab.friction:g}, {tolerance:.0%} off, {_title(start)}", f"{deltas[0]:g}")
+            case = Case(f"friction {slab.friction:g}, {tolerance:.0%} off, {slab.title}", f"{deltas[0]:g}")
             yield case, lattice.per(least), order_of(ends[1:]) if len(deltas) > 1 else None
