@@ -17,7 +17,6 @@ from typing import Any
 
 from granular_response.store import files as store
 
-from ..records import alike
 from .claim import PREPARATION, Case, Data, NotMeasured
 
 #: The columns of the summary, what it is made of, and where it is kept.
@@ -35,7 +34,9 @@ def along(data: Data, measure: Callable[[Data], Any]) -> Iterator[tuple[Case, An
         return
     events = data.get(PREPARATION, "events")
     fixed = {"wall_friction": 0.0, "damping_ratio": float(events["damping_ratio"][0])}
-    ways = alike(events.isel(event=events["gravity"].values != "at-once"), "event", "gravity", "ramp_time")
+    ways = {
+        way for way in zip(events["gravity"].values, events["ramp_time"].values, strict=True) if way[0] != "at-once"
+    }
     for gravity, ramp in sorted(ways, key=lambda way: (way[0] != "slow", way[1])):
         name = f"grown over {ramp:g} sqrt(R/g)" if gravity == "slow" else "without friction first"
         with suppress(NotMeasured):  # not every event is looked for in every preparation
