@@ -721,6 +721,14 @@ def test_a_bound_of_no_kind_is_refused():
     assert declared.bound({"at least": "rare"}, THRESHOLDS) == Bound(RARE)
 
 
+def test_the_docs_name_all_that_can_be_declared():
+    page = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
+    texts = (yaml.safe_load(path.read_text(encoding="utf-8")) for path in PAPER.path.glob("*/claims.yaml"))
+    said = {key for text in texts for claim in text.values() for key in claim}
+    names = {*declared._KEYS, *declared._ENDS, *declared._OVER, *said} - set(WORDS)
+    assert [name for name in names if not re.search(f"`{name}[`:]", page)] == []
+
+
 def test_a_function_yields_a_number_for_each_test(tmp_path, monkeypatch):
     """Which says for what case it is, what the number is of and which preparation, and may have its own bound."""
     package = tmp_path / "example_of_claims"

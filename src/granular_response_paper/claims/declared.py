@@ -1,24 +1,6 @@
 """Claims that ``claims.yaml`` declares: the number, the bound, and the cases of what the text leaves open.
 
-A test has one of
-
-``event``
-    the name of an event in the group's dataset ``events``, or ``dataset.name``, at the labels ``at``; with
-    ``prepared: true`` the same event in other preparations makes the second column, with ``prepared: only`` nothing
-    else is looked at;
-``value``
-    ``dataset.variable``, at the labels ``at`` or where coordinates lie in ``where``; ``over`` reduces what is left,
-    dimension by dimension (``max``, ``min``, ``average``, ``first``, ``last``, or ``interval`` with the stored ends);
-    with ``unlike``, another one, their largest difference per its largest value; with ``rises`` or ``falls``, the
-    smallest ratio of one value to the next along that dimension, or of the next to it;
-
-and may have ``per``, a number or a test by whose it is divided, another ``group`` and ``case`` (a value of what the
-text leaves open). What else is measured has a function in the group's ``claims.py``, which ``numbers`` of the claim
-names, with its arguments if it has some. It is called with the data and yields for each case its name (a text or a
-:class:`Case`) and a number for each of the claim's tests, None for none, or with its bound where the data say it.
-
-Every other test has a ``bound``, see :func:`bound`, and may have a ``unit`` and say ``what`` is measured, with ``{}``
-for what a :class:`Case` is of. A claim may say what is ``missing`` in place of tests.
+What can be declared is in docs/extending.md.
 """
 
 from __future__ import annotations
@@ -68,14 +50,7 @@ _OVER |= {"first": partial(np.take, indices=0), "last": partial(np.take, indices
 
 
 def bound(what: Mapping[str, Any], words: Mapping[str, float]) -> Bound:
-    """The bound of a test, with a number or the threshold t of a qualitative term.
-
-    ``about: 20`` (or another term) is off 20 by t of it at most; ``sampled: 20`` that the force 20 is the first sampled
-    one at or above the event; ``lower by``, ``higher by`` and ``hardly lower by`` compare a ratio with 1 -+ t; ``same
-    size`` asks for one from 1 / (1 + t) to 1 + t, ``order of magnitude`` for 10 on the logarithmic scale. The others
-    say what they are, and ``rare`` is one in forty. ``times`` and ``plus`` scale and shift both ends, ``word`` names
-    the term on which a number hangs. Raises ClaimsError for another key.
-    """
+    """The bound of a test, with a number or the threshold of a term. Raises ClaimsError for another key."""
     (kind, of), *_ = what.items()
     if kind not in _ENDS:
         raise ClaimsError(f"bound {kind}: must be one of {', '.join(_ENDS)}")
@@ -88,13 +63,7 @@ def bound(what: Mapping[str, Any], words: Mapping[str, float]) -> Bound:
 
 
 def read(package: str) -> list[Claim]:
-    """The claims of a figure group, by its ``package``.
-
-    ``claims.yaml`` has of each the ``place`` in the paper, the ``paper``'s sentence, what is ``measured``, and if they
-    are not the usual: ``here``, ``figures`` (those that the place names), ``source``, ``modal``, ``derivation``,
-    ``disorder``, ``remark``; and its ``test`` or ``tests``. Raises ClaimsError for a test that is not declared as it
-    must be.
-    """
+    """The claims of a figure group, by its ``package``. Raises ClaimsError for one that is not declared rightly."""
     texts = yaml.read(resources.files(package).joinpath(TEXTS).read_text("utf-8"))
     return [_claim(package, id, said) for id, said in texts.items()]
 
