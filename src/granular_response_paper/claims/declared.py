@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from importlib import import_module, resources
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ import xarray as xr
 from granular_response.scene import text as yaml
 
 from . import preparations
-from .bootstrap import RARE
+from .bootstrap import RARE, over_realizations
 from .claim import Bound, Case, Claim, ClaimsError, Data, NotMeasured, Numbers, Quantity, Test, at, needs, rise
 from .words import WORDS
 
@@ -71,14 +72,14 @@ def read(package: str) -> list[Claim]:
 def _claim(package: str, id: str, said: dict[str, Any]) -> Claim:
     group = package.rpartition(".")[2]
     tests = [said.pop("test")] if "test" in said else said.pop("tests", [])
-    numbers, missing = said.pop("numbers", {}), said.pop("missing", "")
+    numbers, each, missing = (said.pop(key, none) for key, none in (("numbers", {}), ("each", {}), ("missing", "")))
     for one in tests:
         if unknown := sorted(set(one) - _KEYS):
             wrong = f"unknown key {', '.join(unknown)}, must be of {', '.join(sorted(_KEYS))}"
             raise ClaimsError(f"{group}: {id}: {wrong}")
         if ("event" in one) + ("value" in one) != (not numbers):
             raise ClaimsError(f"{group}: {id}: a test needs event or value, or its claim the numbers of a function")
-    rows = partial(_declared, group, tests)
+    rows = partial(_declared, group, tests, each)
     for name, given in (numbers if isinstance(numbers, dict) else {numbers: {}}).items():
         function = getattr(import_module(f"{package}.claims"), name, None)
         if function is None:
@@ -114,9 +115,12 @@ def _of_function(tests: Sequence[Mapping[str, Any]], function: Callable[[Data], 
                 yield spec, case, number
 
 
-def _declared(group: str, tests: Sequence[Mapping[str, Any]], data: Data) -> Numbers:
+def _declared(group: str, tests: Sequence[dict[str, Any]], each: dict[str, list[Any]], data: Data) -> Numbers:
     """The same of declared tests: each one's number, and that in other preparations."""
-    for spec in tests:
+    for labels, one in product(product(*each.values()), tests):
+        here = dict(zip(each, labels, strict=True))
+        texts = {key: one[key].format(**here) for key in ("case", "what") if here and key in one}
+        spec = one | texts | {"at": one.get("at", {}) | here}
         if spec.get("prepared") != "only":
             yield spec, spec.get("case", ""), _number(group, spec, data)
         if "prepared" in spec:
@@ -154,8 +158,10 @@ def _reduced(values: xr.DataArray, spec: Mapping[str, Any]) -> Quantity:
         if how == "interval":
             value, low, high = values.values.tolist()
             return Quantity(value, low, high, "confidence", "bootstrap of the mean")
+        if how == "bootstrap":
+            return over_realizations(values, np.mean)
         if how not in _OVER:
-            raise ClaimsError(f"over {dimension}: {how}, must be interval, {', '.join(_OVER)}")
+            raise ClaimsError(f"over {dimension}: {how}, must be interval, bootstrap, {', '.join(_OVER)}")
         values = values.reduce(_OVER[how], dimension)
     needs(values.size == 1, f"{values.name}: {values.size} numbers in place of one")
     return Quantity.exact(values.item())
