@@ -467,23 +467,18 @@ def hysteresis_study():
 
 
 def influence_study():
-    power = np.full((2, 4, 1, 3), np.nan)
-    power[0, 0] = [1.98, 1.97, 1.99]  # a lattice: one realization, and the range over the fits
-    power[1] = np.array([1.86, 1.9, 1.92, 1.94])[:, None, None]
-    cases = over("case", polydispersity=[0.0, 0.1], friction=[0.0, 0.2])
+    power = np.full((6, 4, 1, 3), np.nan)
+    power[:2, 0] = [1.98, 1.97, 1.99]  # a lattice: one realization, and the range over the fits
+    power[2:] = np.array([1.86, 1.9, 1.92, 1.94])[:, None, None]
+    cases = over("case", polydispersity=[0.0, 0.0, 0.01, 0.1, 0.25, 0.1], friction=[0.0, 0.2, 0.2, 0.2, 0.2, 0.0])
     return {"saint_venant": dataset(cases, exponent=("case realization separation fit", power))}
 
 
 def scaling_study():
-    """Powers 2 of the layers with and without friction, and a series of widths that no claim reads."""
-    series = by_row(
-        "series",
-        "friction varied confined",
-        [(0.0, "layers", "walls"), (0.2, "layers", "as weight"), (0.0, "disks_per_layer", "constant")],
-    )
-    labels = {**series, "event": ["first_opening", "crossover", "reaches_floor"]}
-    powers = dataset(labels, exponent=("series event end", [2.0, 1.95, 2.05]))
-    return {"powers": powers.assign_attrs(layers=1000.0)}
+    """Powers 2 of the layers in every series."""
+    series = ["constant confinement", "confined as weight", "walls", "friction 0.05", "friction 0.1", "friction 0.2"]
+    labels = {"series": [*series, "constant confinement with friction 0.2"], "event": ["crossover", "reaches_floor"]}
+    return {"powers": dataset(labels, exponent=("series event end", [2.0, 1.95, 2.05]))}
 
 
 def moduli_study():
@@ -504,11 +499,12 @@ def moduli_study():
 def network_study():
     """Isostatic packings with exponential forces."""
     spread = np.array([-0.02, 0.0, 0.01, 0.02])[:, None]
-    labels = {"polydispersity": [0.1, 0.25], "friction": [0.0, 0.2, 1.0], "state": ["rest", "loaded"]}
+    frictions = [0.0, 0.05, 0.2, 0.5, 1.0]
+    labels = {"polydispersity": [0.01, 0.1, 0.25], "friction": frictions, "state": ["rest", "loaded"]}
     means = {
-        "tail_variation": [1.0, 1.0, 0.95],
-        "coordination_number": [4.0, 3.5, 3.1],
-        "hyperstaticity": [0.0, 0.05, 0.03],
+        "tail_variation": [1.0, 1.0, 1.0, 1.0, 0.95],
+        "coordination_number": [4.0, 3.8, 3.5, 3.2, 3.1],
+        "hyperstaticity": [0.0, 0.05, 0.05, 0.04, 0.03],
     }
     each = {name: np.array(values)[:, None, None] + spread for name, values in means.items()}
     return {"statistics": dataset(labels, **over("polydispersity friction realization state", **each))}

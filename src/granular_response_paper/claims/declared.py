@@ -115,12 +115,13 @@ def _of_function(tests: Sequence[Mapping[str, Any]], function: Callable[[Data], 
                 yield spec, case, number
 
 
-def _declared(group: str, tests: Sequence[dict[str, Any]], each: dict[str, list[Any]], data: Data) -> Numbers:
+def _declared(group: str, tests: Sequence[dict[str, Any]], each: dict[str, Any], data: Data) -> Numbers:
     """The same of declared tests: each one's number, and that in other preparations."""
-    for labels, one in product(product(*each.values()), tests):
+    for labels, spec in product(product(*each.values()), tests):
         here = dict(zip(each, labels, strict=True))
-        texts = {key: one[key].format(**here) for key in ("case", "what") if here and key in one}
-        spec = one | texts | {"at": one.get("at", {}) | here}
+        said = {name: each[name][one] if isinstance(each[name], dict) else one for name, one in here.items()}
+        texts = {key: spec[key].format(**said) for key in ("case", "what") if here and key in spec}
+        spec = spec | texts | {"at": spec.get("at", {}) | here}
         if spec.get("prepared") != "only":
             yield spec, spec.get("case", ""), _number(group, spec, data)
         if "prepared" in spec:
@@ -158,10 +159,10 @@ def _reduced(values: xr.DataArray, spec: Mapping[str, Any]) -> Quantity:
         if how == "interval":
             value, low, high = values.values.tolist()
             return Quantity(value, low, high, "confidence", "bootstrap of the mean")
-        if how == "bootstrap":
-            return over_realizations(values, np.mean)
+        if how in ("bootstrap", "range"):
+            return over_realizations(values, np.mean) if how == "bootstrap" else Quantity.range(values.values)
         if how not in _OVER:
-            raise ClaimsError(f"over {dimension}: {how}, must be interval, bootstrap, {', '.join(_OVER)}")
+            raise ClaimsError(f"over {dimension}: {how}, must be interval, bootstrap, range, {', '.join(_OVER)}")
         values = values.reduce(_OVER[how], dimension)
     needs(values.size == 1, f"{values.name}: {values.size} numbers in place of one")
     return Quantity.exact(values.item())
