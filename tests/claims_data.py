@@ -515,7 +515,7 @@ def rolling_study():
     piles = {"layers": [5, 11], "rolling_friction": [0.0, 0.3], "ramp": [0.0, 30.0]}
     slabs = {"friction": [0.2, 1.0], "rolling_friction": [0.0, 0.5], "load": [0.5, 10.0]}
     ends, response = np.array([[0.95], [0.1]]), np.array([0.1, 0.2, 0.1]) * np.array([1.0, 1.2])[:, None, None]
-    turns = slabs | {"torque": slabs["load"]}
+    turns = slabs | {"torque": [0.001, 0.15]}
     fits, along = {"unexplained": 0.05, "length": 3.0}, "friction rolling_friction"
     turned = fits | {f"decay_{name}": value for name, value in fits.items()}
     return {

@@ -58,10 +58,10 @@ def part_of(hits: ArrayLike, unknown: ArrayLike = False) -> Quantity:
 
 
 def over_brackets(each: Sequence[Quantity], median: Callable[..., Any] = np.median) -> Quantity:
-    """Median of realizations of which each is known within an interval of its own, some without an upper end.
+    """Median of realizations, each known within an interval of its own, with the interval that its draws leave.
 
-    The interval is that of the draws, from the medians of lower ends to those of upper ends: it holds what realizations
-    differ by and what is not known of each. One realization is what it is; raises NotMeasured for two or none.
+    It holds what realizations differ by and what is not known of each, some of which have no upper end. One realization
+    is what it is; raises NotMeasured for two or none.
     """
     if len(each) == 1:
         return each[0]

@@ -1,7 +1,4 @@
-"""Claims that ``claims.yaml`` declares: the number, the bound, and the cases of what the text leaves open.
-
-What can be declared is in docs/extending.md.
-"""
+"""Claims that ``claims.yaml`` declares. What can be declared, and what it means, is in docs/extending.md."""
 
 from __future__ import annotations
 
@@ -75,8 +72,7 @@ def _claim(package: str, id: str, said: dict[str, Any]) -> Claim:
     numbers, each, missing = (said.pop(key, none) for key, none in (("numbers", {}), ("each", {}), ("missing", "")))
     for one in tests:
         if unknown := sorted(set(one) - _KEYS):
-            wrong = f"unknown key {', '.join(unknown)}, must be of {', '.join(sorted(_KEYS))}"
-            raise ClaimsError(f"{group}: {id}: {wrong}")
+            raise ClaimsError(f"{group}: {id}: unknown key {unknown[0]}, must be of {', '.join(sorted(_KEYS))}")
         if ("event" in one) + ("value" in one) != (not numbers):
             raise ClaimsError(f"{group}: {id}: a test needs event or value, or its claim the numbers of a function")
     rows = partial(_declared, group, tests, each)

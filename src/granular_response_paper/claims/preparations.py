@@ -34,9 +34,8 @@ def along(data: Data, measure: Callable[[Data], Any]) -> Iterator[tuple[Case, An
         return
     events = data.get(PREPARATION, "events")
     fixed = {"wall_friction": 0.0, "damping_ratio": float(events["damping_ratio"][0])}
-    ways = {
-        way for way in zip(events["gravity"].values, events["ramp_time"].values, strict=True) if way[0] != "at-once"
-    }
+    others = events.isel(event=events["gravity"].values != "at-once")
+    ways = set(zip(others["gravity"].values, others["ramp_time"].values, strict=True))
     for gravity, ramp in sorted(ways, key=lambda way: (way[0] != "slow", way[1])):
         name = f"grown over {ramp:g} sqrt(R/g)" if gravity == "slow" else "without friction first"
         with suppress(NotMeasured):  # not every event is looked for in every preparation

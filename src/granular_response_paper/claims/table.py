@@ -1,7 +1,4 @@
-"""The claims against the stored datasets: the table with a verdict for each, which ``figures/claims.json`` holds.
-
-It is what ``dvc metrics show``, the page and the README quote. Nothing is judged anywhere else.
-"""
+"""The claims against the stored datasets: the table, ``figures/claims.json``, that the page and the README quote."""
 
 from __future__ import annotations
 

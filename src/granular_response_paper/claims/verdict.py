@@ -1,7 +1,4 @@
-"""The verdict on a claim follows from its tests and is never written by hand.
-
-The scheme, as the page and the notes print it, is :data:`SCHEME`.
-"""
+"""The verdict on a claim follows from its tests, by :data:`SCHEME`, and is never written by hand."""
 
 from __future__ import annotations
 

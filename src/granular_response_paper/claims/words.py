@@ -36,8 +36,9 @@ WORDS: dict[str, tuple[float, str]] = {
     "several": (3.0, "Several hundred is at least three hundred."),
 }
 
-#: The thresholds alone, and by what they are multiplied to see whether a verdict hangs on them.
 THRESHOLDS = {word: threshold for word, (threshold, _) in WORDS.items()}
+
+#: By what a threshold is multiplied to see whether a verdict hangs on it.
 FACTORS = (0.5, 2.0)
 
 #: How far off a response is no longer linear: the text does not say.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from granular_response.state import FloatArray
 from granular_response_paper.claims.bootstrap import over_brackets, over_realizations
 from granular_response_paper.claims.claim import Data, Numbers, Quantity, materials
 
@@ -23,11 +22,7 @@ def repeated(data: Data) -> Numbers:
     for name, case in materials(data.get("hysteresis", "loops")):
         one = case.isel(turn=int(np.flatnonzero(np.isfinite(case["force"].values))[-1]))
         lost = (one["slid_again"] + one["crossed_again"]).values / one["work"].values
-        numbers = (_of_realizations(values) for values in (lost, one["floor_repeated"].values))
+        known = (values[np.isfinite(values)] for values in (lost, one["floor_repeated"].values))
+        # one packing has no interval, of several the mean has one
+        numbers = (over_realizations(values, np.mean) if len(values) > 1 else values[0] for values in known)
         yield f"{name}, {float(one['force']):g} mg", *numbers
-
-
-def _of_realizations(values: FloatArray) -> Quantity:
-    """One packing has no interval, of several the mean has one."""
-    found = values[np.isfinite(values)]
-    return over_realizations(found, np.mean) if len(found) > 1 else Quantity.exact(found[0])

@@ -35,27 +35,11 @@ def no_dip(data: Data) -> Numbers:  # B15
         yield f"least friction, {name}", float(one["floor_dip"])
 
 
-def _slabs(data: Data, name: str = "slabs") -> xr.Dataset:
-    found = data.get(GROUP, name).sortby("rolling_friction")
-    needs(found.sizes["rolling_friction"] > 1, f"{name} holds one rolling friction, there is nothing to compare")
-    return found
-
-
 def small_load(data: Data) -> Numbers:  # B16
-    response = _slabs(data)["floor_response"].isel(load=0)
-    without = response.isel(rolling_friction=0)
-    change = abs(response - without).max("floor_disk") / without.max("floor_disk")
-    for mu in change["friction"]:
-        yield f"friction {float(mu):g}", Quantity.range(change.sel(friction=mu).values[1:])
-
-
-def cosserat(data: Data) -> Numbers:
-    """B17: what is left of the squares, and the Cosserat length."""
-    slabs, turned = (_slabs(data, name).isel(rolling_friction=slice(1, None)) for name in ("slabs", "torques"))
-    loads = [(f"{load:g} mg", slabs.sel(load=load), [""]) for load in slabs["load"].values]
-    loads += [(f"torque {load:g}", turned.sel(torque=load), ["", "decay_"]) for load in turned["torque"].values]
-    for mu in slabs["friction"].values.tolist():
-        for load, one, fits in loads:
-            for fit in fits:
-                numbers = (Quantity.range(one[f"{fit}{of}"].sel(friction=mu)) for of in ("unexplained", "length"))
-                yield f"friction {mu:g}, {load}{', decay' if fit else ''}", *numbers
+    slabs = data.get(GROUP, "slabs").sortby("rolling_friction")
+    without, *others = slabs["floor_response"].isel(load=0).transpose("rolling_friction", ...)
+    needs(others, "slabs holds one rolling friction, there is nothing to compare")
+    for mu in slabs["friction"].values:
+        least = without.sel(friction=mu)
+        changes = (abs(one.sel(friction=mu) - least).max() / least.max() for one in others)
+        yield f"friction {mu:g}", Quantity.range(changes)

@@ -12,9 +12,6 @@ from granular_response_paper.claims.claim import Case, Data, Numbers, Quantity, 
 
 GROUP = "frictionless_crossover"
 
-#: The paper's stiffness of contacts.
-STIFFNESS = 3000.0
-
 #: Distance of two rows of disks, and of two disks in a row (mean radii): the resolution of a region's size.
 ROW, DISK = float(np.sqrt(3.0)), 2.0
 
@@ -52,9 +49,9 @@ def size_in_steps(size: FloatArray, step: float) -> Quantity:
 
 
 def _slabs(data: Data, name: str) -> xr.Dataset:
-    """Slabs of the paper's stiffness by the number of their layers."""
+    """Slabs of the paper's stiffness of contacts, 3000, by the number of their layers."""
     study = data.get(GROUP, name).sortby("layers")
-    return study.isel(slab=np.isclose(study["normal_stiffness"].values, STIFFNESS))
+    return study.isel(slab=np.isclose(study["normal_stiffness"].values, 3000.0))
 
 
 def teardrop_and_depth(data: Data) -> Numbers:  # F6

@@ -1,5 +1,4 @@
-"""Claims on disordered slabs (abstract, Secs. VI to VIII), from the ensembles of the survey and by its one definition
-of two peaks (:mod:`granular_response_paper.survey.crossover`).
+"""Claims on disordered slabs (abstract, Secs. VI to VIII), by the survey's one definition of two peaks.
 
 The text starts from a lattice with twice the mean radius as its constant, in which disks of unequal size overlap. This
 project starts where the largest disks touch. Both, and lattices between them, are values of what the text leaves open
@@ -388,9 +387,8 @@ def shorter_with_disorder(data: Data) -> Numbers:
     for start in (USUAL, LITERAL):
         slabs = [slab for slab in _slabs(data, "linear_range") if slab.start == start]
         deltas = sorted({slab.polydispersity for slab in slabs})
-        for slab, tolerance in product(slabs, TOLERANCES):
-            if slab.polydispersity < deltas[-1]:
-                continue
+        most = [slab for slab in slabs if slab.polydispersity == deltas[-1]]
+        for slab, tolerance in product(most, TOLERANCES):
             cases = [slab.lattice, *(slab._replace(polydispersity=delta) for delta in deltas)]
             ends = [_ends(data, one, tolerance, whole=True) for one in cases]
             lattice, least = (linear_end(one) for one in ends[:2])
