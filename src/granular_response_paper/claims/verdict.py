@@ -128,9 +128,9 @@ def judge(claim: Claim, data: Data) -> Verdict:
 
     try:
         found = Verdict(claim, claim.measure(data))
-        first, _ = found.verdict, found.elsewhere
+        verdict, _ = found.verdict, found.elsewhere  # so that what is missing for either shows here
         used = sorted({test.bound.word for test in found.tests if test.bound.word and not test.prepared})
-        return replace(found, star=[word for word in used if any(under(word, factor) != first for factor in FACTORS)])
+        return replace(found, star=[word for word in used if any(under(word, factor) != verdict for factor in FACTORS)])
     except NotMeasured as missing:
         return Verdict(claim, missing=str(missing))
     except TOO_LITTLE as error:
