@@ -36,7 +36,6 @@ from granular_response_paper.groups.frictionless_crossover.claims import size_in
 from granular_response_paper.groups.phase_diagram.claims import (
     FOUND,
     Crossover,
-    evident_samples,
     linear_end,
     linear_ends,
     order_of,
@@ -592,16 +591,6 @@ def test_verdicts_follow_from_the_cases():
         assert judge(a_claim(none), Data({})).verdict == "not measured"
 
 
-def test_the_second_column_follows_from_other_preparations_alone():
-    def elsewhere_of(*tests):
-        return Verdict(a_claim(), tests).elsewhere
-
-    others = [a_test(*ends, prepared="slowly") for ends in (YES, NO, OPEN_)]
-    assert elsewhere_of(*cases(YES, NO)) == "not tried" and elsewhere_of(*cases(NO), others[0]) == "yes"
-    assert elsewhere_of(*others) == "no" and elsewhere_of(*others[::2]) == "cannot tell"
-    assert verdict_of(*cases(YES), *others[1:]) == "supported"
-
-
 def test_a_row_lists_its_cases_and_preparations():
     tests = [a_test(*YES, case="slow"), a_test(*NO, case="fast"), a_test(*NO, prepared="otherwise")]
     entry = judge(a_claim(tests, here="From {0} to {1}."), Data({}))
@@ -905,13 +894,6 @@ def test_a_size_in_whole_steps_is_known_in_the_mean():
             smooth = start + grown * (np.arange(200) + 0.5) / 200
             found = size_in_steps(np.floor(smooth), 1.0)
             assert found.low - 1e-9 <= smooth.mean() <= found.high + 1e-9
-
-
-def test_samples_of_realizations_that_differ_or_not():
-    rng = np.random.default_rng(0)
-    apart, alike = rng.normal(3.0, 0.5, 60), rng.normal(0.0, 0.5, 60)
-    assert evident_samples(apart, alike, 0.95).low > 0.9
-    assert evident_samples(alike, alike, 0.95).high == 0.0
 
 
 def test_what_is_not_ordered_widens_a_trend():

@@ -289,7 +289,7 @@ def fluctuations(data: Data) -> Numbers:  # D10
         yield slabs[0].case(""), without.per(full)
 
 
-def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quantity:
+def _evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quantity:
     """The part of samples of ``SHOWN`` realizations each in which at least this part of the pairs differ.
 
     ``without`` and ``full`` (r,) are the dips of realizations. With 95 % of the draws of these.
@@ -308,7 +308,7 @@ def evident(data: Data) -> Numbers:  # D11
     least = 1.0 - data.words["holds"]
     for slabs in _by_start(data, "realizations", 0.0, 0.2):
         without, full = (_at_15(data, slab, "realizations")["shape"].dropna("realization").values for slab in slabs)
-        yield slabs[0].case("", f"{least:.0%}"), evident_samples(without, full, least)
+        yield slabs[0].case("", f"{least:.0%}"), _evident_samples(without, full, least)
 
 
 def collapses(data: Data, **of: float) -> Numbers:
