@@ -136,8 +136,8 @@ def friction_study():
 
 
 def breaking_study():
-    names = "low high ramp_time time_step"
-    brackets = dataset(**by_row("event", names, [(91.2, 92.0, 20.0, 5e-4), (91.5, 92.5, 100.0, 5e-4)]))
+    rows = [("loss_of_symmetry", 91.2, 92.0, 20.0), ("loss_of_symmetry", 91.5, 92.5, 100.0)]
+    brackets = dataset(**by_row("event", "name low high ramp_time", rows))
     return {"brackets": brackets, "equal_rows": events(("loss_of_symmetry", 1.0, 91.1, 91.9))}
 
 
@@ -282,10 +282,11 @@ def frictionless_study():
     size, along = [[20.0, 30.0, 50.0]] + [[40.0, 60.0, 90.0]] * 4, "normal_stiffness force"
     return {
         "events": events(("crossover", 0.0, 3.0, 3.1), ("teardrop_reaches_floor", 0.0, 3.5, 3.6)),
-        "response": dataset(teardrop_depth=("force", [1.0, 5.0, 12.0])),
+        "response": dataset(**over("force", teardrop_depth=[1.0, 5.0, 12.0], reaches_floor=[0, 0, 0])),
         "states": dataset(
             sizes={"force": 3, "contact": len(rows)},
             teardrop=("force contact", 1),
+            teardrop_horizontal=("force", 1.0),
             position=("force disk axis", position),
             **over("contact", contact_disk=first, contact_partner=first + 1),
         ),
@@ -314,8 +315,11 @@ def disordered_cases():
     """Coordinates of the cases: the lattice, three frictions at three disorders, and the literal start."""
     cases = [(delta, mu, STARTS[0]) for delta in (0.0, 0.01, 0.1, 0.25) for mu in (0.0, 0.2, 1.0)]
     cases += [(0.01, mu, STARTS[1]) for mu in (0.0, 0.2)]
-    return by_row("case", "polydispersity friction lattice_constant", cases)
+    return by_row("case", "polydispersity friction lattice_constant realizations", [(*case, FEW) for case in cases])
 
+
+#: Packings of each case.
+FEW = 8
 
 #: Draws of the planted bootstrap, the same part of the crossover in every case.
 DRAWS = np.linspace(0.95, 1.05, 41)
@@ -327,10 +331,9 @@ def phases_study():
     grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 9.0], [0.5, 2.0, 4.0], [2.5, 12.0]]
     force = np.array([f for row in grid for f in row])
     mu, delta = cases["friction"][1], cases["polydispersity"][1]
-    n, few = len(mu), 8
+    n, few = len(mu), FEW
     dip = np.where(mu == 0.0, 0.8, -0.05)
     labels = {**cases, "width": [3.0, 6.0], "level": [0.025, 0.5, 0.975]}
-    number = {"realizations": ("case", [few] * n)}
     dips = dip[:, None] + np.array([-0.02, 0.0, 0.02])
     scatter = np.where(mu == 0.0, 0.005, 0.001)[:, None]
     each = 0.05 * rng.standard_normal((n, few, 3)) + dip[:, None, None]
@@ -357,7 +360,7 @@ def phases_study():
     away = np.maximum(0.0, small / (apart * np.repeat(ends, 2)[:, None, None]) - 1.0)
     return {
         "crossovers": dataset(
-            labels | number,
+            labels,
             **crossovers,
             seen=("width case", 0.9),
             seen_interval=("width case level", [0.8, 0.9, 0.95]),
@@ -378,13 +381,13 @@ def phases_study():
             largest_step_interval=("width case level", [0.08, 0.1, 0.12]),
         ),
         "realizations": dataset(
-            labels | number,
+            labels,
             {"realization": few, "step": 3},
             collapse_force=("case realization", np.where(np.arange(few) < 4, 20.0, np.nan)),
             **over("width case realization step", shape=each, asymmetry=0.1, difference=0.2),
         ),
         "starts": dataset(
-            labels | number,
+            labels,
             dip_of_means=("width case level", dips),
             dip_of_means_interval=("width case level end", dips[..., None] + [-0.01, 0.01]),
         ),
@@ -464,23 +467,18 @@ def hysteresis_study():
 
 
 def influence_study():
-    power = np.full((2, 4, 1, 3), np.nan)
-    power[0, 0] = [1.98, 1.97, 1.99]  # a lattice: one realization, and the range over the fits
-    power[1] = np.array([1.86, 1.9, 1.92, 1.94])[:, None, None]
-    cases = over("case", polydispersity=[0.0, 0.1], friction=[0.0, 0.2])
+    power = np.full((6, 4, 1, 3), np.nan)
+    power[:2, 0] = [1.98, 1.97, 1.99]  # a lattice: one realization, and the range over the fits
+    power[2:] = np.array([1.86, 1.9, 1.92, 1.94])[:, None, None]
+    cases = over("case", polydispersity=[0.0, 0.0, 0.01, 0.1, 0.25, 0.1], friction=[0.0, 0.2, 0.2, 0.2, 0.2, 0.0])
     return {"saint_venant": dataset(cases, exponent=("case realization separation fit", power))}
 
 
 def scaling_study():
-    """Powers 2 of the layers with and without friction, and a series of widths that no claim reads."""
-    series = by_row(
-        "series",
-        "friction varied confined",
-        [(0.0, "layers", "walls"), (0.2, "layers", "as weight"), (0.0, "disks_per_layer", "constant")],
-    )
-    labels = {**series, "event": ["first_opening", "crossover", "reaches_floor"]}
-    powers = dataset(labels, exponent=("series event end", [2.0, 1.95, 2.05]))
-    return {"powers": powers.assign_attrs(layers=1000.0)}
+    """Powers 2 of the layers in every series."""
+    series = ["constant confinement", "confined as weight", "walls", "friction 0.05", "friction 0.1", "friction 0.2"]
+    labels = {"series": [*series, "constant confinement with friction 0.2"], "event": ["crossover", "reaches_floor"]}
+    return {"powers": dataset(labels, exponent=("series event end", [2.0, 1.95, 2.05]))}
 
 
 def moduli_study():
@@ -501,11 +499,12 @@ def moduli_study():
 def network_study():
     """Isostatic packings with exponential forces."""
     spread = np.array([-0.02, 0.0, 0.01, 0.02])[:, None]
-    labels = {"polydispersity": [0.1, 0.25], "friction": [0.0, 0.2, 1.0], "state": ["rest", "loaded"]}
+    frictions = [0.0, 0.05, 0.2, 0.5, 1.0]
+    labels = {"polydispersity": [0.01, 0.1, 0.25], "friction": frictions, "state": ["rest", "loaded"]}
     means = {
-        "tail_variation": [1.0, 1.0, 0.95],
-        "coordination_number": [4.0, 3.5, 3.1],
-        "hyperstaticity": [0.0, 0.05, 0.03],
+        "tail_variation": [1.0, 1.0, 1.0, 1.0, 0.95],
+        "coordination_number": [4.0, 3.8, 3.5, 3.2, 3.1],
+        "hyperstaticity": [0.0, 0.05, 0.05, 0.04, 0.03],
     }
     each = {name: np.array(values)[:, None, None] + spread for name, values in means.items()}
     return {"statistics": dataset(labels, **over("polydispersity friction realization state", **each))}
@@ -516,7 +515,7 @@ def rolling_study():
     piles = {"layers": [5, 11], "rolling_friction": [0.0, 0.3], "ramp": [0.0, 30.0]}
     slabs = {"friction": [0.2, 1.0], "rolling_friction": [0.0, 0.5], "load": [0.5, 10.0]}
     ends, response = np.array([[0.95], [0.1]]), np.array([0.1, 0.2, 0.1]) * np.array([1.0, 1.2])[:, None, None]
-    turns = slabs | {"torque": slabs["load"]}
+    turns = slabs | {"torque": [0.001, 0.15]}
     fits, along = {"unexplained": 0.05, "length": 3.0}, "friction rolling_friction"
     turned = fits | {f"decay_{name}": value for name, value in fits.items()}
     return {

@@ -119,14 +119,14 @@ def claims(
 ) -> None:
     """Compare the claims with the stored datasets."""
     from .claims import preparations as kept
-    from .claims import stored, table
+    from .claims import table
 
     if figure is not None and not every:
         raise typer.BadParameter("must stand with --list: without it all claims are judged anew", param_hint="--figure")
     loaded()
     one = collection(name)
-    output, data = output or one.here / stored.OUTPUT, data or one.here / "data"
-    found = stored.read(output) if every else table.write(output, data, others or kept.OUTPUT, collection=one)
+    output, data = output or one.here / table.OUTPUT, data or one.here / "data"
+    found = table.read(output) if every else table.write(output, data, others or kept.OUTPUT, collection=one)
     rows = [row for row in found["table"] if figure is None or figure in row["figures"]]
     if every and not rows:
         typer.echo(f"no claim on figure {figure}")
@@ -137,7 +137,7 @@ def claims(
         for text in (row["cases"], row["preparations"] and f"Other preparations: {row['preparations']}"):
             if text:
                 typer.echo(f"{'':20} {text}")
-    typer.echo(f"{output}: {stored.quoted(found)}")
+    typer.echo(f"{output}: {table.quoted(found)}")
 
 
 @commands.command("summary", "summary --data elsewhere/preparation.nc")

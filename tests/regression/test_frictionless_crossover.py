@@ -58,6 +58,10 @@ def test_stored_states_give_the_stored_measurements(datasets) -> None:
         region = one["teardrop"].values > 0
         assert np.all(was[region] & (one["contact_status"].values[region] == 0))
         assert bool(region.any()) == (float(response["teardrop_depth"].sel(force=force)) > 0.0)
+        if region.any():
+            height = rest["position"].values[0, :, 1]
+            apart = np.abs(height[one["contact_disk"].values] - height[one["contact_partner"].values])[region]
+            assert float(one["teardrop_horizontal"]) == np.mean(apart < 0.5 * np.sqrt(3.0))
 
 
 def test_soft_slabs_open_later(datasets) -> None:

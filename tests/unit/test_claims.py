@@ -17,16 +17,25 @@ from scipy.stats import binom
 from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response.store import files as store
 from granular_response_paper.claims import declared, preparations, table
-from granular_response_paper.claims import stored as stored_table
 from granular_response_paper.claims.bootstrap import RARE, over_brackets, over_realizations, part_of
-from granular_response_paper.claims.claim import Bound, Claim, Data, NotMeasured, Quantity, Test, at, rise
-from granular_response_paper.claims.verdict import MEANINGS, SCHEME, Verdict, elsewhere_of, judge, verdict_of
-from granular_response_paper.claims.words import WORDS, words
+from granular_response_paper.claims.claim import (
+    PREPARATION,
+    Bound,
+    Claim,
+    ClaimsError,
+    Data,
+    NotMeasured,
+    Quantity,
+    Test,
+    at,
+    rise,
+)
+from granular_response_paper.claims.verdict import MEANINGS, SCHEME, Verdict, judge
+from granular_response_paper.claims.words import THRESHOLDS, WORDS
 from granular_response_paper.groups.frictionless_crossover.claims import size_in_steps
 from granular_response_paper.groups.phase_diagram.claims import (
     FOUND,
     Crossover,
-    evident_samples,
     linear_end,
     linear_ends,
     order_of,
@@ -51,6 +60,21 @@ def good():
     return everything()
 
 
+@pytest.fixture(scope="module")
+def entries(good):
+    return judged(good)
+
+
+def judged(groups):
+    return [judge(claim, Data(groups)) for claim in EVERY]
+
+
+def along(**values):
+    """Numbers along one dimension."""
+    ((dimension, numbers),) = values.items()
+    return xr.DataArray(np.array(numbers), dims=dimension)
+
+
 def edited(group, name, change):
     """Changes a copy of one dataset; the others are shared."""
     return lambda groups: {**groups, group: groups[group] | {name: change(groups[group][name].copy(deep=True))}}
@@ -67,7 +91,9 @@ def both(*changes):
 def put(group, name, variable, values):
     def change(data):
         old = data[variable]
-        return data.assign({variable: (old.dims, np.broadcast_to(np.array(values), old.shape).copy())})
+        same = isinstance(values, xr.DataArray)
+        new = values.broadcast_like(old).transpose(*old.dims) if same else np.broadcast_to(np.array(values), old.shape)
+        return data.assign({variable: (old.dims, np.array(new))})
 
     return edited(group, name, change)
 
@@ -130,33 +156,11 @@ def none_collapses():
     )  # fmt: skip
 
 
-def by_case(columns):
-    """Along the cases: the disorders times the frictions, then the literal start."""
-    return np.array(columns)[:, None]
-
-
-def by_solid(rows):
-    """Along the solids, whose last dimension is the smoothing."""
-    return np.array(rows)[:, None]
-
-
-#: Every other disk is higher: contacts are no longer horizontal.
-TILTED = edited(SLAB, "states", lambda data: data.assign(position=data["position"] + [[0.0, 0.0], [0.0, 1.2]] * 7))
 #: The second protocol loses its symmetry at 97 to 98 mg.
 LATER_WITH_A_SLOW_RAMP = both(
     put("symmetry_breaking", "brackets", "low", [91.2, 97.0]),
     put("symmetry_breaking", "brackets", "high", [92.0, 98.0]),
 )
-#: The second case alone differs from its slab.
-ONE_TOO_FAR = np.array([1.0, 10.0, 1.0])[:, None, None, None, None]
-
-#: Along preparations, the first of which differs from the second; along margins, one of which turns the trend round.
-FIRST_CASE_ALONE = np.array([2.0, 1.0, 1.0, 1.0])[:, None]
-ONE_MARGIN = np.array([[1.0, 1.0], [1.0, 1.0], [1.0, 1.0], [1.0, 0.1]])
-
-#: Along polydispersities, of which the first one alone differs.
-FIRST_CASE = np.array([1.2, 1.0])[:, None, None, None]
-
 ENDS = ("low", "high")
 ROLLING = "rolling_resistance"
 EXPERIMENTS = "experiments"
@@ -176,6 +180,8 @@ LONGER = [[[1, 2, 3, 4, 5, 6, 7]]] * 2 + [[[1] * 7]] * 6
 CENSORED = [[[1] * 6 + [2]] * 8] * 2 + [[[1] * 5 + [np.nan] * 2] * 8] * 6
 #: Crossovers of means, and of the median realization where packings collapse.
 BY_FORCE = ("crossovers", "medians")
+#: Crossovers at larger forces where disorder is larger.
+REVERSED = along(case=[1] * 3 + [1e-3] * 6 + [1e2] * 3 + [1, 1])
 #: Draws without a crossover in every case.
 INFINITE = np.full((14, 41), np.inf)
 #: The more disorder, the later a range ends; and ends of disordered slabs that scatter about one force.
@@ -254,7 +260,7 @@ PLANTED = [
       for force, verdict in ((50.0, "cannot tell"), (60.0, "not supported"))),
     *(("F4b", both(moved(SLAB, "crossover", 0.0, *ends), everywhere("crossover", 0.0, *ends)), "not supported")
       for ends in ((3.7, 3.8), (1.0, 1.1))),
-    ("F5a", TILTED, "not supported"),
+    ("F5a", put(SLAB, "states", "teardrop_horizontal", [1.0, 0.9, 1.0]), "not supported"),
     ("F5b", put(SLAB, "response", "teardrop_depth", [5.0, 1.0, 12.0]), "not supported"),
     ("F6", scaled(SLAB, "regions", "teardrop_depth", [[1.0], [0.4], [1.0], [1.0]]), "not supported"),
     ("F6", scaled(SLAB, "regions", "teardrop_width", [[1.0], [0.76], [1.0], [0.76]]), "cannot tell"),
@@ -348,30 +354,29 @@ PLANTED = [
     ("D2", put(PHASES, "linear_range", "response_at_centre", CENSORED), "cannot tell"),
     ("D2", put(PHASES, "linear_range", "response_at_centre", LONGER), "not supported"),
     ("D3a", put(PHASES, "crossovers", "draws", alternating(0.1, 90.0)), "in part"),
-    ("D3a", both(*(scaled(PHASES, n, "draws", by_case([1, 1e-2, 1e-3] * 4 + [1, 1e-2])) for n in BY_FORCE)),
+    ("D3a", both(*(scaled(PHASES, n, "draws", along(case=[1, 1e-2, 1e-3] * 4 + [1, 1e-2])) for n in BY_FORCE)),
      "not supported"),
     ("D3a", both(*(put(PHASES, n, "draws", INFINITE) for n in BY_FORCE)), "cannot tell"),
     ("D3b", both(*(put(PHASES, name, "draws", alternating(0.1, 90.0)) for name in BY_FORCE)), "cannot tell"),
-    ("D3b", both(*(scaled(PHASES, n, "draws", by_case([1] * 3 + [1e-3] * 6 + [1e2] * 3 + [1, 1])) for n in BY_FORCE)),
-     "not supported"),
+    ("D3b", both(*(scaled(PHASES, n, "draws", REVERSED) for n in BY_FORCE)), "not supported"),
     ("D4", put(PHASES, "shapes", "largest_step_interval", [0.6, 0.7, 0.8]), "not supported"),
     ("D4", put(PHASES, "shapes", "largest_step_interval", [0.4, 0.5, 0.8]), "cannot tell"),
     ("D5", put(PHASES, "crossovers", "seen_interval", 0.4), "not supported"),
     ("D5", put(PHASES, "crossovers", "seen_interval", [0.4, 0.6, 0.7]), "cannot tell"),
     ("D5", start(PHASES, "crossovers", "seen_interval", STARTS[1], 0.4), "in part"),
-    ("D6", scaled(PHASES, "crossovers", "draws", by_case([1] * 3 + [100] * 11)), "in part"),
-    ("D6", both(*(scaled(PHASES, n, "draws", by_case([1] * 3 + [100] * 11)) for n in BY_FORCE)), "not supported"),
+    ("D6", scaled(PHASES, "crossovers", "draws", along(case=[1] * 3 + [100] * 11)), "in part"),
+    ("D6", both(*(scaled(PHASES, n, "draws", along(case=[1] * 3 + [100] * 11)) for n in BY_FORCE)), "not supported"),
     ("D7a", scaled(PHASES, "packings", "coordination_number_bulk", 1.2), "in part"),
     ("D7a", both(*(scaled(PHASES, "packings", f"coordination_number{k}", 1.2) for k in ("", "_bulk", "_with_walls"))),
      "not supported"),
     ("D7b", start(PHASES, "packings", "horizontal_contacts", STARTS[1], 0.97), "in part"),
     ("D7b", put(PHASES, "packings", "horizontal_contacts", 0.97), "not supported"),
     ("D8", put(PHASES, "crossovers", "draws", alternating(1.0, 4.0)), "cannot tell"),
-    ("D8", put(PHASES, "crossovers", "draws", by_case([1.0] * 12 + [0.1] * 2)), "not supported"),
+    ("D8", put(PHASES, "crossovers", "draws", along(case=[1.0] * 12 + [0.1] * 2)), "not supported"),
     ("D9", scaled(PHASES, "realizations", "difference", 5.0), "not supported"),
     ("D10", put(PHASES, "shapes", "spread_interval", [0.001, 0.002, 0.003]), "cannot tell"),
-    ("D10", put(PHASES, "shapes", "spread_interval", by_case([3, 2, 1] * 4 + [1, 9])[:, :, None]), "in part"),
-    ("D10", put(PHASES, "shapes", "spread_interval", by_case([1, 2, 1] * 4 + [1, 9])[:, :, None]), "not supported"),
+    ("D10", put(PHASES, "shapes", "spread_interval", along(case=[3, 2, 1] * 4 + [1, 9])), "in part"),
+    ("D10", put(PHASES, "shapes", "spread_interval", along(case=[1, 2, 1] * 4 + [1, 9])), "not supported"),
     ("D11", put(PHASES, "realizations", "shape", -0.05), "not supported"),
     ("D11", start(PHASES, "realizations", "shape", STARTS[1], -0.05), "in part"),
     ("D12", put(PHASES, "realizations", "collapse_force", NAN), "cannot tell"),  # none of eight
@@ -387,7 +392,7 @@ PLANTED = [
     ("D16", none_collapses(), NOT_SEEN),
     ("D17", put(MEANS, "packings", "contact_angle_density", 1.0), NOT_SEEN),
     ("D18", put(PHASES, "shapes", "shape_interval", -0.1), NOT_SEEN),
-    ("B1", scaled("influence", "saint_venant", "exponent", [[[[1.0]]], [[[0.5]]]]), "in part"),
+    ("B1", scaled("influence", "saint_venant", "exponent", along(case=[1.0] * 5 + [0.5])), "in part"),
     ("B1", scaled("influence", "saint_venant", "exponent", 0.5), "not supported"),
     ("B2", both(*(scaled("hysteresis", "events", end, IRREVERSIBLE) for end in ENDS)), "in part"),
     ("B2", scaled("hysteresis", "events", "low", IRREVERSIBLE), "in part"),
@@ -396,17 +401,17 @@ PLANTED = [
     ("B3", put("hysteresis", "loops", "slid_again", 0.1), NOT_SEEN),
     ("B3", scaled("hysteresis", "loops", "floor_repeated", [[[1.0]], [[1e3]]]), "in part"),
     ("B4", scaled("moduli", "packings", "difference", 10.0), "not supported"),
-    ("B4", scaled("moduli", "packings", "difference", ONE_TOO_FAR), "in part"),
-    ("B4", scaled("moduli", "packings", "difference", by_solid([1.0, 1.0, 1.0, 10.0])), "supported"),
-    ("B5", scaled("moduli", "packings", "difference", by_solid([1.0, 1.0, 1.0, 10.0])), "not supported"),
+    ("B4", scaled("moduli", "packings", "difference", along(case=[1.0, 10.0, 1.0])), "in part"),
+    ("B4", scaled("moduli", "packings", "difference", along(solid=[1.0, 1.0, 1.0, 10.0])), "supported"),
+    ("B5", scaled("moduli", "packings", "difference", along(solid=[1.0, 1.0, 1.0, 10.0])), "not supported"),
     ("B8", put("crossover_scaling", "powers", "exponent", [-0.1, -0.2, -0.05]), "not supported"),
     ("B8", put("crossover_scaling", "powers", "exponent", [0.1, -0.1, 0.2]), "cannot tell"),
-    ("B9", scaled("crossover_scaling", "powers", "exponent", [[[0.5]], [[1.0]], [[1.0]]]), "in part"),
+    ("B9", scaled("crossover_scaling", "powers", "exponent", along(series=[0.5] + [1.0] * 6)), "in part"),
     ("B9", scaled("crossover_scaling", "powers", "exponent", 0.5), "not supported"),
     ("B11", scaled("network", "statistics", "tail_variation", 0.75), "not supported"),
     ("B11", scaled("network", "statistics", "tail_variation", [1.0, 0.7]), "in part"),
     ("B12", scaled("network", "statistics", "coordination_number", 1.2), "not supported"),
-    ("B12", scaled("network", "statistics", "coordination_number", FIRST_CASE), "in part"),
+    ("B12", scaled("network", "statistics", "coordination_number", along(polydispersity=[1.2, 1.0, 1.0])), "in part"),
     ("B13", put("network", "statistics", "hyperstaticity", 0.2), "not supported"),
     ("B13", scaled("network", "statistics", "hyperstaticity", 2.0), "cannot tell"),
     ("B14", both(*(scaled(ROLLING, "thresholds", end, 0.5) for end in ENDS)), "in part"),
@@ -419,8 +424,8 @@ PLANTED = [
                  *(put(ROLLING, "torques", n, 0.3) for n in ("length", "decay_length"))), NOT_SEEN),
     ("B17", scaled(ROLLING, "slabs", "unexplained", [1.0, 10.0]), "in part"),
     ("B18", put("preparation", "mobilized", "force", [[10.0], [9.0], [20.0], [30.0]]), "not supported"),
-    ("B18", scaled("preparation", "mobilized", "force", FIRST_CASE_ALONE), "not supported"),
-    ("B18", scaled("preparation", "mobilized", "mobilized_part", ONE_MARGIN), "in part"),
+    ("B18", scaled("preparation", "mobilized", "force", along(case=[2.0, 1.0, 1.0, 1.0])), "not supported"),
+    ("B18", scaled("preparation", "mobilized", "mobilized_part", [[1.0, 1.0]] * 3 + [[1.0, 0.1]]), "in part"),
     ("B19", put(EXPERIMENTS, "packings", "moved", 5.0), "not supported"),
     ("B20", put(EXPERIMENTS, "means", "chain", 75.0), "in part"),
     ("B20", both(*(put(EXPERIMENTS, "means", n, of) for n, of in (("chain", 75.0), ("contrast", 1.0)))),
@@ -485,7 +490,7 @@ def test_every_claim_has_a_text_and_stands_at_its_section():
     assert len(CLAIM) == len(EVERY)
     texts = [path for one in collections() for path in one.path.glob("*/claims.yaml")]
     assert {name for path in texts for name in yaml.safe_load(path.read_text(encoding="utf-8"))} == set(CLAIM)
-    parts = [list(stored_table.PARTS).index(table.part_of(claim)) for claim in EVERY]
+    parts = [list(table.PARTS).index(claim.part) for claim in EVERY]
     assert parts == sorted(parts)
     for claim in EVERY:
         assert (
@@ -496,11 +501,10 @@ def test_every_claim_has_a_text_and_stands_at_its_section():
         )
         assert claim.paper[0].isupper() and claim.paper.rstrip('”"').endswith((".", ":")), claim.id  # whole sentences
         assert all(1 <= number <= 24 for number in claim.figures)
-        assert claim.source == "paper" or claim.extension, claim.id  # hypotheses of others are no claims of the paper
+        assert claim.source == "paper" or claim.part == "extension", claim.id  # no hypothesis is the paper's
 
 
-def test_data_that_agree_with_the_paper_support_every_claim(good):
-    entries = table.evaluate(Data(good), EVERY)
+def test_data_that_agree_with_the_paper_support_every_claim(entries):
     assert {entry.elsewhere for entry in entries} == {"yes", "not tried"}
     expected = dict.fromkeys(CLAIM, "supported") | dict.fromkeys(ALGEBRA, "derivation") | ELSE
     assert {entry.claim.id: entry.verdict for entry in entries} == expected
@@ -508,7 +512,7 @@ def test_data_that_agree_with_the_paper_support_every_claim(good):
 
 
 def test_without_data_nothing_is_measured_and_the_reason_names_what_is_missing():
-    for entry in table.evaluate(Data({}), EVERY):
+    for entry in judged({}):
         assert entry.verdict == "not measured" and not entry.tests
         assert re.match(r"data/\w+\.nc is missing|the measured profiles", entry.here), entry.claim.id
 
@@ -541,15 +545,15 @@ def test_a_missing_variable_means_not_measured(good, id_):
     assert judge(CLAIM[id_], Data({**good, group: bare})).verdict == "not measured"
 
 
-def test_claims_of_the_paper_read_no_dataset_of_an_extension(good):
+def test_claims_of_the_paper_read_no_dataset_of_an_extension(good, entries):
     """But the summary of other preparations: the datasets of groups with extensions alone are not there."""
-    extensions = {claim.group for claim in EVERY if claim.extension}
-    own = {claim.group for claim in EVERY if not claim.extension}
+    extensions = {claim.group for claim in EVERY if claim.part == "extension"}
+    own = {claim.group for claim in EVERY if claim.part != "extension"}
     kept = {group: sets for group, sets in good.items() if group in own or group not in extensions}
-    kept[preparations.GROUP] = {"events": good[preparations.GROUP]["events"]}
-    for claim in EVERY:
-        if not claim.extension:
-            assert judge(claim, Data(kept)).verdict == judge(claim, Data(good)).verdict, claim.id
+    kept[PREPARATION] = {"events": good[PREPARATION]["events"]}
+    for entry in entries:
+        if entry.claim.part != "extension":
+            assert judge(entry.claim, Data(kept)).verdict == entry.verdict, entry.claim.id
 
 
 def a_test(low, high, case="", prepared="", word=""):
@@ -564,38 +568,36 @@ def cases(*ends):
     return [a_test(*one, case=str(k)) for k, one in enumerate(ends)]
 
 
+def a_claim(tests=(), **said):
+    return Claim("F1", "I", "", "", lambda data: tests, **said)
+
+
+def verdict_of(*tests, **said):
+    return Verdict(a_claim(**said), tests).verdict
+
+
 def test_verdicts_follow_from_the_cases():
-    assert verdict_of(cases(YES, YES)) == "supported"
-    assert verdict_of(cases(YES, NO)) == verdict_of(cases(NO, OPEN_, YES)) == verdict_of(cases(YES, OPEN_)) == "in part"
-    assert verdict_of(cases(NO, NO)) == verdict_of(cases(NO, OPEN_)) == "not supported"
-    assert verdict_of(cases(OPEN_)) == verdict_of(cases(OPEN_, OPEN_)) == "cannot tell"
+    assert verdict_of(*cases(YES, YES)) == "supported"
+    assert {verdict_of(*cases(*ends)) for ends in ((YES, NO), (NO, OPEN_, YES), (YES, OPEN_))} == {"in part"}
+    assert verdict_of(*cases(NO, NO)) == verdict_of(*cases(NO, OPEN_)) == "not supported"
+    assert verdict_of(*cases(OPEN_)) == verdict_of(*cases(OPEN_, OPEN_)) == "cannot tell"
     # numbers of one case must hold together
-    assert verdict_of([a_test(*YES), a_test(*NO)]) == "not supported"
-    assert verdict_of([a_test(*YES), a_test(*OPEN_)]) == "cannot tell"
-    said = {"id": "F1", "place": "I", "paper": "", "measured": "", "measure": lambda data: []}
-    assert verdict_of(cases(YES), Claim(**said, derivation=True)) == "derivation"
-    assert verdict_of(cases(NO), Claim(**said, derivation=True)) == "not supported"
-    assert verdict_of(cases(NO), Claim(**said, modal=True)) == "not seen"
+    assert verdict_of(a_test(*YES), a_test(*NO)) == "not supported"
+    assert verdict_of(a_test(*YES), a_test(*OPEN_)) == "cannot tell"
+    assert verdict_of(*cases(YES), derivation=True) == "derivation"
+    assert verdict_of(*cases(NO), derivation=True) == "not supported"
+    assert verdict_of(*cases(NO), modal=True) == "not seen"
     for none in ([], [a_test(*YES, prepared="slowly")]):
-        with pytest.raises(ValueError, match="own preparation"):
-            verdict_of(none)
-
-
-def test_the_second_column_follows_from_other_preparations_alone():
-    others = [a_test(*ends, prepared="slowly") for ends in (YES, NO, OPEN_)]
-    assert elsewhere_of(cases(YES, NO)) == "not tried" and elsewhere_of([*cases(NO), others[0]]) == "yes"
-    assert elsewhere_of(others) == "no" and elsewhere_of(others[::2]) == "cannot tell"
-    assert verdict_of([*cases(YES), *others[1:]]) == "supported"
+        assert judge(a_claim(none), Data({})).verdict == "not measured"
 
 
 def test_a_row_lists_its_cases_and_preparations():
     tests = [a_test(*YES, case="slow"), a_test(*NO, case="fast"), a_test(*NO, prepared="otherwise")]
-    claim = Claim("F1", "I", "", "", lambda data: tests, here="From {0} to {1}.")
-    entry = judge(claim, Data({}))
+    entry = judge(a_claim(tests, here="From {0} to {1}."), Data({}))
     assert entry.here == "From 1.5 (1 to 2) to 2.55 (2.1 to 3)."
     assert entry.cases == "Supported for: slow. Not supported for: fast."
     assert entry.preparations == "Fails: otherwise." and (entry.verdict, entry.elsewhere) == ("in part", "no")
-    assert Verdict(claim, "supported", tuple(tests[:1])).cases == ""
+    assert judge(a_claim(tests[:1]), Data({})).cases == ""
 
 
 def test_a_star_marks_verdicts_that_hang_on_a_threshold():
@@ -607,12 +609,10 @@ def test_a_star_marks_verdicts_that_hang_on_a_threshold():
 
         return judge(Claim("F1", "I", "", "", measure), Data({})).star
 
-    assert star(20.0) == star(22.0) == star(31.0) == () and star(23.0) == star(29.0) == ("about",)
+    assert star(20.0) == star(22.0) == star(31.0) == [] and star(23.0) == star(29.0) == ["about"]
 
 
-def test_a_bound_needs_an_end_and_a_number():
-    with pytest.raises(ValueError, match="needs an end"):
-        Bound()
+def test_a_test_needs_a_number():
     with pytest.raises(NotMeasured, match="number: no number"):
         _ = Test("number", Quantity.exact(NAN), Bound(most=1.0)).outcome
 
@@ -627,7 +627,7 @@ def test_strict_bounds_leave_out_their_ends():
 
 def test_sampled_events_lie_at_most_a_term_below_the_papers_force():
     def outcome(low, high):
-        return declared.bound({"sampled": 10}, words()).outcome(Quantity.bracket(low, high))
+        return declared.bound({"sampled": 10}, THRESHOLDS).outcome(Quantity.bracket(low, high))
 
     assert outcome(7.5, 10.0) == "yes"
     assert outcome(7.4, 7.6) == outcome(9.9, 10.1) == "cannot tell"
@@ -649,24 +649,24 @@ STUDY = dataset(
 )
 #: What a claims.yaml may declare, and the numbers that it must give.
 DECLARED = [
-    ({"value": "study.size", "at": {"friction": 0.2, "kind": "b"}}, [(6.0, 6.0)]),
-    ({"value": "study.size", "over": {"friction": "max", "kind": "min"}}, [(4.0, 4.0)]),
-    ({"value": "study.size", "at": {"kind": "a"}, "over": {"friction": "last"}, "scale": 0.5}, [(2.0, 2.0)]),
+    ({"value": "study.size", "at": {"friction": 0.2, "kind": "b"}}, (6.0, 6.0)),
+    ({"value": "study.size", "over": {"friction": "max", "kind": "min"}}, (4.0, 4.0)),
+    ({"value": "study.size", "at": {"kind": "a"}, "over": {"friction": "last"}, "per": 2}, (2.0, 2.0)),
     (
         {"value": "study.size", "at": {"kind": "a"}, "where": {"friction": [0, 0.5]}, "over": {"friction": "last"}},
-        [(2.0, 2.0)],
+        (2.0, 2.0),
     ),
-    ({"value": "study.ends", "at": {"friction": 0}, "over": {"estimate": "interval"}}, [(1.0, 3.0)]),
-    ({"trend": "study.size", "along": "friction", "at": {"kind": "a"}}, [(2.0, 2.0)]),
-    ({"trend": "study.size", "along": "friction", "at": {"kind": "b"}, "falling": True}, [(1 / 3, 1 / 3)]),
-    ({"event": "opens", "friction": 0.2}, [(1.0, 1.5)]),
-    ({"event": "opens", "friction": 0.2, "per": {"event": "opens", "friction": 1}}, [(0.25, 0.5)]),
-    ({"event": "opens", "at": {"side": "rough"}}, [(3.0, 4.0)]),
+    ({"value": "study.ends", "at": {"friction": 0}, "over": {"estimate": "interval"}}, (1.0, 3.0)),
+    ({"value": "study.size", "rises": "friction", "at": {"kind": "a"}}, (2.0, 2.0)),
+    ({"value": "study.size", "falls": "friction", "at": {"kind": "b"}}, (1 / 3, 1 / 3)),
+    ({"event": "opens", "at": {"friction": 0.2}}, (1.0, 1.5)),
+    ({"event": "opens", "at": {"friction": 0.2}, "per": {"event": "opens", "at": {"friction": 1}}}, (0.25, 0.5)),
+    ({"event": "study_events.opens", "at": {"side": "rough"}}, (3.0, 4.0)),
     (
         {"value": "study.size", "at": {"friction": 0.2}, "unlike": {"value": "study.size", "at": {"friction": 1}}},
-        [(0.75, 0.75)],
+        (0.75, 0.75),
     ),
-    ({"value": "study.size", "at": {"kind": "b"}, "over": {"friction": "average"}}, [(11 / 3, 11 / 3)]),
+    ({"value": "study.size", "at": {"kind": "b"}, "over": {"friction": "average"}}, (11 / 3, 11 / 3)),
 ]
 
 
@@ -679,9 +679,9 @@ def test_a_declared_test_measures_what_it_says(spec, ends):
         high=("event", [1.5, 4.0]),
         side=("event", ["smooth", "rough"]),
     )
-    data = Data({"group": {"study": STUDY, "events": table_}})
-    rows = list(declared._rows("group", [spec], data))
-    np.testing.assert_allclose([(found.low, found.high) for _, found in rows], ends)
+    data = Data({"group": {"study": STUDY, "events": table_, "study_events": table_}})
+    found = declared._number("group", spec, data)
+    np.testing.assert_allclose((found.low, found.high), ends)
 
 
 @pytest.mark.parametrize(
@@ -697,20 +697,25 @@ def test_a_declared_test_measures_what_it_says(spec, ends):
     ],
 )  # fmt: skip
 def test_bounds_are_declared_by_terms_or_numbers(bound, least, most):
-    made = declared.bound(bound, words())
+    made = declared.bound(bound, THRESHOLDS)
     assert (made.least, made.most) == pytest.approx((least, most))
     kind, *_ = bound
     assert made.strict == (kind == "less than") and bool(made.word) == (kind not in ("between", "less than"))
 
 
-def test_what_is_declared_wrongly_is_refused(tmp_path):
-    with pytest.raises(stored_table.ClaimsError, match="bound roughly: must be"):
-        declared.bound({"roughly": 20}, words())
-    assert declared.bound({"more than": 0, "word": "visible"}, words()) == Bound(0.0, word="visible", strict=True)
-    assert declared.bound({"at least": "rare"}, words()) == Bound(RARE)
-    for wrong, message in (({"bound": {}}, "needs one of"), ({"event": "a", "sizes": 1}, "unknown key sizes")):
-        with pytest.raises(stored_table.ClaimsError, match=message):
-            declared._check("group: F1", wrong)
+def test_a_bound_of_no_kind_is_refused():
+    with pytest.raises(ClaimsError, match="bound roughly: must be"):
+        declared.bound({"roughly": 20}, THRESHOLDS)
+    assert declared.bound({"more than": 0, "word": "visible"}, THRESHOLDS) == Bound(0.0, word="visible", strict=True)
+    assert declared.bound({"at least": "rare"}, THRESHOLDS) == Bound(RARE)
+
+
+def test_the_docs_name_all_that_can_be_declared():
+    page = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
+    texts = (yaml.safe_load(path.read_text(encoding="utf-8")) for path in PAPER.path.glob("*/claims.yaml"))
+    said = {key for text in texts for claim in text.values() for key in claim}
+    names = {*declared._KEYS, *declared._ENDS, *declared._OVER, *said} - set(WORDS)
+    assert [name for name in names if not re.search(f"`{name}[`:]", page)] == []
 
 
 def test_a_function_yields_a_number_for_each_test(tmp_path, monkeypatch):
@@ -745,12 +750,16 @@ def test_a_function_yields_a_number_for_each_test(tmp_path, monkeypatch):
         made("less").measure(Data({}))
     with pytest.raises(NotMeasured, match=r"^data/example_of_claims.nc: no states$"):
         made("lacks").measure(Data({}))
-    with pytest.raises(stored_table.ClaimsError, match="F1: numbers: more, must be a function"):
+    with pytest.raises(ClaimsError, match="F1: numbers: more, must be a function"):
         made("more")
+    for wrong, message in (("{bound: {}}", "needs event or value"), ("{event: a, sizes: 1}", "unknown key sizes")):
+        (package / "claims.yaml").write_text(claim % f"test: {wrong}")
+        with pytest.raises(ClaimsError, match=f"example_of_claims: F1: .*{message}"):
+            declared.read("example_of_claims")
 
 
-def test_a_number_says_its_method_and_how_many_packings_it_has(good):
-    rows = {row["id"]: row["tests"] for row in table.document(table.evaluate(Data(good), EVERY))["table"]}
+def test_a_number_says_its_method_and_how_many_packings_it_has(entries):
+    rows = {row["id"]: row["tests"] for row in table.document(entries)["table"]}
     assert rows["F2"][0]["method"] == "both ends of the bracket" and rows["F2"][0]["samples"] == 1
     assert rows["D1"][0]["method"] == "quantile of means of 15, bootstrap" and rows["D1"][0]["samples"] == 8
     assert rows["D3a"][0]["method"] == "Kendall's tau of the draws"
@@ -758,16 +767,10 @@ def test_a_number_says_its_method_and_how_many_packings_it_has(good):
     assert (rows["U2"][0]["method"], rows["U2"][0]["samples"]) == ("exact binomial interval", 8)
 
 
-def a_path(force, off):
-    """A case of linear ranges whose response at x = 0 is off by so much of itself."""
-    centre = 1.0 + np.array(off)[:, None] * np.zeros((1, len(force))) if np.ndim(off) < 2 else 1.0 + np.array(off)
-    return dataset(applied_force=("step", np.array(force)), response_at_centre=(("realization", "step"), centre))
-
-
 def test_a_path_that_ends_inside_its_linear_range_is_censored():
     """Whether such a packing has a shorter range than a lattice that leaves its own later is not known."""
-    path = a_path([0.1, 1.0, 11.0], [[0.0, 0.001, 0.002], [0.0, 0.02, 0.3], [0.0, 0.0, np.nan]])
-    ends = linear_ends(path, 0.01)
+    off = np.array([[0.0, 0.001, 0.002], [0.0, 0.02, 0.3], [0.0, 0.0, NAN]])
+    ends = linear_ends(np.array([0.1, 1.0, 11.0]), off, 0.01)
     assert ends[0].tolist() == [11.0, np.inf] and ends[2].tolist() == [1.0, np.inf]
     assert 0.1 < ends[1, 0] == ends[1, 1] < 1.0
     lattice = np.array([41.0, 41.0])
@@ -829,7 +832,7 @@ def test_the_power_of_the_trend(cases, scatter, step, power):
     def line():
         for centre in np.arange(cases) * np.log(step) + scatter * rng.standard_normal(cases):
             draws = np.exp(centre + scatter * rng.standard_normal(500))
-            yield Crossover(Quantity.exact(np.exp(centre)), FOUND, draws, draws)
+            yield Crossover(Quantity.exact(np.exp(centre)), FOUND, np.stack([draws, draws]))
 
     assert np.mean([trend(list(line())).low > 0.0 for _ in range(200)]) == pytest.approx(power, abs=0.07)
 
@@ -893,17 +896,11 @@ def test_a_size_in_whole_steps_is_known_in_the_mean():
             assert found.low - 1e-9 <= smooth.mean() <= found.high + 1e-9
 
 
-def test_samples_of_realizations_that_differ_or_not():
-    rng = np.random.default_rng(0)
-    apart, alike = rng.normal(3.0, 0.5, 60), rng.normal(0.0, 0.5, 60)
-    assert evident_samples(apart, alike, 0.95).low > 0.9
-    assert evident_samples(alike, alike, 0.95).high == 0.0
-
-
 def test_what_is_not_ordered_widens_a_trend():
-    one = Crossover(Quantity.exact(1.0), FOUND, np.ones(50), np.ones(50))
-    later = Crossover(Quantity.exact(2.0), FOUND, 2.0 * one.low, 2.0 * one.low)
-    bound = Crossover(Quantity.bracket(1.5, NAN), FOUND, 1.5 * one.low, np.inf * one.low)
+    one, later, bound = (
+        Crossover(Quantity.bracket(low, high), FOUND, np.tile([[low], [high]], 50))
+        for low, high in ((1.0, 1.0), (2.0, 2.0), (1.5, np.inf))
+    )
     assert (trend([one, later]).low, trend([later, one]).high) == (1.0, -1.0)
     assert (trend([one, bound]).low, trend([later, bound]).low, trend([later, bound]).high) == (1.0, -1.0, 1.0)
 
@@ -926,35 +923,26 @@ def test_a_median_of_brackets_holds_what_is_not_known_of_each():
         over_brackets(few[:2])
 
 
-def test_every_term_is_used_and_no_other(good):
-    used = {test.bound.word for entry in table.evaluate(Data(good), EVERY) for test in entry.tests}
+def test_every_term_is_used_and_no_other(entries):
+    used = {test.bound.word for entry in entries for test in entry.tests}
     assert used - {""} == set(WORDS)
-    assert words("about", 2.0)["about"] == 2.0 * WORDS["about"][0]
-    with pytest.raises(KeyError):
-        words("roughly", 2.0)
 
 
-def test_labels_are_found_exactly():
-    data = dataset({"stop": [1e-9, 1e-13], "friction": ("stop", [0.0, 0.1])}, value=("stop", [1.0, 2.0]))
-    assert float(at(data, stop=1e-13)["value"]) == 2.0
-    with pytest.raises(NotMeasured, match="stop = 1e-11"):
-        at(data, stop=1e-11)
-
-
-def test_labels_of_one_dimension_are_found_together():
-    data = dataset(
-        {"packing": ("case", ["a", "a", "b"]), "force": ("case", [1.0, 2.0, 2.0])}, size=("case", [1.0, 2.0, 3.0])
-    )
-    assert float(at(data, packing="a", force=2.0)["size"]) == 2.0
-    with pytest.raises(NotMeasured, match="force = 1"):
-        at(data, packing="b", force=1.0)
+def test_labels_are_found_exactly_and_together():
+    data = dataset({"stop": [1e-9, 1e-13], "kind": ("stop", ["a", "b"])}, value=("stop", [1.0, 2.0]))
+    assert float(at(data, stop=1e-13, kind="b")["value"]) == 2.0
+    for labels in ({"stop": 1e-11}, {"kind": "a", "stop": 1e-13}):
+        with pytest.raises(NotMeasured, match=f"stop = {labels['stop']}"):
+            at(data, **labels)
+    with pytest.raises(NotMeasured, match=r"pile_dip\.nc holds no dataset piles"):
+        Data({"pile_dip": {"stress": data}}).get("pile_dip", "piles")
 
 
 def test_the_stored_table_is_the_one_file_of_verdicts(tmp_path):
     store.write(tmp_path / "data" / "pile_dip.nc", pile_study())
     found = table.write(tmp_path / "claims.json", tmp_path / "data", tmp_path / "none.nc")
     stored = json.loads((tmp_path / "claims.json").read_text())
-    assert stored == found == stored_table.read(tmp_path / "claims.json")
+    assert stored == found == table.read(tmp_path / "claims.json")
     assert [row["id"] for row in stored["table"]] == [claim.id for claim in table.claims_in(PAPER)] and stored[
         "scheme"
     ] == list(SCHEME)
@@ -971,29 +959,30 @@ def test_the_stored_table_is_the_one_file_of_verdicts(tmp_path):
     damaged = ({**stored, "counts": {}}, {**stored, "table": [{"id": "P1"}]}, {**stored, "table": 3})
     for partial in (*damaged, {"counts": {}, "table": []}):
         (tmp_path / "claims.json").write_text(json.dumps(partial))
-        with pytest.raises(stored_table.ClaimsError, match="is not a whole table of claims"):
-            stored_table.read(tmp_path / "claims.json")
+        with pytest.raises(ClaimsError, match="is not a whole table of claims"):
+            table.read(tmp_path / "claims.json")
 
 
 def test_the_counts_in_words(good):
     pile = put("pile_dip", "stress", "dip", 0.0)(good)["pile_dip"]
     data = Data({**{k: v for k, v in good.items() if k != "symmetry_breaking"}, "pile_dip": pile})
-    found = table.document(table.evaluate(data, EVERY))
-    ordered, disorder, extension, firm = stored_table.quoted(found).splitlines()
+    entries = judged(data.groups)
+    found = table.document(entries)
+    ordered, disorder, extension, firm = table.quoted(found).splitlines()
     number = sum(found["counts"]["ordered"].values())
     assert ordered == (
         f"Of {number} statements on ordered slabs, piles, theory and method: {number - 3 - len(ALGEBRA)} supported, "
         f"1 not supported, {len(ALGEBRA)} derivations, 2 not measured."
     )
-    beyond = sum(claim.extension for claim in EVERY)
+    beyond = sum(claim.part == "extension" for claim in EVERY)
     assert disorder.endswith("1 not supported.") and extension.endswith(f": {beyond} supported.")
-    assert stored_table.quoted(table.document(table.evaluate(data, [c for c in EVERY if c.extension]))) == extension
+    assert table.quoted(table.document([e for e in entries if e.claim.part == "extension"])) == extension
     tried = sum(row["elsewhere"] == "yes" and row["part"] != "extension" for row in found["table"])
     assert f"Under another preparation {tried} were tried: {tried} hold, 0 fail, 0 cannot be told." in firm
 
 
 def other_ways(data):
-    return [(way.prepared, ends) for way, ends in preparations.along(data, "crossover", [0.2])]
+    return list(preparations.along(data, lambda other: other.event(FRICTION, "crossover", friction=0.2)))
 
 
 def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path, good):
@@ -1003,7 +992,6 @@ def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path
     made = store.read_attributes(path)
     assert made["source"] == "preparation.nc" and made["parameters"] == "ways: []" and len(made["source_sha256"]) == 64
     data = table.collect(tmp_path / "none", path)
-    assert data.event("preparation", "crossover", 0.2) == Data(good).event("preparation", "crossover", 0.2)
     assert other_ways(data) == other_ways(Data(good)) != []
     assert table.collect(tmp_path / "none", tmp_path / "none.nc").groups == {}
     store.write(tmp_path / "other.nc", pile_study(), {"group": "pile_dip"})
@@ -1013,17 +1001,11 @@ def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path
 
 def test_the_readme_quotes_the_stored_table():
     """The counts in words; and verdicts in its table, by the claims that the comment before the table names."""
-    found = stored_table.read(ROOT / "figures" / "claims.json")
+    found = table.read(ROOT / "figures" / "claims.json")
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert [line for line in stored_table.quoted(found).splitlines() if line not in readme] == []
-    named, table = re.search(r"<!-- verdicts of figures/claims.json: (.*?) -->\n(.*?)\n\n", readme, re.DOTALL).groups()
-    quoted = [line.strip("| ").split(" | ")[-1] for line in table.splitlines()[2:]]
+    assert [line for line in table.quoted(found).splitlines() if line not in readme] == []
+    named, rows = re.search(r"<!-- verdicts of figures/claims.json: (.*?) -->\n(.*?)\n\n", readme, re.DOTALL).groups()
+    quoted = [line.strip("| ").split(" | ")[-1] for line in rows.splitlines()[2:]]
     verdicts = {row["id"]: row["verdict"] for row in found["table"]}
     said = {one: verdict.partition(",")[0] for one, verdict in zip(named.split(", "), quoted, strict=True)}
     assert said == {one: verdicts[one] for one in said}
-
-
-def test_datasets_without_a_group_are_named():
-    data = Data({"pile_dip": {"stress": xr.Dataset()}})
-    with pytest.raises(NotMeasured, match=r"pile_dip\.nc holds no dataset piles"):
-        data.get("pile_dip", "piles")

@@ -45,11 +45,6 @@ def bumps(distance: float) -> np.ndarray:
     return np.exp(-(((X - distance) / 6.0) ** 2)) + np.exp(-(((X + distance) / 6.0) ** 2))
 
 
-def bootstrap(ensemble: Ensemble, x: np.ndarray, width: float, *, draws: int, seed: int) -> np.ndarray:
-    """(draws, k) shapes of the means of ensembles drawn with replacement."""
-    return shape(x, ensemble.means(weights(len(ensemble.response), draws, seed)), width)
-
-
 def test_shape_tells_one_peak_from_two() -> None:
     assert shape(X, bumps(0.0), 6.0) < 0.0
     assert shape(X, bumps(12.0), 6.0) > 0.5
@@ -102,18 +97,11 @@ def make_ensemble(spread: float, size: int = 40) -> Ensemble:
 
 
 def test_bootstrap_interval_narrows_with_the_scatter_and_holds_the_crossover() -> None:
-    widths = []
-    for spread in (2.0, 0.2):
-        ensemble = make_ensemble(spread)
-        value, kind = crossover(ensemble.force, shape(X, ensemble.mean(), 6.0))
-        assert kind == FOUND
-        drawn = [crossover(ensemble.force, row) for row in bootstrap(ensemble, X, 6.0, draws=300, seed=0)]
-        found = [force for force, kind in drawn if kind == FOUND]
-        low, high = np.quantile(found, [0.025, 0.975])
-        assert low <= value <= high
-        widths.append(high - low)
-    assert widths[1] < 0.3 * widths[0]
-    assert widths[1] > 0.0
+    wide, narrow = (cross(make_ensemble(spread), X, 6.0, numbers=(5,), draws=300, seed=0) for spread in (2.0, 0.2))
+    for found in (wide, narrow):
+        assert found.kind == FOUND
+        assert found.interval[0] <= found.force <= found.interval[-1]
+    assert 0.0 < np.ptp(narrow.interval) < 0.3 * np.ptp(wide.interval)
 
 
 def test_mean_leaves_out_what_is_not_at_rest() -> None:
@@ -421,6 +409,6 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
 def test_the_tolerance_is_the_bound_of_the_word() -> None:
     """So that the figure and the claims tell one peak from two alike; others are half and twice as large."""
     section = yaml.safe_load((ROOT / "params.yaml").read_text())["phase_diagram"]
-    visible = words.words()["visible"]
+    visible = words.THRESHOLDS["visible"]
     assert section["tolerance"] == visible
     assert {factor * visible for factor in words.FACTORS} <= set(section["other_tolerances"])

@@ -17,8 +17,8 @@ from granular_response.store import files as store
 from granular_response.store.variables import variable
 from granular_response_paper import report
 from granular_response_paper.claims import table as claims
-from granular_response_paper.claims.claim import Data
-from granular_response_paper.claims.stored import ClaimsError
+from granular_response_paper.claims.claim import ClaimsError, Data
+from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.sensitivity import simulate as sensitivity
 from granular_response_paper.registry import PAPER
 from granular_response_paper.report import against, explorer, readings
@@ -110,7 +110,7 @@ def root(tmp_path_factory):
     (folder / "benchmarks" / "summary.json").write_text(json.dumps({"goals": [goal]}))
     (folder / "requirements.lock").write_text("# pinned\nnumpy==2.9.1\nsome-other==1.0\n")
     data = Data({"friction_linear_range": friction_study()})
-    judged = claims.document(claims.evaluate(data, claims.claims_in(PAPER)))
+    judged = claims.document([judge(claim, data) for claim in claims.claims_in(PAPER)])
     (folder / "figures" / "claims.json").write_text(json.dumps(judged))
     return folder
 

@@ -1,5 +1,3 @@
-"""The machinery of claims: what the paper says, the tests on stored data, bounds of qualitative terms, verdicts.
-
-What is claimed stands beside each figure group: ``claims.yaml`` holds the sentences with the tests that can be
-declared (:mod:`declared`), ``claims.py`` the functions of the others; :mod:`table` collects and judges all of them.
+"""What the paper says, set against stored data: beside each figure group ``claims.yaml`` declares the claims, which
+:mod:`declared` describes, and ``claims.py`` has the functions of some; :mod:`table` judges all of them.
 """

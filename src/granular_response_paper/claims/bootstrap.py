@@ -9,40 +9,27 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import betaincinv
 
-from granular_response.state import FloatArray
+from .claim import Quantity, needs
 
-from .claim import NotMeasured, Quantity
-
-Statistic = Callable[..., FloatArray]
-
-#: Draws, the part of them that an interval leaves out on both sides together, and its levels.
-DRAWS, OUTSIDE = 2000, 0.05
-LEVELS = (0.5 * OUTSIDE, 1.0 - 0.5 * OUTSIDE)
-
-#: A part of samples below this is rare: they lie outside of the central 95 %.
+#: Number of draws, and the ends of an interval that holds 95 % of them: a part of samples below the first is rare.
+DRAWS, LEVELS = 2000, (0.025, 0.975)
 RARE = LEVELS[0]
 
 
-def of_draws(
-    value: float, draws: ArrayLike | tuple[FloatArray, FloatArray], test: str, samples: int, method: Any = "linear"
-) -> Quantity:
-    """A number with 95 % of its draws (d,), by the quantiles of numpy's ``method``.
-
-    Draws that are known within an interval are the two (d,) of its lower and its upper ends.
-    """
-    ends = draws if isinstance(draws, tuple) else (draws, draws)
-    low, high = (float(np.quantile(end, level, method=method)) for end, level in zip(ends, LEVELS, strict=True))
+def of_draws(value: float, draws: ArrayLike, test: str, samples: int, method: Any = "linear") -> Quantity:
+    """A number with 95 % of its draws (d,), or of the ends (2, d) between which each lies, by numpy's ``method``."""
+    ends = np.broadcast_to(draws, (2, np.shape(draws)[-1]))
+    low, high = (float(np.quantile(one, level, method=method)) for one, level in zip(ends, LEVELS, strict=True))
     return Quantity(float(value), low, high, "confidence", test, samples)
 
 
 def _picked(number: int) -> NDArray[np.intp]:
     """(d, number) which realizations each draw has. NotMeasured for less than three, which do not show a spread."""
-    if number < 3:
-        raise NotMeasured(f"{number} realizations: an interval needs three or more")
+    needs(number >= 3, f"{number} realizations: an interval needs three or more")
     return np.random.default_rng(0).integers(0, number, (DRAWS, number))
 
 
-def over_realizations(values: ArrayLike, statistic: Statistic = np.median) -> Quantity:
+def over_realizations(values: ArrayLike, statistic: Callable[..., Any] = np.median) -> Quantity:
     """``statistic`` (np.median, np.mean, ...: called with ``axis``) of finite ``values`` (r,) with its interval.
 
     Raises NotMeasured with fewer than three values.
@@ -61,29 +48,26 @@ def part_of(hits: ArrayLike, unknown: ArrayLike = False) -> Quantity:
     them out. Raises NotMeasured without realizations.
     """
     found = np.asarray(hits, dtype=bool)
-    censored = np.broadcast_to(np.asarray(unknown, dtype=bool), found.shape)
-    number, hit = found.size, int(np.count_nonzero(found & ~censored))
-    most = hit + int(np.count_nonzero(censored))
-    if not number:
-        raise NotMeasured("no realizations")
+    censored = np.broadcast_to(unknown, found.shape)
+    number, hit, known = found.size, int((found & ~censored).sum()), int((~censored).sum())
+    needs(number, "no realizations")
+    most = hit + number - known
     low = float(betaincinv(hit, number - hit + 1, LEVELS[0])) if hit else 0.0
     high = float(betaincinv(most + 1, number - most, LEVELS[1])) if most < number else 1.0
-    known = number - (most - hit)
-    value = hit / known if known else float("nan")
-    return Quantity(value, low, high, "confidence", "exact binomial interval", number)
+    return Quantity(hit / known if known else np.nan, low, high, "confidence", "exact binomial interval", number)
 
 
-def over_brackets(each: Sequence[Quantity]) -> Quantity:
-    """Median of realizations of which each is known within an interval of its own, some without an upper end.
+def over_brackets(each: Sequence[Quantity], median: Callable[..., Any] = np.median) -> Quantity:
+    """Median of realizations, each known within an interval of its own, with the interval that its draws leave.
 
-    The interval is that of the draws, from the medians of lower ends to those of upper ends: it holds what realizations
-    differ by and what is not known of each.
-
-    Raises NotMeasured with fewer than three.
+    It holds what realizations differ by and what is not known of each, some of which have no upper end. One realization
+    is what it is; raises NotMeasured for two or none.
     """
+    if len(each) == 1:
+        return each[0]
     picked = _picked(len(each))
     low, high = (np.array([getattr(one, end) for one in each]) for end in ("low", "high"))
-    middle = float(np.median([one.value if np.isfinite(one.value) else 0.5 * (one.low + one.high) for one in each]))
-    middle = middle if np.isfinite(middle) else float("nan")
-    drawn = np.median(low[picked], axis=1), np.median(high[picked], axis=1)
+    middle = median([one.value if np.isfinite(one.value) else 0.5 * (one.low + one.high) for one in each], axis=0)
+    drawn = [median(end[picked], axis=1) for end in (low, high)]
+    middle = middle if np.isfinite(middle) else np.nan
     return of_draws(middle, drawn, "bootstrap of the median", len(each), "inverted_cdf")

@@ -1,8 +1,7 @@
-"""A claim, its tests, their bounds and the verdict that follows.
+"""A claim is a sentence with one primary test, which the text fixes; its tests are numbers against bounds.
 
-A claim is one sentence of the paper with one primary test, fixed by the text. Where the text leaves a parameter open,
-the test is made for each of its values (``case``). Tests with the same case hold together. Tests in another preparation
-of the packing (``prepared``) decide nothing but the second column.
+Where the text leaves a parameter open, the test is made for each of its values (``case``), and tests with the same case
+hold together. Tests in another preparation of the packing (``prepared``) decide nothing but the second column.
 """
 
 from __future__ import annotations
@@ -11,33 +10,27 @@ import math
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 
 from granular_response.errors import GranularError
 
-from .words import Words
-from .words import words as thresholds
+from .words import THRESHOLDS
 
 #: What an interval means: none (one deterministic run); the event lies inside; 95 % of the bootstrap draws; the
 #: smallest to the largest value.
 Kind = Literal["none", "bracket", "confidence", "range"]
 
-#: How a number is set against its bound if nothing else is said, by the kind of its interval.
-METHODS: dict[Kind, str] = {
-    "none": "the number itself",
-    "bracket": "both ends of the bracket",
-    "confidence": "both ends of the 95 % interval",
-    "range": "both ends of the range",
-}
-
 Outcome = Literal["yes", "no", "cannot tell"]
 
-#: Labels are the same if they differ by less than this part of them.
-_SAME = 1e-9
+#: The group whose events are those of other preparations.
+PREPARATION = "preparation"
+
+
+class ClaimsError(GranularError):
+    """A claim that is not declared as it must be, nothing to judge, or no stored table. The message is one line."""
 
 
 class NotMeasured(GranularError):
@@ -76,18 +69,12 @@ class Quantity:
 
     def per(self, other: Quantity) -> Quantity:
         """The ratio, with the interval that both intervals leave; both positive. NotMeasured if ``other`` is 0."""
-        if other.high == 0.0:
-            raise NotMeasured("nothing to compare with")
+        needs(other.high != 0.0, "nothing to compare with")
         kind: Kind = other.kind if self.kind == "none" else self.kind
         low = self.low / other.high
         high = self.high / other.low if other.low > 0.0 else float("inf")
         value = self.value / other.value if other.value else float("nan")
         return Quantity(value, low, high, kind, self.method or other.method, max(self.samples, other.samples))
-
-    @property
-    def tested(self) -> str:
-        """How it is set against its bound."""
-        return self.method or METHODS[self.kind]
 
     @property
     def happens(self) -> bool:
@@ -99,20 +86,18 @@ class Quantity:
         if self.kind == "none" or (self.happens and low == high):  # in as many digits as are shown
             return shown(self.value if math.isfinite(self.value) else self.low, unit)
         ends = f"{low} to {high}" if self.happens else f"above {low}"
-        if self.kind == "bracket":
-            return ends
-        return f"{shown(self.value, unit)} ({ends})" if math.isfinite(self.value) else ends
+        whole = self.kind != "bracket" and math.isfinite(self.value)
+        return f"{shown(self.value, unit)} ({ends})" if whole else ends
 
 
 def shown(value: float, unit: str) -> str:
     return f"{100.0 * value:.3g} %" if unit == "%" else f"{value:.4g}{' ' + unit if unit else ''}"
 
 
-@dataclass(frozen=True)
-class Bound:
+class Bound(NamedTuple):
     """What the text asks of a number: from ``least`` to ``most``, or with ``strict`` between them.
 
-    ``word`` is the qualitative term whose threshold set it, if any did. Raises ValueError without an end.
+    ``word`` is the qualitative term whose threshold set it, if any did.
     """
 
     least: float = -math.inf
@@ -120,14 +105,8 @@ class Bound:
     word: str = ""
     strict: bool = False
 
-    def __post_init__(self) -> None:
-        if not (self.least > -math.inf or self.most < math.inf):
-            raise ValueError("a bound needs an end")
-
     def outcome(self, found: Quantity) -> Outcome:
         """Yes with the whole interval inside, no with all of it outside, cannot tell otherwise."""
-        if math.isnan(found.low) or math.isnan(found.high):
-            raise NotMeasured("no number is stored")
         low, high = found.low, found.high
         if self.strict:
             inside = self.least < low and (high < self.most or self.most == math.inf)
@@ -164,26 +143,20 @@ class Test:
 
     @property
     def outcome(self) -> Outcome:
-        try:
-            return self.bound.outcome(self.found)
-        except NotMeasured as missing:
-            raise NotMeasured(f"{self.what}: {missing}") from None
+        needs(not np.isnan([self.found.low, self.found.high]).any(), f"{self.what}: no number is stored")
+        return self.bound.outcome(self.found)
 
 
-#: What the function of a claim yields: for each case its name and a number for each test.
+class Case(NamedTuple):
+    """A value of what the text leaves open, what its number is ``of``, and the preparation if not the paper's."""
+
+    name: str = ""
+    of: str = ""
+    prepared: str = ""
+
+
+#: What the function of a claim yields: for each case its name, or a :class:`Case`, and a number for each test.
 Numbers = Iterator[tuple[Any, ...]]
-
-
-class Case(str):
-    """The name of a value of what the text leaves open, what its number is ``of``, and the preparation if another."""
-
-    of: str
-    prepared: str
-
-    def __new__(cls, name: str = "", of: str = "", prepared: str = "") -> Case:
-        case = super().__new__(cls, name)
-        case.of, case.prepared = of, prepared
-        return case
 
 
 @dataclass(frozen=True)
@@ -202,7 +175,7 @@ class Claim:
     measure: Callable[[Data], Sequence[Test]] = field(repr=False)
     group: str = ""
     here: str = ""
-    figures: tuple[int, ...] = ()
+    figures: Sequence[int] = ()
     source: Literal["paper", "literature", "hypothesis"] = "paper"  #: whose sentence it is
     modal: bool = False
     derivation: bool = False
@@ -210,35 +183,36 @@ class Claim:
     remark: str = ""
 
     @property
-    def extension(self) -> bool:
-        """Whether it goes beyond what the paper measured, so that it is counted apart."""
-        return self.id.startswith("B")
+    def part(self) -> str:
+        """The part of the table in which it stands: what goes beyond the paper is counted apart."""
+        return "extension" if self.id.startswith("B") else "disorder" if self.disorder else "ordered"
 
 
+@dataclass(frozen=True)
 class Data:
-    """Stored datasets by figure group; a missing one raises NotMeasured.
+    """Stored datasets by figure group and name, as ``store.read`` returns them; a missing one raises NotMeasured.
 
-    ``groups`` maps a figure group to its datasets by name, as ``store.read`` returns them; ``words`` are the thresholds
-    under which they are judged.
+    ``words`` are the thresholds under which they are judged, ``prepared`` the labels of another preparation.
     """
 
-    def __init__(self, groups: Mapping[str, Mapping[str, xr.Dataset]], words: Words | None = None) -> None:
-        self.groups, self.words = groups, words or thresholds()
+    groups: Mapping[str, Mapping[str, xr.Dataset]]
+    words: dict[str, float] = field(default_factory=lambda: THRESHOLDS)
+    prepared: dict[str, Any] = field(default_factory=dict)
 
     def get(self, group: str, name: str) -> xr.Dataset:
-        """Dataset ``name`` of ``group``."""
-        if group not in self.groups:
-            raise NotMeasured(f"data/{group}.nc is missing")
-        if name not in self.groups[group]:
-            raise NotMeasured(f"data/{group}.nc holds no dataset {name}")
+        needs(group in self.groups, f"data/{group}.nc is missing")
+        needs(name in self.groups[group], f"data/{group}.nc holds no dataset {name}")
         return self.groups[group][name]
 
-    def event(
-        self, group: str, name: str, friction: float | None = None, table: str = "events", **at_: Any
-    ) -> Quantity:
-        """The bracket of an event in a ``table`` of them, the first with this name, this friction and other labels."""
-        labels = {"name": name, **at_} | ({} if friction is None else {"friction": friction})
-        found = at(self.get(group, table), **labels)
+    def event(self, group: str, name: str, **labels: Any) -> Quantity:
+        """The bracket of an event, ``name`` or ``dataset.name`` if not of ``events``: the first with these labels.
+
+        Without friction it is the same in every preparation: the equilibrium is one minimum, whatever came before.
+        """
+        table, _, name = name.rpartition(".")
+        if self.prepared and labels["friction"] > 0.0:
+            group, labels = PREPARATION, labels | self.prepared
+        found = at(self.get(group, table or "events"), name=name, **labels)
         return Quantity.bracket(float(found["low"]), float(found["high"]))
 
 
@@ -249,7 +223,7 @@ def needs(there: object, what: str) -> None:
 
 
 def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
-    """The first entry with all of the given labels, numbers up to rounding; raises NotMeasured if there is none.
+    """The first entry with all of the given labels, numbers to 1e-9 of them; raises NotMeasured if there is none.
 
     Labels may be of several coordinates along one dimension.
     """
@@ -257,29 +231,18 @@ def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
     for name, label in labels.items():
         (dimension,) = dataset[name].dims
         stored = dataset[name].values
-        same = stored.astype(str) == label if isinstance(label, str) else np.isclose(stored, label, _SAME, 0.0)
+        same = stored.astype(str) == label if isinstance(label, str) else np.isclose(stored, label, 1e-9, 0.0)
         masks[dimension] = masks.get(dimension, True) & same
         needs(masks[dimension].any(), f"nothing is stored at {name} = {label}")
     return dataset.isel({dimension: int(np.flatnonzero(mask)[0]) for dimension, mask in masks.items()})
 
 
-def rise(values: Sequence[Quantity]) -> Quantity:
+def rise(values: Iterable[Quantity]) -> Quantity:
     """The smallest ratio of neighbours among positive ``values``; above 1 if each is larger than the one before."""
     steps = [after.per(before) for before, after in pairwise(values)]
     needs(steps, "fewer than two values to compare")
     value, low, high = (min(getattr(step, name) for step in steps) for name in ("value", "low", "high"))
     return Quantity(value, low, high, steps[0].kind)
-
-
-def first(curve: xr.Dataset, name: str, happened: ArrayLike) -> Quantity:
-    """Between which stored values of the coordinate ``name`` something has ``happened`` first, in their order.
-
-    Raises NotMeasured if it has at the first one.
-    """
-    values, place = curve[name].values, np.flatnonzero(happened)
-    needs(values.size and not (place.size and place[0] == 0), f"no {name} is stored at which it has not happened yet")
-    ends = sorted(values[place[0] - 1 : place[0] + 1]) if place.size else (values[-1], np.nan)
-    return Quantity.bracket(*ends)
 
 
 def materials(study: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:

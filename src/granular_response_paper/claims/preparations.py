@@ -9,57 +9,38 @@ was made: the digest of its content and the parameters of its simulations.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
+from typing import Any
 
 from granular_response.store import files as store
 
-from .claim import Case, Data, NotMeasured, Quantity
-
-GROUP = "preparation"
+from .claim import PREPARATION, Case, Data, NotMeasured
 
 #: The columns of the summary, what it is made of, and where it is kept.
 COLUMNS = ("name", "friction", "wall_friction", "gravity", "ramp_time", "damping_ratio", "low", "high")
-SOURCE = Path("extensions") / "data" / f"{GROUP}.nc"
+SOURCE = Path("extensions") / "data" / f"{PREPARATION}.nc"
 OUTPUT = Path("extensions") / "summary.nc"
 
-#: Of the paper.
-OWN = "gravity at once"
 
+def along(data: Data, measure: Callable[[Data], Any]) -> Iterator[tuple[Case, Any]]:
+    """What is measured in each other preparation that has the events for it, beside smooth walls.
 
-def along(
-    data: Data, event: str, frictions: Sequence[float], own: Mapping[float, Quantity] | None = None
-) -> Iterator[tuple[Case, list[Quantity]]]:
-    """The brackets of an event at some frictions beside smooth walls, in each preparation that has all of them.
-
-    ``own`` has those without friction, which are the same in every preparation: the equilibrium is one minimum,
-    whatever came before. Dashpots are the paper's. There is nothing without the summary.
+    Dashpots are the paper's. There is nothing without the summary.
     """
-    found = {mu: _events(data, event, mu) for mu in frictions if mu > 0.0}
-    for way in found[max(found)] if found else ():
-        if way != OWN and all(way in brackets for brackets in found.values()):
-            yield Case(prepared=way), [found[mu][way] if mu in found else (own or {})[mu] for mu in frictions]
-
-
-def _events(data: Data, name: str, friction: float) -> dict[str, Quantity]:
-    """The brackets of an event by preparation."""
-    if GROUP not in data.groups:
-        return {}
-    found = data.get(GROUP, "events")
-    found = found.isel(event=found["name"].values == name)
-    damping = found["damping_ratio"].values
-    here = np.isclose(found["friction"].values, friction) & (found["wall_friction"].values == 0.0)
-    here &= damping == damping[:1]
-    columns = (found[name].values[here].tolist() for name in ("gravity", "ramp_time", "low", "high"))
-    return {_text(way, ramp): Quantity.bracket(low, high) for way, ramp, low, high in zip(*columns, strict=True)}
-
-
-def _text(gravity: str, ramp_time: float) -> str:
-    if gravity == "slow":
-        return f"gravity grown over {ramp_time:g} sqrt(R/g)"
-    return {"at-once": OWN, "frictionless": "gravity without friction first"}[gravity]
+    if PREPARATION not in data.groups:
+        return
+    events = data.get(PREPARATION, "events")
+    fixed = {"wall_friction": 0.0, "damping_ratio": float(events["damping_ratio"][0])}
+    others = events.isel(event=events["gravity"].values != "at-once")
+    ways = set(zip(others["gravity"].values, others["ramp_time"].values, strict=True))
+    for gravity, ramp in sorted(ways, key=lambda way: (way[0] != "slow", way[1])):
+        name = f"grown over {ramp:g} sqrt(R/g)" if gravity == "slow" else "without friction first"
+        with suppress(NotMeasured):  # not every event is looked for in every preparation
+            found = measure(replace(data, prepared={"gravity": gravity, "ramp_time": ramp} | fixed))
+            yield Case(prepared=f"gravity {name}"), found
 
 
 def write(source: Path = SOURCE, output: Path = OUTPUT) -> Path:
@@ -69,16 +50,15 @@ def write(source: Path = SOURCE, output: Path = OUTPUT) -> Path:
     cannot be written or is the source.
     """
     datasets, attributes = store.read(source), store.read_attributes(source)
-    if attributes.get("group") != GROUP or not set(COLUMNS) <= set(datasets.get("events", ())):
-        raise NotMeasured(f"{source}: holds no events of the group {GROUP}")
-    events = datasets["events"].reset_coords()[list(COLUMNS)]
+    if attributes.get("group") != PREPARATION or not set(COLUMNS) <= set(datasets.get("events", ())):
+        raise NotMeasured(f"{source}: holds no events of the group {PREPARATION}")
     made = {
-        "group": GROUP,
+        "group": PREPARATION,
         "source": source.name,
         "source_sha256": hashlib.sha256(source.read_bytes()).hexdigest(),
         "parameters": attributes.get("parameters", ""),
     }
     output.parent.mkdir(parents=True, exist_ok=True)
     store.check_writable(output, [source])
-    store.write(output, {"events": events}, made)
+    store.write(output, {"events": datasets["events"].reset_coords()[list(COLUMNS)]}, made)
     return output

@@ -1,20 +1,16 @@
-"""The verdict on a claim follows from its tests and is never written by hand.
-
-The scheme, as the page and the notes print it, is :data:`SCHEME`.
-"""
+"""The verdict on a claim follows from its tests, by :data:`SCHEME`, and is never written by hand."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from granular_response_paper import TOO_LITTLE
 
-from .claim import Claim, Data, NotMeasured, Outcome, Test
-from .words import FACTORS, words
+from .claim import Claim, Data, NotMeasured, Outcome, Test, needs
+from .words import FACTORS
 
 SCHEME = (
     "Each sentence has one primary test, which the text fixes: its figure, its forces, its number of samples.",
@@ -39,9 +35,6 @@ MEANINGS: dict[Kind, str] = {
     "not measured": "no stored dataset decides it",
 }
 
-#: The second column.
-Elsewhere = Literal["yes", "no", "cannot tell", "not tried"]
-
 
 def key(kind: str) -> str:
     """Of a verdict in the stored table."""
@@ -54,48 +47,49 @@ def together(outcomes: Iterable[Outcome]) -> Outcome:
     return "no" if "no" in found else "cannot tell" if "cannot tell" in found else "yes"
 
 
-def _outcomes(tests: Sequence[Test], of: str) -> dict[str, Outcome]:
-    """The outcome for each value of what the text leaves open (``of`` "case"), or each preparation ("prepared")."""
-    chosen = [test for test in tests if bool(test.prepared) is (of == "prepared")]
-    names = dict.fromkeys(getattr(test, of) for test in chosen)
-    return {name: together(test.outcome for test in chosen if getattr(test, of) == name) for name in names}
-
-
-def verdict_of(tests: Sequence[Test], claim: Claim | None = None) -> Kind:
-    """Raises ValueError without a test in the paper's preparation."""
-    outcomes = set(_outcomes(tests, "case").values())
-    if not outcomes:
-        raise ValueError("a claim needs a test in the paper's own preparation")
-    if outcomes == {"yes"}:
-        return "derivation" if claim and claim.derivation else "supported"
-    if "yes" in outcomes:
-        return "in part"
-    if "no" in outcomes:
-        return "not seen" if claim and claim.modal else "not supported"
-    return "cannot tell"
-
-
-def elsewhere_of(tests: Sequence[Test]) -> Elsewhere:
-    """Whether the tests hold in every other preparation."""
-    found = _outcomes(tests, "prepared")
-    return together(found.values()) if found else "not tried"
-
-
 @dataclass(frozen=True)
 class Verdict:
-    """On a claim. ``star`` names the qualitative terms whose threshold, halved or doubled, changes it."""
+    """On a claim, by its tests, or what is ``missing`` for them.
+
+    ``star`` names the qualitative terms whose threshold, halved or doubled, changes it.
+    """
 
     claim: Claim
-    verdict: Kind
-    tests: tuple[Test, ...] = ()
+    tests: Sequence[Test] = ()
     missing: str = ""
-    elsewhere: Elsewhere = "not tried"
-    star: tuple[str, ...] = ()
+    star: Sequence[str] = field(default_factory=list)
+
+    def outcomes(self, of: Literal["case", "prepared"]) -> dict[str, Outcome]:
+        """For each value of what the text leaves open, or in each other preparation."""
+        chosen = [test for test in self.tests if bool(test.prepared) is (of == "prepared")]
+        names = dict.fromkeys(getattr(test, of) for test in chosen)
+        return {name: together(test.outcome for test in chosen if getattr(test, of) == name) for name in names}
+
+    @property
+    def verdict(self) -> Kind:
+        """Raises NotMeasured without a test in the paper's preparation."""
+        if self.missing:
+            return "not measured"
+        outcomes = set(self.outcomes("case").values())
+        needs(outcomes, "nothing to test")
+        if outcomes == {"yes"}:
+            return "derivation" if self.claim.derivation else "supported"
+        if "yes" in outcomes:
+            return "in part"
+        if "no" in outcomes:
+            return "not seen" if self.claim.modal else "not supported"
+        return "cannot tell"
+
+    @property
+    def elsewhere(self) -> Literal[Outcome, "not tried"]:
+        """The second column: whether the tests hold in every other preparation."""
+        found = self.outcomes("prepared")
+        return together(found.values()) if found else "not tried"
 
     @property
     def here(self) -> str:
         """What was measured, in a sentence."""
-        if not self.tests:
+        if self.missing:
             return self.missing
         own = [test for test in self.tests if not test.prepared]
         found = [test.found.text(test.unit) for test in own]
@@ -107,13 +101,13 @@ class Verdict:
     @property
     def cases(self) -> str:
         """For which values of what the text leaves open it holds, fails or is open."""
-        found = _outcomes(self.tests, "case")
+        found = self.outcomes("case")
         return _listed(found, "Supported for", "Not supported for", "Cannot tell for") if len(found) > 1 else ""
 
     @property
     def preparations(self) -> str:
         """In which other preparations it holds, fails or is open."""
-        return _listed(_outcomes(self.tests, "prepared"), "Holds", "Fails", "Open")
+        return _listed(self.outcomes("prepared"), "Holds", "Fails", "Open")
 
 
 def _listed(found: Mapping[str, Outcome], *titles: str) -> str:
@@ -129,23 +123,16 @@ def judge(claim: Claim, data: Data) -> Verdict:
 
     def under(word: str, factor: float) -> Kind:
         """The verdict with the threshold of one term changed."""
-        return verdict_of(claim.measure(Data(data.groups, words(word, factor))), claim)
+        changed = data.words | {word: factor * data.words[word]}
+        return Verdict(claim, claim.measure(replace(data, words=changed))).verdict
 
     try:
-        tests = tuple(claim.measure(data))
-        verdict = verdict_of(tests, claim)
-        elsewhere = elsewhere_of(tests)
-        used = sorted({test.bound.word for test in tests if test.bound.word and not test.prepared})
-        star = tuple(word for word in used if any(under(word, f) != verdict for f in FACTORS))
+        found = Verdict(claim, claim.measure(data))
+        verdict, _ = found.verdict, found.elsewhere  # so that what is missing for either shows here
+        used = sorted({test.bound.word for test in found.tests if test.bound.word and not test.prepared})
+        return replace(found, star=[word for word in used if any(under(word, factor) != verdict for factor in FACTORS)])
     except NotMeasured as missing:
-        return Verdict(claim, "not measured", missing=str(missing))
+        return Verdict(claim, missing=str(missing))
     except TOO_LITTLE as error:
         problem = " ".join(f"{type(error).__name__}: {error}".split())
-        return Verdict(claim, "not measured", missing=f"data/{claim.group}.nc holds too little ({problem})")
-    return Verdict(claim, verdict, tests, "", elsewhere, star)
-
-
-def rounded(value: float) -> float | None:
-    """As it is stored: six digits, so that the last ones of a machine do not show; None for nan and inf, which JSON
-    lacks."""
-    return float(f"{value:.6g}") if math.isfinite(value) else None
+        return Verdict(claim, missing=f"data/{claim.group}.nc holds too little ({problem})")

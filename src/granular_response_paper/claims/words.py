@@ -1,15 +1,12 @@
-"""Thresholds of the paper's qualitative terms: one table, used by every claim.
+"""Thresholds of the paper's qualitative terms, such as "about 20 mg": one table, used by every claim.
 
-The paper says "about 20 mg", "almost an order of magnitude", "holds quite well". A verdict needs a bound. These are our
-interpretations of the terms, written when an earlier table of values was known; none is chosen for one claim. A star
-beside a verdict says that it changes with a threshold halved or doubled. Numbers that the paper states itself (1 %,
-1e-22) are no qualitative terms.
+They are our interpretations, written when an earlier table of values was known; none is chosen for one claim. A star
+beside a verdict says that it changes with one of them halved or doubled.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 #: Each term with its threshold, a part of what is compared, and what it says.
 WORDS: dict[str, tuple[float, str]] = {
@@ -39,16 +36,10 @@ WORDS: dict[str, tuple[float, str]] = {
     "several": (3.0, "Several hundred is at least three hundred."),
 }
 
-#: Thresholds by term.
-Words = Mapping[str, float]
+THRESHOLDS = {word: threshold for word, (threshold, _) in WORDS.items()}
 
-#: By what the thresholds are multiplied to see whether a verdict hangs on them.
+#: By what a threshold is multiplied to see whether a verdict hangs on it.
 FACTORS = (0.5, 2.0)
 
-
-def words(word: str | None = None, factor: float = 1.0) -> dict[str, float]:
-    """The thresholds of all terms, that of ``word`` multiplied by ``factor``. Raises KeyError for an unknown one."""
-    found = {name: threshold for name, (threshold, _) in WORDS.items()}
-    if word is not None:
-        found[word] *= factor
-    return found
+#: How far off a response is no longer linear: the text does not say.
+TOLERANCES = (0.01, 0.02, 0.05)

@@ -23,7 +23,7 @@ from granular_response.store import atomic
 from granular_response.store import files as store
 
 from .. import captions
-from ..claims import stored
+from ..claims import table
 from ..claims.verdict import key
 from ..registry import PAPER, Collection, group_member
 from . import against, benchmarks, explorer, markdown, pictures, readings
@@ -90,7 +90,7 @@ def fragments(root: Path, collection: Collection = PAPER) -> dict[str, Callable[
         return {
             "readings.md": lambda: readings.markdown(store.read(data / f"{SENSITIVITY}.nc")),
             "figures.md": lambda: against.markdown(data),
-            "results.md": lambda: results(stored.read(root / stored.OUTPUT)),
+            "results.md": lambda: results(table.read(root / table.OUTPUT)),
         }
     tables = {group: group_member(group, "tables", "markdown", optional=True) for group in collection.groups}
     return {
@@ -138,7 +138,7 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
 
     Its links to files of the project, to those that are there, begin at ``folder``: by default ``figures/``.
     """
-    claims = stored.read(root / stored.OUTPUT)
+    claims = table.read(root / table.OUTPUT)
     start = root / OUTPUT.parent if folder is None else folder
     try:
         shown = pictures.collect(root / "figures", start, embedded=embedded)
@@ -167,7 +167,7 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
         "embedded": embedded,
         "claims": claims,
         "verdicts": [(k["verdict"], key(k["verdict"])) for k in claims["verdicts"]],
-        "parts": {part: text for part, text in stored.PARTS.items() if any(r["part"] == part for r in claims["table"])},
+        "parts": {part: text for part, text in table.PARTS.items() if any(r["part"] == part for r in claims["table"])},
         "results": [(in_short[name], by_id[name]) for name in FIRST if name in by_id],
         "numbers": range(1, captions.NUMBER_OF_FIGURES + 1),
         "first": shown.first,
@@ -191,7 +191,7 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
     try:
         text = template.render(values) + "\n"
     except jinja2.UndefinedError as error:
-        raise ReportError(f"{root / stored.OUTPUT}: is not a whole table of claims: {error}") from None
+        raise ReportError(f"{root / table.OUTPUT}: is not a whole table of claims: {error}") from None
     return text.replace(_SIZE, f"{len(text.encode()) / 1e6:.1f} MB")
 
 

@@ -9,8 +9,7 @@ from granular_response_paper.claims.claim import Data, Numbers, Quantity, at, ne
 
 
 def _case(data: Data, packing: str, force: float, name: str = "means") -> xr.Dataset:
-    study = data.get("experiments", name)
-    return at(study, packing=packing, force_applied=force, angle_applied=90.0).assign_attrs(study.attrs)
+    return at(data.get("experiments", name), packing=packing, force_applied=force, angle_applied=90.0)
 
 
 def holds(data: Data) -> Numbers:  # B19

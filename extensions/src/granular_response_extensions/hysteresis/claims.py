@@ -2,39 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
-import xarray as xr
 
-from granular_response.state import FloatArray
 from granular_response_paper.claims.bootstrap import over_brackets, over_realizations
 from granular_response_paper.claims.claim import Data, Numbers, Quantity, materials
-
-#: Realizations from which on they have an interval of confidence.
-FEWEST = 3
-
-
-def over_packings(each: Sequence[Quantity]) -> Quantity:
-    """One packing as it is; of several the median with its interval, of two what they span."""
-    if len(each) == 1:
-        return each[0]
-    if len(each) >= FEWEST:
-        return over_brackets(each)
-    middle = float(np.median([one.value for one in each]))
-    return Quantity(middle, min(one.low for one in each), max(one.high for one in each), "range")
-
-
-def _brackets(event: xr.Dataset) -> list[Quantity]:
-    return [Quantity.bracket(*ends) for ends in zip(event["low"].values, event["high"].values, strict=True)]
 
 
 def ranges(data: Data) -> Numbers:  # B2
     for name, one in materials(data.get("hysteresis", "events")):
-        linear, reversible = (_brackets(one.sel(event=event)) for event in ("linear_range", "reversible_range"))
-        there = [k for k, end in enumerate(linear) if np.isfinite(end.low)]  # realizations that are
-        if any(linear[k].happens for k in there):
-            yield name, over_packings([reversible[k].per(linear[k]) for k in there])
+        events = one.sel(event=["linear_range", "reversible_range"])[["low", "high"]].to_array()
+        brackets = events.transpose("realization", "event", "variable").values
+        pairs = [tuple(Quantity.bracket(*ends) for ends in both) for both in brackets if np.isfinite(both[0, 0])]
+        if any(linear.happens for linear, _ in pairs):
+            yield name, over_brackets([reversible.per(linear) for linear, reversible in pairs])
 
 
 def repeated(data: Data) -> Numbers:
@@ -42,11 +22,7 @@ def repeated(data: Data) -> Numbers:
     for name, case in materials(data.get("hysteresis", "loops")):
         one = case.isel(turn=int(np.flatnonzero(np.isfinite(case["force"].values))[-1]))
         lost = (one["slid_again"] + one["crossed_again"]).values / one["work"].values
-        numbers = (_of_realizations(values) for values in (lost, one["floor_repeated"].values))
+        known = (values[np.isfinite(values)] for values in (lost, one["floor_repeated"].values))
+        # one packing has no interval, of several the mean has one
+        numbers = (over_realizations(values, np.mean) if len(values) > 1 else values[0] for values in known)
         yield f"{name}, {float(one['force']):g} mg", *numbers
-
-
-def _of_realizations(values: FloatArray) -> Quantity:
-    """One packing has no interval, of several the mean has one."""
-    found = values[np.isfinite(values)]
-    return over_realizations(found, np.mean) if len(found) > 1 else Quantity.exact(found[0])

@@ -1,7 +1,4 @@
-"""Claims B4, B5 and B27 to B29, beyond the paper: packings as elastic slabs, slabs under load as incrementally elastic.
-
-See Secs. I, IV, V.C and VIII.
-"""
+"""Claims B4, B5 and B27 to B29, beyond the paper: packings, and slabs under load, as elastic slabs."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from granular_response_paper.claims.claim import Case, Data, Numbers
+from granular_response_paper.records import alike
 
 #: Fewest preparations that have a trend.
 FEWEST = 4
@@ -18,14 +19,12 @@ def mobilized(data: Data) -> Numbers:
     """B18, for each slab with :data:`FEWEST` preparations: the trend, and how forces without such contacts differ."""
     study = data.get("preparation", "mobilized")
     study = study.isel(case=study["polydispersity"].values == 0.0)
-    slabs = list(zip(study["wall_friction"].values.tolist(), study["friction"].values.tolist(), strict=True))
-    for (event, text), margin in product(EVENTS.items(), study["margin"].values.tolist()):
-        for slab in dict.fromkeys(slabs):
-            alike = study.isel(case=[one == slab for one in slabs]).sel(name=event, margin=margin)
-            part, force = alike["mobilized_part"].values, alike["force"].values
-            free = force[part == 0.0]
-            if np.isnan(force).any() or len(force) < FEWEST or np.ptp(part) == 0.0 or len(free) < 2:
-                continue
-            where = f"friction {slab[1]:g}{', rough walls' if slab[0] else ''}"
+    slabs = alike(study, "case", "wall_friction", "friction").items()
+    for (event, text), margin, ((wall, mu), slab) in product(EVENTS.items(), study["margin"].values.tolist(), slabs):
+        one = slab.sel(name=event, margin=margin)
+        part, force = one["mobilized_part"].values, one["force"].values
+        free = force[part == 0.0]
+        if np.isfinite(force).all() and len(force) >= FEWEST and np.ptp(part) > 0.0 and len(free) > 1:
+            where = f"friction {mu:g}{', rough walls' if wall else ''}"
             case = Case(f"{text}, contacts within {margin:.0%} of the limit", where)
             yield case, spearmanr(part, force).statistic, free.max() / free.min()

@@ -1,5 +1,4 @@
-"""Claims on disordered slabs (abstract, Secs. VI to VIII), from the ensembles of the survey and by its one definition
-of two peaks (:mod:`granular_response_paper.survey.crossover`).
+"""Claims on disordered slabs (abstract, Secs. VI to VIII), by the survey's one definition of two peaks.
 
 The text starts from a lattice with twice the mean radius as its constant, in which disks of unequal size overlap. This
 project starts where the largest disks touch. Both, and lattices between them, are values of what the text leaves open
@@ -10,17 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations, groupby, pairwise, product
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.scene.lattice import SlabPacking, touching_largest
 from granular_response.state import FloatArray
-from granular_response_paper.claims.bootstrap import LEVELS, of_draws, over_realizations, part_of
+from granular_response_paper.claims.bootstrap import LEVELS, of_draws, over_brackets, over_realizations, part_of
 from granular_response_paper.claims.claim import Bound, Case, Data, Numbers, Quantity, at, needs
+from granular_response_paper.claims.words import TOLERANCES
 from granular_response_paper.survey.crossover import ABOVE, BELOW, FOUND, counted
 
 GROUP = "phase_diagram"
@@ -31,8 +31,8 @@ USUAL, LITERAL = "touching-largest", "2.0"
 #: Width of smoothing of Figs. 21 and 22, and of Figs. 19 and 20; realizations in each panel of Fig. 19.
 WIDE, NARROW, SHOWN = 6.0, 3.0, 15
 
-#: How far off a response is no longer linear: the text does not say.
-TOLERANCES = (0.01, 0.02, 0.05)
+#: A case by its disorder and its friction.
+WHOLE = "polydispersity {0:g}, friction {1:g}"
 
 #: How intervals over realizations are made.
 BOOTSTRAP = "bootstrap of realizations"
@@ -45,98 +45,66 @@ class Slab(NamedTuple):
     start: str
     friction: float
 
-    def of(self, study: xr.Dataset) -> xr.Dataset:
-        """The case of a study. Raises NotMeasured if there is none."""
-        return at(study, polydispersity=self.polydispersity, friction=self.friction, lattice_constant=self.start)
+    def of(self, data: Data, name: str, **labels: float) -> xr.Dataset:
+        """The case in a dataset. Raises NotMeasured if there is none."""
+        study, (delta, start, mu) = data.get(GROUP, name), self
+        return at(study, polydispersity=delta, friction=mu, lattice_constant=start, **labels)
+
+    @property
+    def lattice(self) -> Slab:
+        """The one without disorder."""
+        return Slab(0.0, USUAL, self.friction)
 
     @property
     def title(self) -> str:
-        return f"polydispersity {self.polydispersity:g}, friction {self.friction:g}"
+        return "largest disks touch at first" if self.start == USUAL else f"lattice constant {self.start}"
 
-    def case(self, name: str | None = None, of: str = "") -> Case:
+    def case(self, name: str = "polydispersity {0:g}", of: str = "") -> Case:
         """A value of what the text leaves open, or another preparation if the lattice is wider than it need be."""
-        name = f"polydispersity {self.polydispersity:g}" if name is None else name
-        title = ", ".join(filter(None, (name, _title(self.start))))
+        title = ", ".join(filter(None, (name.format(self.polydispersity, self.friction), self.title)))
         wider = self.start != USUAL and float(self.start) > touching_largest(self.polydispersity)
         return Case("" if wider else title, of, title if wider else "")
 
 
-def _title(start: str) -> str:
-    return "largest disks touch at first" if start == USUAL else f"lattice constant {start}"
+def _slabs(data: Data, name: str = "crossovers") -> list[Slab]:
+    """Every case of disorder: by start this project's first, then by their constants."""
+    columns = (data.get(GROUP, name)[key].values.tolist() for key in ("polydispersity", "lattice_constant", "friction"))
+    slabs = sorted(map(Slab, *columns), key=lambda slab: (slab.polydispersity, slab.start != USUAL, *slab[1:]))
+    return [slab for slab in slabs if slab.polydispersity > 0.0]
 
 
-def _slabs(study: xr.Dataset, disordered: bool = True) -> list[Slab]:
-    """Every case: by start this project's first, then by their constants."""
-    columns = (study[name].values.tolist() for name in ("polydispersity", "lattice_constant", "friction"))
-    found = sorted(map(Slab, *columns), key=lambda slab: (slab.polydispersity, slab.start != USUAL, *slab[1:]))
-    return [slab for slab in found if (slab.polydispersity > 0.0) is disordered]
+def _by_start(data: Data, name: str, *frictions: float) -> Iterator[list[Slab]]:
+    """Those of delta = 0.01 with these frictions, for each start that has them."""
+    slabs = _slabs(data, name)
+    for start in dict.fromkeys(slab.start for slab in slabs):
+        wanted = [Slab(0.01, start, mu) for mu in frictions]
+        if set(wanted) <= set(slabs):
+            yield wanted
 
 
-def _lines(study: xr.Dataset) -> dict[tuple[float, str], list[Slab]]:
-    """Disordered cases with growing friction, by polydispersity and start."""
-    return {key: list(line) for key, line in groupby(_slabs(study), key=lambda slab: slab[:2])}
-
-
-def _cases(data: Data, *names: str, **labels: float) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
-    """Every case of disorder with its datasets."""
-    studies = [at(data.get(GROUP, name), **labels) for name in names]
-    yield from ((slab, [slab.of(study) for study in studies]) for slab in _slabs(studies[0]))
-
-
-def _by_start(study: xr.Dataset, *frictions: float) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
-    """Starts of delta = 0.01 with their cases of these frictions."""
-    for (delta, _), line in _lines(study).items():
-        slabs = [slab for slab in line if slab.friction in frictions]
-        if np.isclose(delta, 0.01) and len(slabs) == len(frictions):
-            yield slabs[0], [slab.of(study) for slab in slabs]
-
-
-def _samples(case: xr.Dataset) -> int:
-    return int(case["realizations"]) if "realizations" in case.variables else 1
-
-
-def _with_interval(case: xr.Dataset, name: str) -> Quantity:
-    """A number of a case with 95 % of its bootstrap draws."""
-    low, high = (float(at(case, level=level)[f"{name}_interval"]) for level in LEVELS)
-    return Quantity(float(case[name]), low, high, "confidence", BOOTSTRAP, _samples(case))
+def _with_interval(case: xr.Dataset, name: str, method: str = BOOTSTRAP) -> Quantity:
+    """A number of a case with 95 % of its draws."""
+    low, high = case[f"{name}_interval"].values[[0, -1]].tolist()
+    return Quantity(float(case[name]), low, high, "confidence", method, int(case["realizations"]))
 
 
 def two_peaks_or_one(data: Data) -> Numbers:
     """D1. The paper shows one mean of each friction, so that what is asked is only that such ones are not rare."""
-    for slab, cases in _by_start(at(data.get(GROUP, "starts"), width=NARROW), 0.0, 0.2):
-        yield slab.case(""), *(_tail(case, level) for case, level in zip(cases, LEVELS[::-1], strict=True))
-
-
-def _tail(case: xr.Dataset, level: float) -> Quantity:
-    """A quantile of the dip of means of ``SHOWN`` realizations, with 95 % of its bootstrap draws."""
-    one, method = at(case, level=level), f"quantile of means of {SHOWN}, bootstrap"
-    low, high = one["dip_of_means_interval"].values.tolist()
-    return Quantity(float(one["dip_of_means"]), low, high, "confidence", method, _samples(case))
+    for slabs in _by_start(data, "starts", 0.0, 0.2):
+        tails = (
+            slab.of(data, "starts", width=NARROW, level=level) for slab, level in zip(slabs, LEVELS[::-1], strict=True)
+        )
+        method = f"quantile of means of {SHOWN}, bootstrap"
+        yield slabs[0].case(""), *(_with_interval(tail, "dip_of_means", method) for tail in tails)
 
 
 @dataclass(frozen=True)
 class Crossover:
-    """The crossover force of a case, and the interval in which it lies in each draw of the bootstrap: (d,) ends."""
+    """The crossover force of a case, and the interval in which it lies in each draw of the bootstrap: ends (2, d)."""
 
     found: Quantity
     kind: int
-    low: FloatArray
-    high: FloatArray
-
-    @classmethod
-    def of(cls, case: xr.Dataset) -> Crossover:
-        """As stored, with its interval; open to one side where it is a bound."""
-        force, kind = float(case["force"]), int(case["kind"])
-        low, high = (float(at(case, level=level)["interval"]) for level in LEVELS)
-        needs(not np.isnan([force, low, high]).any(), "crossovers holds a case without number")
-        # at no force two peaks, or at all: what was looked at ends there
-        low = 0.0 if kind == BELOW else min(max(low, 0.0), force)
-        high = max(high, force) if kind == BELOW else high
-        draws = case["draws"].values.astype(float)
-        smallest, largest = (float(end) for end in case["limits"].values)
-        least = np.where(draws == -np.inf, 0.0, np.where(draws == np.inf, largest, draws))
-        found = Quantity(force, low, high, "confidence", BOOTSTRAP, _samples(case))
-        return cls(found, kind, least, np.where(draws == -np.inf, smallest, draws))
+    draws: FloatArray
 
     def comparable(self, other: Crossover) -> bool:
         """Whether their order can be seen: not of two bounds to the same side."""
@@ -144,25 +112,32 @@ class Crossover:
 
     def per(self, other: Crossover) -> Quantity:
         """The ratio. Cases of as many realizations were drawn alike; what a bound leaves open widens the interval."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            low, high = self.low / other.high, self.high / other.low
-        low, high = np.where(np.isnan(low), 0.0, low), np.where(np.isnan(high), np.inf, high)
+        with np.errstate(divide="ignore"):
+            draws = self.draws / other.draws[::-1]
         ratio = self.found.per(other.found)
-        return of_draws(ratio.value, (low, high), BOOTSTRAP, ratio.samples, "inverted_cdf")
+        return of_draws(ratio.value, draws, BOOTSTRAP, ratio.samples, "inverted_cdf")
 
 
-def _crossover(data: Data, slab: Slab) -> Crossover:
+def crossover(data: Data, slab: Slab) -> Crossover:
     """By the mean of the realizations; by the median one where packings collapse, so that the mean hangs on a few.
 
-    A dip counts from the threshold of "visible" on.
+    A dip counts from the threshold of "visible" on. The interval is open to one side where the force is a bound.
     """
-    medians = slab.of(at(data.get(GROUP, "medians"), width=WIDE))
-    if int(medians["collapsed"]) > 0:
-        return Crossover.of(medians)
-    study, visible = data.get(GROUP, "crossovers"), data.words["visible"]
-    if np.isclose(study.attrs.get("tolerance", visible), visible):
-        return Crossover.of(slab.of(at(study, width=WIDE)))
-    return Crossover.of(slab.of(at(data.get(GROUP, "definitions"), width=WIDE, tolerance=visible)))
+    case, visible = slab.of(data, "medians", width=WIDE), data.words["visible"]
+    if not case["collapsed"]:
+        case = slab.of(data, "crossovers", width=WIDE)
+        if not np.isclose(case.attrs.get("tolerance", visible), visible):
+            case = slab.of(data, "definitions", width=WIDE, tolerance=visible)
+    force, kind = float(case["force"]), int(case["kind"])
+    low, high = case["interval"].values[[0, -1]].tolist()
+    needs(not np.isnan([force, low, high]).any(), "crossovers holds a case without number")
+    # at no force two peaks, or at all: what was looked at ends there
+    low = 0.0 if kind == BELOW else min(max(low, 0.0), force)
+    high = max(high, force) if kind == BELOW else high
+    smallest, largest = case["limits"].values
+    draws = case["draws"].values.astype(float)  # beyond these limits -inf or inf
+    found = Quantity(force, low, high, "confidence", BOOTSTRAP, int(case["realizations"]))
+    return Crossover(found, kind, np.stack([np.clip(draws, 0.0, largest), np.maximum(draws, smallest)]))
 
 
 def trend(line: Sequence[Crossover]) -> Quantity:
@@ -171,12 +146,11 @@ def trend(line: Sequence[Crossover]) -> Quantity:
     Pairs whose order a draw leaves open, such as two bounds to the same side, widen the interval. Cases of as many
     realizations were drawn alike.
     """
-    pairs = list(combinations(line, 2))
-    up = np.mean([after.low > before.high for before, after in pairs], axis=0)
-    down = np.mean([after.high < before.low for before, after in pairs], axis=0)
-    samples = max(one.found.samples for one in line)
-    ends = (2.0 * up - 1.0, 1.0 - 2.0 * down)
-    return of_draws(float(np.median(up - down)), ends, "Kendall's tau of the draws", samples, "inverted_cdf")
+    pairs = list(combinations((one.draws for one in line), 2))
+    up = np.mean([after[0] > before[1] for before, after in pairs], axis=0)
+    down = np.mean([after[1] < before[0] for before, after in pairs], axis=0)
+    samples, ends = max(one.found.samples for one in line), (2.0 * up - 1.0, 1.0 - 2.0 * down)
+    return of_draws(np.median(up - down), ends, "Kendall's tau of the draws", samples, "inverted_cdf")
 
 
 def _order(line: Sequence[Crossover]) -> tuple[Quantity, int]:
@@ -190,28 +164,29 @@ def _order(line: Sequence[Crossover]) -> tuple[Quantity, int]:
 
 
 def rises_with_friction(data: Data) -> Numbers:  # D3a
-    for line in _lines(data.get(GROUP, "crossovers")).values():
-        if len(line) > 1:
-            yield line[0].case(), *_order([_crossover(data, slab) for slab in line])
+    for _, line in groupby(_slabs(data), key=lambda slab: slab[:2]):
+        slabs = list(line)  # with growing friction
+        if len(slabs) > 1:
+            yield slabs[0].case(), *_order([crossover(data, slab) for slab in slabs])
 
 
 def falls_with_disorder(data: Data) -> Numbers:  # D3b
-    slabs = _slabs(data.get(GROUP, "crossovers"))
+    slabs = _slabs(data)
     deltas = sorted({slab.polydispersity for slab in slabs}, reverse=True)
     for start, mu in product((USUAL, LITERAL), sorted({slab.friction for slab in slabs})):
         wanted = [Slab(delta, start, mu) for delta in deltas]
         if set(wanted) <= set(slabs):
-            line = [_crossover(data, slab) for slab in wanted]
+            line = [crossover(data, slab) for slab in wanted]
             if any(after.comparable(before) for before, after in pairwise(line)) or start == LITERAL:
-                yield f"friction {mu:g}, {_title(start)}", *_order(line)
+                yield f"friction {mu:g}, {wanted[0].title}", *_order(line)
 
 
 def gradual(data: Data) -> Numbers:  # D4
-    for slab, (case, single, crossover) in _cases(data, "shapes", "realizations", "crossovers", width=WIDE):
-        if slab.friction == 1.0 and int(crossover["kind"]) == FOUND:
-            dips, leans = (single[name].transpose("realization", "step").values for name in ("shape", "asymmetry"))
-            steps = np.fmax.reduce(np.fmax(np.abs(np.diff(dips)), np.abs(np.diff(leans))), axis=1)
-            yield slab.case(of="mean"), _with_interval(case, "largest_step")
+    for slab in _slabs(data):
+        if slab.friction == 1.0 and slab.of(data, "crossovers", width=WIDE)["kind"] == FOUND:
+            single = slab.of(data, "realizations", width=WIDE)[["shape", "asymmetry"]]
+            yield slab.case(of="mean"), _with_interval(slab.of(data, "shapes", width=WIDE), "largest_step")
+            steps = abs(single.diff("step")).to_array().max(["variable", "step"])
             yield slab.case(of="median realization"), over_realizations(steps)
 
 
@@ -220,41 +195,40 @@ def five_enough(data: Data) -> Numbers:
 
     Where it has none up to the largest force, samples may have one beyond it.
     """
-    for slab, (case,) in _cases(data, "crossovers", width=WIDE):
-        seen = replace(_with_interval(case, "seen"), method="samples of five, bootstrap")
-        if int(case["kind"]) != BELOW:
-            yield slab.case(of=f"{slab.friction:g}"), replace(seen, high=1.0) if int(case["kind"]) == ABOVE else seen
+    for slab in _slabs(data):
+        case = slab.of(data, "crossovers", width=WIDE)
+        seen = _with_interval(case, "seen", "samples of five, bootstrap")
+        if case["kind"] != BELOW:
+            yield slab.case(of=f"{slab.friction:g}"), replace(seen, high=1.0) if case["kind"] == ABOVE else seen
 
 
 def below_lattice(data: Data) -> Numbers:  # D6
-    for slab in _slabs(data.get(GROUP, "crossovers")):
-        found, lattice = (_crossover(data, one) for one in (slab, Slab(0.0, USUAL, slab.friction)))
+    for slab in _slabs(data):
+        found, lattice = (crossover(data, one) for one in (slab, slab.lattice))
         if found.comparable(lattice):
             yield slab.case(of=f"{slab.friction:g}"), found.per(lattice)
 
 
 def preparation(data: Data) -> Numbers:  # D8
     for mu in (0.0, 0.2):
-        usual, literal = (_crossover(data, Slab(0.01, start, mu)) for start in (USUAL, LITERAL))
+        usual, literal = (crossover(data, Slab(0.01, start, mu)) for start in (USUAL, LITERAL))
         yield f"friction {mu:g}", literal.per(usual)
 
 
 def like_the_lattice(data: Data) -> Numbers:
     """D13. One peak under the smallest force, two under larger ones, at the frictions at which the lattice has both."""
-    study = data.get(GROUP, "crossovers")
-    both = {one.friction for one in _slabs(study, disordered=False) if _crossover(data, one).kind == FOUND}
-    for slab in _slabs(study):
-        if slab.friction in both:
-            found = _crossover(data, slab).found
-            smallest, largest = slab.of(study)["limits"].values[-1].tolist()
-            case = slab.case(slab.title, f"{slab.friction:g}")
+    for slab in _slabs(data):
+        if crossover(data, slab.lattice).kind == FOUND:
+            found = crossover(data, slab).found
+            smallest, largest = slab.of(data, "crossovers", width=WIDE)["limits"].values
+            case = slab.case(WHOLE, f"{slab.friction:g}")
             yield case, (found, Bound(smallest, strict=True)), (found, Bound(most=largest))
 
 
 def without_contacts(data: Data) -> Numbers:  # D18
-    for slab, (case,) in _cases(data, "shapes", width=NARROW):
+    for slab in _slabs(data, "shapes"):
         if slab.friction == 0.0:
-            yield slab.case(), _with_interval(case.isel(step=0), "shape")
+            yield slab.case(), _with_interval(slab.of(data, "shapes", width=NARROW).isel(step=0), "shape")
 
 
 #: What is counted as contacts of a disk.
@@ -262,8 +236,9 @@ COUNTED = {"contacts of disks": "", "walls counted": "_with_walls", "away from t
 
 
 def coordination(data: Data, per: float = 1.0) -> Numbers:  # D7a, D14
-    for (slab, (case,)), (name, kind) in product(_by_start(data.get(GROUP, "packings"), 0.0), COUNTED.items()):
-        yield slab.case(name), over_realizations(case[f"coordination_number{kind}"].values / per, np.mean)
+    for (slab,), (name, kind) in product(_by_start(data, "packings", 0.0), COUNTED.items()):
+        contacts = slab.of(data, "packings")[f"coordination_number{kind}"]
+        yield slab.case(name), over_realizations(contacts / per, np.mean)
 
 
 def missing_horizontal(data: Data) -> Numbers:
@@ -272,54 +247,49 @@ def missing_horizontal(data: Data) -> Numbers:
     i, j = packing.neighbour_pairs().T  # type: ignore[union-attr]
     level = packing.row[i] == packing.row[j]
     ideal = {"horizontal": level.sum() / packing.n, "oblique": (~level).sum() / packing.n}
-    for slab, (case,) in _by_start(data.get(GROUP, "packings"), 0.0):
-        missing = {name: number - case[f"{name}_contacts"].values for name, number in ideal.items()}
+    for (slab,) in _by_start(data, "packings", 0.0):
+        case = slab.of(data, "packings")
+        missing = {name: number - case[f"{name}_contacts"] for name, number in ideal.items()}
         yield slab.case(""), over_realizations(missing["horizontal"] / sum(missing.values()), np.mean)
 
 
-def _away(data: Data) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """(case, step) which forces are known to be far below the crossover at w = 6, and far above.
+def resembles(data: Data) -> Numbers:
+    """D9, at forces that are known to be away from the crossover of their case.
 
     A force inside the interval of its crossover is not known to be away from it; a bound has forces on one side alone.
     """
-    force = data.get(GROUP, "shapes")["applied_force"].transpose("case", "step").values
-    crossovers = at(data.get(GROUP, "crossovers"), width=WIDE)
-    low, high = (at(crossovers, level=level)["interval"].values[:, None] for level in LEVELS)
-    near, crossover = 1.0 + data.words["similar"], crossovers["force"].values[:, None]
-    kind = crossovers["kind"].values[:, None]
-    below = (force < np.minimum(low, crossover / near)) & (kind != BELOW)
-    above = (force > np.maximum(high, crossover * near)) & (kind != ABOVE)
-    return below, above
-
-
-def resembles(data: Data) -> Numbers:
-    """D9, at forces that are known to be away from the crossover of their case."""
-    study = at(data.get(GROUP, "realizations"), width=WIDE)
-    off = study["difference"].transpose("case", "realization", "step").values
-    constant = study["lattice_constant"].values.astype(str)
+    near = 1.0 + data.words["similar"]
     for start in (USUAL, LITERAL):
-        here = (study["polydispersity"].values > 0.0) & (constant == start)
-        known = np.isfinite(off).any(axis=1) & here[:, None]
-        for side, away in zip(("below", "above"), _away(data), strict=True):
-            typical = [np.nanmedian(off[case, :, step]) for case, step in np.argwhere(away & known)]
-            if len(typical) > 2:
-                found = replace(over_realizations(typical), method="bootstrap of the median over cases and forces")
-                yield f"{side} the crossover, {_title(start)}", found
+        typical: dict[str, list[float]] = {"below": [], "above": []}
+        slabs = [slab for slab in _slabs(data) if slab.start == start]
+        for slab in slabs:
+            single, shapes, case = (slab.of(data, n, width=WIDE) for n in ("realizations", "shapes", "crossovers"))
+            off = single["difference"].median("realization")
+            force = shapes["applied_force"].where(np.isfinite(off))
+            low, high = case["interval"].values[[0, -1]]
+            below = (force < min(low, case["force"] / near)) & (case["kind"] != BELOW)
+            above = (force > max(high, case["force"] * near)) & (case["kind"] != ABOVE)
+            typical["below"] += off.values[below].tolist()
+            typical["above"] += off.values[above].tolist()
+        for side, values in typical.items():
+            if len(values) > 2:
+                found = replace(over_realizations(values), method="bootstrap of the median over cases and forces")
+                yield f"{side} the crossover, {slabs[0].title}", found
 
 
-def _at_15(data: Data, name: str) -> Iterator[tuple[Slab, list[xr.Dataset]]]:
-    """By start: delta = 0.01 under 15 mg at friction 0 and at 0.2, w = 3."""
-    study = at(data.get(GROUP, name), width=NARROW).assign(applied=data.get(GROUP, "shapes")["applied_force"])
-    for slab, cases in _by_start(study, 0.0, 0.2):
-        yield slab, [one.isel(step=int(np.flatnonzero(np.isclose(one["applied"].values, 15.0))[0])) for one in cases]
+def _at_15(data: Data, slab: Slab, name: str) -> xr.Dataset:
+    """Under 15 mg, with w = 3."""
+    here = np.isclose(slab.of(data, "shapes")["applied_force"].values, 15.0)
+    return slab.of(data, name, width=NARROW).isel(step=np.flatnonzero(here)[0])
 
 
 def fluctuations(data: Data) -> Numbers:  # D10
-    for slab, (without, full) in _at_15(data, "shapes"):
-        yield slab.case(""), _with_interval(without, "spread").per(_with_interval(full, "spread"))
+    for slabs in _by_start(data, "shapes", 0.0, 0.2):
+        without, full = (_with_interval(_at_15(data, slab, "shapes"), "spread") for slab in slabs)
+        yield slabs[0].case(""), without.per(full)
 
 
-def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quantity:
+def _evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quantity:
     """The part of samples of ``SHOWN`` realizations each in which at least this part of the pairs differ.
 
     ``without`` and ``full`` (r,) are the dips of realizations. With 95 % of the draws of these.
@@ -331,51 +301,48 @@ def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quan
         return float(((first[:, :, None] > second[:, None]).mean(axis=(1, 2)) >= least).mean())
 
     drawn = [part(rng.choice(without, without.size), rng.choice(full, full.size)) for _ in range(200)]
-    method, number = f"samples of {SHOWN}, bootstrap", min(without.size, full.size)
-    return of_draws(part(without, full, 20000), drawn, method, number)
+    return of_draws(part(without, full, 20000), drawn, f"samples of {SHOWN}, bootstrap", min(without.size, full.size))
 
 
 def evident(data: Data) -> Numbers:  # D11
     least = 1.0 - data.words["holds"]
-    for slab, cases in _at_15(data, "realizations"):
-        without, full = (case["shape"].values[np.isfinite(case["shape"].values)] for case in cases)
-        yield slab.case("", f"{least:.0%}"), evident_samples(without, full, least)
+    for slabs in _by_start(data, "realizations", 0.0, 0.2):
+        without, full = (_at_15(data, slab, "realizations")["shape"].dropna("realization").values for slab in slabs)
+        yield slabs[0].case("", f"{least:.0%}"), _evident_samples(without, full, least)
 
 
 def collapses(data: Data, **of: float) -> Numbers:
     """D12, D16: the part of the packings that collapse along their load paths, of all cases or of one of them."""
-    for slab, (one,) in _cases(data, "realizations"):
+    for slab in _slabs(data, "realizations"):
         if of.items() <= slab._asdict().items():
-            hits = np.isfinite(one["collapse_force"].values[: int(one["realizations"])])
-            yield slab.case(slab.title), part_of(hits)
+            one = slab.of(data, "realizations")
+            yield slab.case(WHOLE), part_of(np.isfinite(one["collapse_force"].values[: int(one["realizations"])]))
 
 
-#: Names of what is off in the linear range.
-CENTRE, PROFILE = "response_at_centre", "profile_change"
+def linear_ends(force: FloatArray, changes: FloatArray, tolerance: float) -> FloatArray:
+    """(r, 2) the forces between which realizations leave their linear range, by how far off (r, k) they are.
 
-
-def linear_ends(path: xr.Dataset, tolerance: float, measure: str = CENTRE) -> FloatArray:
-    """(r, 2) the forces between which realizations leave their linear range.
-
-    Both ends are the same where the change passes the tolerance between two forces: it is taken as linear in the
+    Both ends are the same where the change passes the tolerance between two forces (k,): it is taken as linear in the
     logarithm of the force. A path that ends inside its linear range is censored: the ends are its last force and inf.
-    ``path`` is a case of ``linear_range``; the ``measure`` is the response at x = 0, or the change of the profile from
-    that to the smallest force. Realizations without two forces are left out.
+    Realizations without two forces are left out.
     """
-    force, value = path["applied_force"].values, path[measure].transpose("realization", "step").values
     found = []
-    for change in value if measure == PROFILE else np.abs(value / value[:, :1] - 1.0):
-        known = np.isfinite(change)
-        if known.sum() < 2:
-            continue
-        off = np.flatnonzero(change[known] > tolerance)
-        if off.size:
-            (low, high), (before, after) = (values[known][off[0] - 1 : off[0] + 1] for values in (force, change))
-            end = low * (high / low) ** ((tolerance - before) / (after - before))
-            found.append((end, end))
-        else:
+    for change in changes:
+        known, k = np.isfinite(change), int(np.argmax(change > tolerance))  # 0 where it never is
+        if k:
+            part = (tolerance - change[k - 1]) / (change[k] - change[k - 1])
+            found.append((force[k - 1] * (force[k] / force[k - 1]) ** part,) * 2)
+        elif known.sum() > 1:
             found.append((force[known][-1], np.inf))
     return np.array(found).reshape(-1, 2)
+
+
+def _ends(data: Data, slab: Slab, tolerance: float, whole: bool) -> FloatArray:
+    """By the response at x = 0, or the ``whole`` response, beside those to the smallest force."""
+    path = slab.of(data, "linear_range").transpose("realization", "step")
+    value = path["response_at_centre"].values
+    off = path["profile_change"].values if whole else np.abs(value / value[:, :1] - 1.0)
+    return linear_ends(path["applied_force"].values, off, tolerance)
 
 
 def shorter(ends: FloatArray, lattice: FloatArray) -> Quantity:
@@ -384,16 +351,9 @@ def shorter(ends: FloatArray, lattice: FloatArray) -> Quantity:
 
 
 def linear_end(ends: FloatArray) -> Quantity:
-    """The median force at which realizations (r, 2) leave their linear range, between those of lower and upper ends.
-
-    Raises NotMeasured for two realizations or none; a lattice has one, without scatter.
-    """
-    needs(len(ends) not in (0, 2), "linear_range holds too few realizations")
-    picked = np.random.default_rng(0).integers(0, len(ends), (2000, len(ends)))
-    low, high = (np.quantile(ends[picked, k], 0.5, axis=1, method="inverted_cdf") for k in (0, 1))
-    value = float(np.quantile(ends[:, 1], 0.5, method="inverted_cdf"))
-    value = value if np.isfinite(value) else float("nan")
-    return of_draws(value, (low, high), "bootstrap of the median", len(ends), "inverted_cdf")
+    """The median force at which realizations (r, 2) leave their linear range; a lattice has one, without scatter."""
+    each = [Quantity(0.5 * (low + high), low, high) for low, high in ends.tolist()]
+    return over_brackets(each, partial(np.quantile, q=0.5, method="inverted_cdf"))
 
 
 def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
@@ -407,12 +367,8 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
     counts = [counted(rng.integers(0, len(one), (draws, len(one))), len(one)) for one in groups]
     number, value, low, high = 0, 0.0, np.zeros(draws), np.zeros(draws)
     for (first, before), (second, after) in combinations(enumerate(groups), 2):
-        up = after[:, None, 0] > before[None, :, 1]
-        down = after[:, None, 1] < before[None, :, 0]
-        exact = np.isfinite(after[:, None, 1]) & np.isfinite(before[None, :, 1])
-        least = np.where(up, 1.0, np.where(exact & ~down, 0.0, -1.0))
-        most = np.where(down, -1.0, np.where(exact & ~up, 0.0, 1.0))
-        number, value = number + up.size, value + float(up.sum() - down.sum())
+        least, most = np.sign(after[:, None] - before[:, ::-1]).transpose(2, 0, 1)
+        number, value = number + least.size, value + float((least > 0.0).sum() - (most < 0.0).sum())
         low += np.einsum("da,ab,db->d", counts[second], least, counts[first])
         high += np.einsum("da,ab,db->d", counts[second], most, counts[first])
     samples = sum(map(len, groups))
@@ -420,24 +376,21 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
 
 
 def shorter_range(data: Data) -> Numbers:  # D2
-    study = data.get(GROUP, "linear_range")
-    for slab, tolerance in product(_slabs(study), TOLERANCES):
+    for slab, tolerance in product(_slabs(data, "linear_range"), TOLERANCES):
         if np.isclose(slab.polydispersity, 0.01):
-            lattice = slab._replace(polydispersity=0.0, start=USUAL)
-            ends, whole = (linear_ends(one.of(study), tolerance) for one in (slab, lattice))
-            yield slab.case(f"friction {slab.friction:g}", f"{tolerance:.0%}"), shorter(ends, whole[0])
+            ends, lattice = (_ends(data, one, tolerance, whole=False) for one in (slab, slab.lattice))
+            yield slab.case("friction {1:g}", f"{tolerance:.0%}"), shorter(ends, lattice[0])
 
 
 def shorter_with_disorder(data: Data) -> Numbers:
     """A5, by the response as a whole, since that at x = 0 is near zero without friction."""
-    study = data.get(GROUP, "linear_range")
-    lines = _lines(study)
     for start in (USUAL, LITERAL):
-        deltas = [delta for delta, one in lines if one == start]
-        for slab, tolerance in product(lines[deltas[-1], start] if deltas else (), TOLERANCES):
-            mu = slab.friction
-            cases = [Slab(0.0, USUAL, mu), *(Slab(delta, start, mu) for delta in deltas)]
-            ends = [linear_ends(one.of(study), tolerance, PROFILE) for one in cases]
+        slabs = [slab for slab in _slabs(data, "linear_range") if slab.start == start]
+        deltas = sorted({slab.polydispersity for slab in slabs})
+        most = [slab for slab in slabs if slab.polydispersity == deltas[-1]]
+        for slab, tolerance in product(most, TOLERANCES):
+            cases = [slab.lattice, *(slab._replace(polydispersity=delta) for delta in deltas)]
+            ends = [_ends(data, one, tolerance, whole=True) for one in cases]
             lattice, least = (linear_end(one) for one in ends[:2])
-            case = Case(f"friction {mu:g}, {tolerance:.0%} off, {_title(start)}", f"{deltas[0]:g}")
+            case = Case(f"friction {slab.friction:g}, {tolerance:.0%} off, {slab.title}", f"{deltas[0]:g}")
             yield case, lattice.per(least), order_of(ends[1:]) if len(deltas) > 1 else None

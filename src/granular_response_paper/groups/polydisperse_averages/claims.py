@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from granular_response_paper.claims.claim import Data, Numbers, at
+from granular_response_paper.records import alike
+from granular_response_paper.survey.crossover import lean
 
 
 def nearly_symmetrical(data: Data) -> Numbers:  # D15
     few = at(data.get("polydisperse_averages", "averages"), width=6.0)
     mean = few["mean_of_few"].transpose("case", "step", "x").values[few["polydispersity"].values > 0.0]
-    with np.errstate(invalid="ignore"):
-        yield "", np.nanmin(np.abs(mean - mean[..., ::-1]).max(axis=-1) / mean.max(axis=-1))
+    yield "", np.nanmin(lean(mean))
 
 
 def preferred_directions(data: Data) -> Numbers:
@@ -19,9 +20,7 @@ def preferred_directions(data: Data) -> Numbers:
     study = data.get("polydisperse_averages", "packings")
     lattice = np.radians([0.0, 60.0, 120.0, 180.0])
     near = (np.abs(study["angle"].values[:, None] - lattice) < np.radians(12.0)).any(axis=1)
-    found: dict[str, float] = {}
-    for case in np.flatnonzero((study["friction"].values == 0.0) & (study["polydispersity"].values > 0.0)):
-        density = np.nanmean(study["contact_angle_density"].transpose("case", ..., "angle").values[case], axis=0)
-        name = f"polydispersity {float(study['polydispersity'][case]):g}"
-        found.setdefault(name, density[near].sum() / density.sum() / near.mean())
-    yield from found.items()
+    study = study.isel(case=(study["friction"].values == 0.0) & (study["polydispersity"].values > 0.0))
+    for (delta,), cases in alike(study, "case", "polydispersity").items():
+        density = cases["contact_angle_density"].isel(case=0).mean("realization").values
+        yield f"polydispersity {delta:g}", density[near].sum() / density.sum() / near.mean()

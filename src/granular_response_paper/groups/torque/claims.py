@@ -22,10 +22,8 @@ def near_the_load(data: Data) -> Numbers:  # T1b
     x, z = np.meshgrid(study["x"].values, study["z"].values)
     distance = np.hypot(x - place[0], z - place[1])
     within, beyond = distance < NEAR, distance > FAR
-    needs(
-        near.any() and far.any() and within.any() and beyond.any(),
-        f"nothing within {NEAR:g} or beyond {FAR:g} radii of the load",
-    )
+    for there in (near, far, within, beyond):
+        needs(there.any(), f"nothing within {NEAR:g} or beyond {FAR:g} radii of the load")
     areas = {
         "antisymmetric part": 0.5 * np.abs(change[1] - change[2]),
         "whole stress": np.sqrt((change**2).sum(axis=0)),
