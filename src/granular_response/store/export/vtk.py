@@ -1,13 +1,15 @@
 """VTK for ParaView: one state as ``.vtu``, or all of them as a series, ``.pvd``, with a ``.vtu`` beside it for each.
 
 Disks are vertices, contacts are lines. A wall contact ends at its foot, one across a periodic side where the other
-disk's image lies; these ends are points without a disk. The events on the way to a
-state are its field data.
+disk's image lies; these ends are points without a disk, and move as it does. The events on the way to a state are its
+field data. The times of a series are the load factors where these grow, and the numbers of the states where they do
+not: two states of one time would be one.
 """
 
 from __future__ import annotations
 
 import base64
+from itertools import pairwise
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -26,22 +28,27 @@ def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
     if path.suffix == ".vtu":
         return {path: _mesh(dataset, -1)}
     made, entries = {}, []
-    for index in range(dataset.sizes["state"]):
+    factors = dataset["state_load_factor"].values.tolist()
+    grows = all(later > before for before, later in pairwise(factors))
+    for index, time in enumerate(factors if grows else range(len(factors))):
         name = f"{path.stem}-{index}.vtu"
         made[path.with_name(name)] = _mesh(dataset, index)
-        entries.append(f'<DataSet timestep="{index}" part="0" file={quoteattr(name)}/>')
+        entries.append(f'<DataSet timestep="{time}" part="0" file={quoteattr(name)}/>')
     lines = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">']
     lines += ["<Collection>", *entries, "</Collection>", "</VTKFile>", ""]
     return {**made, path: "\n".join(lines).encode()}
 
 
 def _mesh(dataset: xr.Dataset, index: int) -> bytes:
-    """One state, with the stress that its load adds (Sec. V.C) at the centres of the disks."""
+    """One state, with what its load adds: displacements, and the stress at the centres of the disks (Sec. V.C)."""
     state = dataset.isel(state=index)
     n = state.sizes["disk"]
     position, bounds = state["position"].values, Box.of(dataset.attrs)
+    at_rest = dataset["position"].values[0]
+    moved = position - at_rest
     force, count = contact_force_sums(state)
     points: list[np.ndarray] = [position]
+    moves: list[np.ndarray] = [moved]
     ends: list[np.ndarray] = []
     forces: list[np.ndarray] = []
     for prefix in PREFIXES:
@@ -51,10 +58,13 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
             far = state["contact_partner"].values[touching].astype(np.int64)
             end = position[near] - bounds.separation(position[near], position[far])
             own = np.any(np.abs(end - position[far]) > 1e-9, axis=1)  # across a periodic side
+            moves.append(moved[far][own])
         else:
             far = np.zeros(len(near), np.int64)
-            end = bounds.on_wall(position[near], state["wall_index"].values[touching])
+            wall = state["wall_index"].values[touching]
+            end = bounds.on_wall(position[near], wall)
             own = np.ones(len(near), bool)
+            moves.append(end - bounds.on_wall(at_rest[near], wall))
         far[own] = sum(map(len, points)) + np.arange(np.count_nonzero(own))
         points.append(end[own])
         ends.append(np.column_stack([near, far]))
@@ -96,6 +106,7 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
         "angle": on_disks(state["angle"].values),
         "coordination": on_disks(count.astype(np.int32)),
         "loaded": on_disks(loaded),
+        "displacement": in_plane(np.concatenate(moves)),
         "contact_force": on_disks(in_plane(force)),
         **{f"added_stress_{'xz'[a]}{'xz'[b]}": on_disks(stress[:, a, b]) for a in range(2) for b in range(2)},
     }
