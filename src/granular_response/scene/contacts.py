@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..state import FLOOR, LEFT_WALL, RIGHT_WALL, Box, FloatArray
-from ..state.box import WALL_MEANINGS, wall_normals
+from ..state.box import WALL_MEANINGS, bodies, wall_normals
 from .formats.lammps_dump import WALL_FIXES, read_contacts
 from .formats.table import FormatError, Once, Table, lines_of, number, shown, whole_number
 
@@ -35,9 +35,7 @@ class GivenContact(NamedTuple):
     @property
     def words(self) -> str:
         """Its two sides."""
-        if self.at_wall:
-            return f"disk {self.first} and the {WALL_MEANINGS[self.second].replace('_', ' ')}"
-        return f"disks {self.first} and {self.second}"
+        return bodies(self.first, self.second, self.at_wall)
 
 
 def checked(contacts: Iterable[GivenContact], disks: int) -> tuple[GivenContact, ...]:
