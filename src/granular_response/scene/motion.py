@@ -61,7 +61,7 @@ class Motion(Sparse):
             if given == COLUMN:
                 columns = packing.columns or {}
                 if name not in columns:
-                    rule = f"must be numbers, the packing is from no file with a column {name}"
+                    rule = f"must be numbers, the packing is from no file with a column {name} in reduced units"
                     raise SceneError(describe(("motion", name), given, rule))
                 given = columns[name]
                 if not np.isfinite(given).all():

@@ -123,6 +123,15 @@ class FilePacking(Sparse, PackingDescription):
         """All that it is read from."""
         return [self.file, *([Path(self._folder or ".", self.springs)] if self.springs else [])]
 
+    def _table(self) -> formats.Table:
+        return self._read(lambda: formats.read(self.file, self.format or formats.by_suffix(self.path), self.columns))
+
+    def mean_radius(self) -> float | None:
+        """Mean radius in m; None where the table names no unit of length. Raises SceneError if it cannot be read."""
+        table = self._table()
+        metres = csv_table.METRES.get(table.unit)
+        return None if metres is None else exact_mean(table.radius) * metres
+
     def build(self) -> Packing:
         """Read the table and rescale it.
 
@@ -134,7 +143,7 @@ class FilePacking(Sparse, PackingDescription):
 
         Warns (UserWarning) where a file of another program has disks of several sizes and no masses.
         """
-        table = self._read(lambda: formats.read(self.file, self.format or formats.by_suffix(self.path), self.columns))
+        table = self._table()
         left, floor, width = self._sides(table.box)
         try:
             packing = packed(table, left, floor, width, self.periodic)

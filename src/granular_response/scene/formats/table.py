@@ -59,6 +59,7 @@ class Table:
     columns: Mapping[str, FloatArray] | None = None
     ids: Sequence[int] | None = None  #: (n,) by which other files call the disks
     frame: str = ""  #: which frame of its file this is, such as "3 of 3, time step 200", where the format has frames
+    unit: str = ""  #: of its lengths, such as mm, where the file says it
 
 
 @dataclass(frozen=True)
@@ -151,7 +152,8 @@ def number(text: str, name: str, place: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise FormatError(f"{name} = {shown(text)}: must be a finite number", place)
+        point = " with a decimal point, not a comma" if "," in text else ""
+        raise FormatError(f"{name} = {shown(text)}: must be a finite number{point}", place)
     return value
 
 
