@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
-from ..inputs import read_text
+from ..inputs import read_text, unreadable
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
 from .base import MOST_STIFFNESS, PACKING_KINDS, PLACES, UNITS, Description, PackingDescription, Sparse
@@ -282,14 +282,10 @@ class Scene(Sparse):
             return cls.from_text(read_text(path), folder=path.parent.absolute())
         except SceneError as error:
             raise SceneError(f"{path}: {error}") from None
-        except FileNotFoundError:
-            raise SceneFileError(f"{path}: no such file") from None
-        except UnicodeDecodeError:
-            raise SceneError(f"{path}: is not a text file in UTF-8") from None
-        except OSError as error:
-            raise SceneFileError(f"{path}: cannot be read: {error.strerror}") from None
+        except (OSError, UnicodeDecodeError) as error:
+            raise SceneFileError(f"{path}: {unreadable(error)}") from None
         except ValueError as error:  # no name of a file
-            raise SceneFileError(f"{str(path)!r}: cannot be read: {error}") from None
+            raise SceneFileError(f"{str(path)!r}: {unreadable(error)}") from None
 
     def to_dict(self) -> dict[str, Any]:
         """All keys as nested dicts, lists, numbers and text.

@@ -13,6 +13,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationInfo, model_validator
 
+from ..inputs import unreadable
 from . import formats
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
 from .disks import ROUNDING, packed
@@ -188,14 +189,8 @@ class FilePacking(Sparse, PackingDescription):
                 return read()
         except formats.FormatError as error:
             raise self._error(str(error), error.place, key) from None
-        except FileNotFoundError:
-            raise self._error("no such file", key=key) from None
-        except UnicodeEncodeError:
-            raise self._error("has a name that this locale cannot spell", key=key) from None
-        except UnicodeDecodeError:
-            raise self._error("is not a text file in UTF-8", key=key) from None
-        except OSError as error:
-            raise self._error(f"cannot be read: {error.strerror}", key=key) from None
+        except (OSError, UnicodeError) as error:
+            raise self._error(unreadable(error), key=key) from None
 
     def _error(self, rule: str, place: str = "", key: str = "path") -> SceneError:
         return SceneError(describe(("packing", key), getattr(self, key), f"{place}: {rule}" if place else rule))
