@@ -94,7 +94,7 @@ def _of_pairs(path: Path, position: FloatArray, box: Box, table: Table) -> Itera
     if table.ids is None:
         raise FormatError("calls disks by their ids, so the file of the disks must have ids")
     known = {float(one): k for k, one in enumerate(table.ids)}
-    for (one, two, normal, x, y, z), place in zip(*read_contacts(path), strict=True):
+    for (one, two, normal, x, y, z), place in read_contacts(path):
         if one not in known or two not in known:
             raise FormatError(f"atoms {one:.0f} and {two:.0f}: must be ids of disks", place)
         apart = box.separation(position[known[one]], position[known[two]])

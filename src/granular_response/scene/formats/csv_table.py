@@ -82,7 +82,8 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
             raise FormatError(f"is not CSV: {unclosed}", place) from None
         if not any(cell.strip() for cell in cells):
             continue
-        if not header:
+        if not header or cells == header:
+            once.add("header", place)
             header = cells
             titles = _titles(header)
             chosen = _chosen(header, titles, columns or {})
@@ -91,10 +92,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
                 if (times := titles.count((name, ""))) > 1:
                     raise FormatError(f"column {name} is given {times} times, must be given once", place)
             motion = {name: titles.index((name, "")) for name in MOTION if (name, "") in titles}
-            once.add("header", place)
             continue
-        if cells == header:
-            once.add("header", place)
         if len(cells) != len(header):
             raise FormatError(f"has {len(cells)} values, must have {len(header)} as the header", place)
         rows.append(numbers([cells[column] for column in chosen.values()], tuple(chosen), place))
@@ -172,9 +170,8 @@ def _chosen(header: list[str], titles: Sequence[tuple[str, str]], columns: Mappi
             raise FormatError(f"column {name} {said}, header must name x, z and radius")
         if found:
             chosen[name] = found[0]
-    missing = [] if "x" in chosen else ["x"]
-    missing += [] if {"y", "z"} & chosen.keys() else ["z"]
-    missing += [] if _SIZES & chosen.keys() else ["radius"]
+    needed = {"x": {"x"}, "z": {"y", "z"}, "radius": _SIZES}
+    missing = [name for name, instead in needed.items() if not instead & chosen.keys()]
     if missing:
         most = f"{', '.join(missing[:-1])} and {missing[-1]}"
         several = f"columns {most} are" if len(missing) > 1 else f"column {missing[0]} is"

@@ -147,8 +147,7 @@ def read(path: Path) -> Table:
         raise FormatError("has no atoms")
     most = header.counts.get("atom types", 0)
     for kind, place in types.items():
-        number_of_type = whole_number(kind)
-        if not 1 <= (0 if number_of_type is None else number_of_type) <= most and "Atom Type Labels" not in found:
+        if not 1 <= (whole_number(kind) or 0) <= most and "Atom Type Labels" not in found:
             raise FormatError(f"type = {shown(kind)}: must be from 1 to {most}, as the header atom types says", place)
     if not whole:
         raise FormatError("is cut: its last line has no end")
@@ -158,7 +157,8 @@ def read(path: Path) -> Table:
         if (left, width) != (0.0, mark.width):
             rule = f"says width {mark.width!r}, the bounds xlo xhi {left!r} to {left + width!r}; must agree"
             raise FormatError(rule, "line 1")
-    order = by_id(ids, places)
+    known = by_id(ids, places)
+    order = list(known.values())
     for atom in moving.keys() - set(ids):
         raise FormatError(f"id = {shown(atom)}: must be that of an atom, section Velocities has it", moving[atom][0])
     diameter, density, x, y, z = np.array(rows)[order].T
@@ -169,5 +169,5 @@ def read(path: Path) -> Table:
     box = FileBox(left, width, reason=_REASON) if mark is None else mark.box
     return Table(
         x, z if up == "z" else y, 0.5 * diameter, [places[k] for k in order], density * diameter**3, box,
-        columns=columns, ids=[int(ids[k]) for k in order],
+        columns=columns, ids=list(known),
     )  # fmt: skip

@@ -188,8 +188,8 @@ def upright(turned: Sequence[float], place: str) -> None:
         raise FormatError("the box must not be tilted or turned, its edges must lie along x, y and z", place)
 
 
-def by_id(ids: Sequence[str], places: Sequence[str]) -> list[int]:
-    """The order of disks by their ids, as LAMMPS writes them in any order.
+def by_id(ids: Sequence[str], places: Sequence[str]) -> dict[int, int]:
+    """Where the disk of each id stands, in the order of ids; LAMMPS writes them in any order.
 
     Raises FormatError for an id that is no whole number or that two disks have.
     """
@@ -200,7 +200,7 @@ def by_id(ids: Sequence[str], places: Sequence[str]) -> list[int]:
             raise FormatError(f"id = {shown(text)}: must be a whole number", place)
         if (known := first.setdefault(value, k)) != k:
             raise FormatError(f"id = {value}: must differ from that of {places[known]}", place)
-    return [first[value] for value in sorted(first)]
+    return dict(sorted(first.items()))
 
 
 #: How far, relative to the largest, numbers that other programs print may differ and still be the same.
