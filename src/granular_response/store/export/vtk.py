@@ -70,8 +70,6 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
         kind = float if both.dtype.kind == "f" else np.int32
         return np.concatenate([np.zeros(n, kind), both.astype(kind)])
 
-    one = dataset.isel(state=index)
-    force, count = contact_force_sums(one)
     loaded = np.zeros(n, np.int32)
     loaded[dataset["loaded_disk"].values] = 1
     stress = coarse_grained_stress(load_forces(rest, state), position)
@@ -83,12 +81,12 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
     rolls = any(f"{prefix}_rolling_force" in dataset for prefix in PREFIXES)
     names = ("normal_force", "tangential_force", "overlap", "status", "wall", *(("rolling_force",) if rolls else ()))
     on_points: dict[str, np.ndarray] = {
-        "radius": on_disks(one["radius"].values),
+        "radius": on_disks(dataset["radius"].values),
         "angle": on_disks(state.angle),
-        "coordination": on_disks(count.astype(np.int32)),
+        "coordination": on_disks(state.contact_count().astype(np.int32)),
         "loaded": on_disks(loaded),
         "displacement": in_plane(np.concatenate(moves)),
-        "contact_force": on_disks(in_plane(force)),
+        "contact_force": on_disks(in_plane(contact_force_sums(state))),
         **{f"added_stress_{'xz'[a]}{'xz'[b]}": on_disks(stress[:, a, b]) for a in range(2) for b in range(2)},
     }
     piece = f'<Piece NumberOfPoints="{len(centres)}" NumberOfCells="{n + len(lines)}">'
