@@ -10,11 +10,10 @@ from pydantic import Field
 from ..state import FloatArray
 from .base import Flag, Sparse, allowed
 from .errors import SceneError, describe
+from .formats.csv_table import MOTION
 from .packing import Packing
 
 COLUMN = "column"
-#: Components of the motion of a disk: the keys, and the columns of a table of disks.
-COMPONENTS = ("vx", "vz", "spin")
 
 Numbers = Annotated[
     Annotated[float, Field(strict=True)]
@@ -38,7 +37,7 @@ class Motion(Sparse):
     (0.1, -0.1)
     """
 
-    sparse: ClassVar[tuple[str, ...]] = (*COMPONENTS, "weightless")
+    sparse: ClassVar[tuple[str, ...]] = (*MOTION, "weightless")
 
     vx: Numbers = Field(default=0.0, description="Velocity to the right at the start.")
     vz: Numbers = Field(default=0.0, description="Velocity upwards at the start.")
@@ -56,7 +55,7 @@ class Motion(Sparse):
     def of(self, packing: Packing) -> FloatArray:
         """(n, 3) velocities and spins of the disks of a packing; SceneError where the numbers are not those of it."""
         found = np.zeros((packing.n, 3))
-        for k, name in enumerate(COMPONENTS):
+        for k, name in enumerate(MOTION):
             given = getattr(self, name)
             if given == COLUMN:
                 columns = packing.columns or {}

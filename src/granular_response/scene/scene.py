@@ -18,10 +18,11 @@ from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
 from .base import MOST_STIFFNESS, PACKING_KINDS, PLACES, UNITS, Description, PackingDescription, Sparse
 from .errors import Problem, SceneError, SceneFileError, from_validation, show, show_key, suggestion
+from .formats.csv_table import MOTION
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
 from .material import Contact, Wall
-from .motion import COLUMN, COMPONENTS, Motion
+from .motion import COLUMN, Motion
 from .poured import PouredPacking
 from .protocol import Preparation, Protocol, Taps
 from .table import FilePacking
@@ -140,7 +141,7 @@ class Scene(Sparse):
         if np.any(np.asarray(motion.spin) != 0.0) and not self.contact.rubs and not self.resolved_wall.rubs:
             rule = "must be 0 without friction and tangential springs (contact and wall: friction, stiffness_ratio)"
             raise Problem(f"{rule}, which alone turn disks", key=("motion", "spin"), value=motion.spin)
-        for name in COMPONENTS:
+        for name in MOTION:
             given = getattr(motion, name)
             if given == COLUMN and not isinstance(self.packing, FilePacking):
                 raise Problem("must be numbers, the packing is not from a file", key=("motion", name), value=given)

@@ -60,10 +60,9 @@ UNITS = "reduced: mean disk radius, mean disk mass, g"
 
 STATUSES = flags(status.MEANINGS)
 _MOTION = ("position", "angle", "velocity", "angular_velocity")
-#: Lists of candidate contacts of a state, by what the names of their variables begin with.
-_LISTS = {"contact": "pairs", "wall": "walls"}
-#: By the same, the variables with the disk and with the other disk, or the wall.
-_CANDIDATES = {"contact": ("contact_disk", "contact_partner"), "wall": ("wall_disk", "wall_index")}
+#: By what the names of variables of contacts begin with: their list in a state, and the variables with the disk and
+#: with the other disk, or the wall.
+CONTACTS = {"contact": ("pairs", "contact_disk", "contact_partner"), "wall": ("walls", "wall_disk", "wall_index")}
 
 
 class ResultError(GranularError, ValueError):
@@ -85,8 +84,8 @@ def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Data
     """States of one packing and one candidate list, stacked along ``dimension``."""
     stacked = partial(described, along=dimension)
     data = {name: stacked(name, [getattr(state, name) for state in states]) for name in _MOTION}
-    for prefix, (first, second) in _CANDIDATES.items():
-        contacts: list[Contacts] = [getattr(state, _LISTS[prefix]) for state in states]
+    for prefix, (kind, first, second) in CONTACTS.items():
+        contacts: list[Contacts] = [getattr(state, kind) for state in states]
         data |= {first: described(first, contacts[0].first), second: described(second, contacts[0].second)}
         for name in (*CONTACT, *(ROLLING if any(one.resists_rolling for one in contacts) else ())):
             values = [getattr(one, name) for one in contacts]
@@ -343,7 +342,7 @@ def _own_places(own: Contacts, common: Contacts) -> np.ndarray:
 def _listed(own: Sequence[State], states: Sequence[State]) -> dict[str, xr.Variable]:
     """Which of the common candidates each state listed itself and in what order, where that is not the common one."""
     found = {}
-    for prefix, kind in _LISTS.items():
+    for prefix, (kind, *_) in CONTACTS.items():
         common = getattr(states[0], kind)
         places = np.stack([_own_places(getattr(state, kind), common) for state in own])
         if (places != np.arange(places.shape[1])).any():
@@ -393,7 +392,7 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         found = {
             name: one[f"{prefix}_{name}"].values for name in (*CONTACT, *ROLLING) if f"{prefix}_{name}" in one.variables
         }
-        first, second = (one[name].values.astype(np.int32) for name in _CANDIDATES[prefix])
+        first, second = (one[name].values.astype(np.int32) for name in CONTACTS[prefix][1:])
         return Contacts(first, second, **found)
 
     return State(

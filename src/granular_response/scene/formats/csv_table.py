@@ -38,7 +38,8 @@ METRES = {"m": 1.0, "dm": 1e-1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 _WITH_UNIT = re.compile(
     rf"(x|y|z|radius|r|diameter|d)_({'|'.join(METRES)}|μm|px)|mass_(kg|g|mg|ug|μg)|density_(kg_m3|g_cm3)"
 )
-#: Columns that are read where they are and have no unit, and taken where ``motion`` asks for them.
+#: Components of the motion of a disk: columns that are read where they are and have no unit, and taken where the keys
+#: of ``motion`` ask for them.
 MOTION = ("vx", "vz", "spin")
 #: Columns that look as if they were heeded, and cannot be: contacts have one law.
 REFUSED = {
@@ -105,10 +106,9 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
         if "mass" not in chosen:
             raise FormatError("column mass is missing, which tables of granular-response have")
     values = dict(zip(chosen, np.array(rows).T, strict=True))
-    for name in MATERIAL:
-        if name in values and not (values[name] > 0.0).all():
-            bad = int(np.argmin(values[name] > 0.0))
-            raise FormatError(f"{name} = {float(values[name][bad])!r}: must be greater than 0", places[bad])
+    if "density" in values and not (values["density"] > 0.0).all():
+        bad = int(np.argmin(values["density"] > 0.0))
+        raise FormatError(f"density = {float(values['density'][bad])!r}: must be greater than 0", places[bad])
     up = "z" if "z" in values else "y"
     if "y" in values and "z" in values:
         up = upward(values["y"], values["z"])

@@ -12,8 +12,6 @@ from ...scene import formats
 from ...state import Box, FloatArray, State
 from ..result import state_from
 
-PREFIXES = ("contact", "wall")
-
 
 class Frame(NamedTuple):
     """One state as pictures need it."""

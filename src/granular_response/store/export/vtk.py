@@ -17,9 +17,9 @@ import numpy as np
 import xarray as xr
 
 from ...observe.stress import coarse_grained_stress, load_forces
-from ..result import events_from, state_from
+from ..result import CONTACTS, events_from, state_from
 from ..variables import EVENTS
-from .frames import PREFIXES, contact_force_sums, in_plane
+from .frames import contact_force_sums, in_plane
 
 
 def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
@@ -78,7 +78,7 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
         "offsets": np.concatenate([np.arange(1, n + 1), n + 2 * np.arange(1, len(lines) + 1)]).astype(np.int64),
         "types": np.repeat(np.array([_VERTEX, _LINE], np.uint8), [n, len(lines)]),
     }
-    rolls = any(f"{prefix}_rolling_force" in dataset for prefix in PREFIXES)
+    rolls = any(f"{prefix}_rolling_force" in dataset for prefix in CONTACTS)
     names = ("normal_force", "tangential_force", "overlap", "status", "wall", *(("rolling_force",) if rolls else ()))
     on_points: dict[str, np.ndarray] = {
         "radius": on_disks(dataset["radius"].values),
