@@ -26,18 +26,8 @@ from ..scene.material import KNOWN_LAWS
 from ..solvers.problem import Problem
 from ..solvers.solution import Solution
 from ..solvers.timestep import time_step_reason
-from ..state import (
-    CONTACT_EVENTS,
-    LOST_EVENTS,
-    ROLLING_EVENTS,
-    Box,
-    Certificate,
-    Contacts,
-    Event,
-    Reached,
-    State,
-    status,
-)
+from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Box, Certificate, Contacts, Event, Reached, State
+from ..state.status import MEANINGS
 from .variables import (
     CERTIFICATE,
     CONTACT,
@@ -58,7 +48,7 @@ from .variables import (
 #: The system of units of everything stored.
 UNITS = "reduced: mean disk radius, mean disk mass, g"
 
-STATUSES = flags(status.MEANINGS)
+STATUSES = flags(MEANINGS)
 _MOTION = ("position", "angle", "velocity", "angular_velocity")
 #: By what the names of variables of contacts begin with: their list in a state, and the variables with the disk and
 #: with the other disk, or the wall.

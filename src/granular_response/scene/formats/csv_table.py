@@ -74,8 +74,8 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
                 once.add("mark of granular-response", place)
                 mark = found
             continue
-        if not header and line.count(";") > line.count(","):
-            between = ";"
+        if not header:
+            between = ";" if line.count(";") > line.count(",") else ","
         try:  # line by line: a quote that is not closed takes no further disk with it
             cells = next(csv.reader([line], delimiter=between, skipinitialspace=True, strict=True), [])
         except csv.Error as error:
