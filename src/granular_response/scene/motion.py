@@ -27,8 +27,8 @@ class Motion(Sparse):
     """Velocities and spins with which disks start, for :func:`granular_response.motion`.
 
     A number is that of all disks, a list has one for each; ``column`` takes them from the file of the packing: the
-    column of that name in a CSV table, the velocities of a LAMMPS data file, ``vx vy omegaz`` of a dump. Equilibria
-    are found from rest, so ``solve`` refuses a scene with a motion.
+    column of that name, without a unit, in a CSV table, the velocities of a LAMMPS data file, ``vx vy omegaz`` of a
+    dump. Equilibria are found from rest, so ``solve`` refuses a scene with a motion.
 
     Examples
     --------
