@@ -16,8 +16,8 @@ from pydantic import BeforeValidator, Field, ValidationError, model_validator
 from ..inputs import read_text, unreadable
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
-from .base import MOST_STIFFNESS, PACKING_KINDS, PLACES, UNITS, Description, PackingDescription, Sparse
-from .errors import Problem, SceneError, SceneFileError, from_validation, show, show_key, suggestion
+from .base import MOST_STIFFNESS, PACKING_KINDS, PLACES, Description, PackingDescription, Sparse, refused
+from .errors import Problem, SceneError, SceneFileError, show, show_key, suggestion
 from .formats.csv_table import MOTION
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
@@ -196,7 +196,7 @@ class Scene(Sparse):
         try:
             return cls.model_validate(data, context={"folder": folder})
         except ValidationError as error:
-            raise from_validation(error, PACKING_KINDS, UNITS) from None
+            raise refused(error) from None
 
     @classmethod
     def from_arrays(
