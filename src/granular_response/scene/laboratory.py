@@ -170,15 +170,10 @@ class LaboratoryUnits:
 
     def _check_radius(self, packing: Any) -> None:
         """SceneError for a table with another mean radius; what is wrong with the table itself, a scene says."""
-        if isinstance(packing, Mapping) and packing.get("kind") == "file":
-            with contextlib.suppress(SceneError):
-                packing = FilePacking(**packing)
-        if not isinstance(packing, FilePacking):
-            return
-        try:
-            mean = packing.mean_radius()
-        except SceneError:
-            return
+        mean, described = None, isinstance(packing, Mapping) and packing.get("kind") == "file"
+        with contextlib.suppress(SceneError):
+            packing = FilePacking(**packing) if described else packing
+            mean = packing.mean_radius() if isinstance(packing, FilePacking) else None
         if mean is not None and not math.isclose(mean, self.radius, rel_tol=SAME_RADIUS):
             rule = f"must be within {SAME_RADIUS:.0%} of {mean:.4g}, the mean radius of {packing.path} in m"
             raise SceneError(describe(("radius",), self.radius, rule))
