@@ -91,7 +91,7 @@ def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     yield _text(path, style="bold")
     if not store.is_sealed(path):
         yield Text("not sealed: rewritten by another program, so its numbers are not vouched for", style="bold")
-    yield _pairs((name, _plain(value)) for name, value in attributes.items() if name not in _HIDDEN)
+    yield _pairs((name, value) for name, value in attributes.items() if name not in _HIDDEN)
     keys = {name: str(attributes[name]) for name in ("scene", "parameters") if name in attributes}
     texts = ((name, _text(_readable(text).rstrip())) for name, text in keys.items())
     for title, part in chain(_study(datasets) if result is None else _result(result), texts):
@@ -226,7 +226,8 @@ def _by_factor(result: xr.Dataset, rows: Iterable[tuple[str, Iterable[object]]])
 def _pairs(rows: Iterable[tuple[str, object]]) -> Table:
     """Names and what they stand for, without titles."""
     titles = ("name", "value")
-    table = _table(titles, ((name.replace("_", " "), value) for name, value in rows), left=titles, overflow="fold")
+    shown = ((name, f"{value:.6g}" if isinstance(value, float) else value) for name, value in rows)
+    table = _table(titles, ((name.replace("_", " "), value) for name, value in shown), left=titles, overflow="fold")
     table.show_header, table.columns[0].style = False, "dim"
     return table
 
@@ -234,7 +235,3 @@ def _pairs(rows: Iterable[tuple[str, object]]) -> Table:
 def _text(value: object, style: str = "") -> Text:
     """What a file holds as it is: no markup, and no characters that a terminal obeys."""
     return Text("".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in str(value)), style)
-
-
-def _plain(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
