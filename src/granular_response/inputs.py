@@ -22,6 +22,17 @@ def _check_mode(kind: int, path: str | os.PathLike[str]) -> None:
         raise OSError(errno.EINVAL, "is not a regular file", os.fspath(path))
 
 
+def unreadable(error: OSError | ValueError) -> str:
+    """Why a file cannot be read, in words."""
+    if isinstance(error, FileNotFoundError):
+        return "no such file"
+    if isinstance(error, UnicodeEncodeError):
+        return "has a name that this locale cannot spell"
+    if isinstance(error, UnicodeDecodeError):
+        return "is not a text file in UTF-8"
+    return f"cannot be read: {getattr(error, 'strerror', None) or error}"
+
+
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
     """What a regular file holds; what was opened is looked at, so nothing else can take its place. OSError."""
     # a pipe would wait to be opened

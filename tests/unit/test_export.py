@@ -19,7 +19,7 @@ from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.checked import read_result
 from granular_response.store.export import SUFFIXES, ExportError, contact_force_sums, export
-from granular_response.store.result import ResultError, scene_of, solution_from, to_dataset
+from granular_response.store.result import ResultError, scene_of, solution_from, state_from, to_dataset
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*no springs of friction")
 
@@ -161,7 +161,7 @@ def test_vtu(result, data, tmp_path, index):
     expected[:, 1] = state["mass"]
     expected[int(data["loaded_disk"][0]), :2] -= np.array(FORCE) * float(state["state_load_factor"])
     np.testing.assert_allclose(total[:n], expected, atol=1e-9)
-    sums, _ = contact_force_sums(state)
+    sums = contact_force_sums(state_from(data, index))
     np.testing.assert_allclose(mesh["contact_force"][:n, :2], sums, atol=1e-12)
 
 
@@ -227,7 +227,7 @@ def test_a_series_for_paraview(result, data, tmp_path):
 
     series = export(result, tmp_path / "result.pvd")
     entries = list(ElementTree.parse(series).getroot().iter("DataSet"))
-    assert [entry.get("timestep") for entry in entries] == ["0", "1"]
+    assert [entry.get("timestep") for entry in entries] == ["0.0", "1.0"]
     for index, entry in enumerate(entries):
         mesh = meshio.read(tmp_path / entry.get("file"))
         n = data.sizes["disk"]
@@ -430,3 +430,32 @@ def test_a_script_for_lammps_of_a_loaded_state_keeps_its_load(tmp_path):
 def test_what_lammps_has_not_is_refused(tmp_path):
     with pytest.raises(ExportError, match=r"in.lammps: loads\[0\].torque: must be left out"):
         lammps_lines({"loads.0.torque": 0.1}, tmp_path / "in.lammps")
+
+
+def test_a_mesh_moves_as_the_disks_do(periodic, tmp_path):
+    """A point of a contact without a disk moves with the disk, along its wall or across the side."""
+    states, mesh = store.read(periodic)[""], read_vtu(export(periodic, tmp_path / "disks.vtu"))
+    n, moved = states.sizes["disk"], np.diff(states["position"].values[[0, -1]], axis=0)[0]
+    assert np.abs(moved).max() > 1e-5 and len(mesh["points"]) > n
+    np.testing.assert_array_equal(mesh["displacement"][:n, :2], moved)
+    ends, pairs = mesh["displacement"][n:], mesh["connectivity"][n:].reshape(-1, 2)
+    bottom = mesh["points"][n:, 1] == 0.0
+    owner = {int(point): int(disk) for disk, point in pairs if point >= n}
+    np.testing.assert_array_equal(ends[bottom, 1], 0.0)
+    for point in np.flatnonzero(bottom):
+        assert ends[point, 0] == moved[owner[n + point], 0]
+    for point in np.flatnonzero(~bottom):  # an image: there is a disk that moves alike
+        assert (ends[point, :2] == moved).all(axis=1).any()
+    assert bottom.any() and not bottom.all()
+    assert not read_vtu(export(periodic, tmp_path / "rest.vtu", state=0))["displacement"].any()
+
+
+@pytest.mark.parametrize(
+    ("factors", "times"), [([0.25, 1.0], [0.0, 0.25, 1.0]), ([0.5, 1.0, 0.5], [0, 1, 2, 3]), ([0.0], [0, 1])]
+)
+def test_the_times_of_a_series_are_its_loads_where_these_grow(tmp_path, factors, times):
+    solved = gr.solve(Scene.from_dict(SCENE), load_factors=factors, progress=False)
+    series = ElementTree.parse(solved.export(tmp_path / "path.pvd")).getroot()
+    assert [float(entry.get("timestep")) for entry in series.iter("DataSet")] == times
+    for entry, factor in zip(series.iter("DataSet"), [0.0, *factors], strict=True):
+        assert read_vtu(tmp_path / entry.get("file"))["load_factor"].tolist() == [factor]

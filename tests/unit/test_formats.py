@@ -591,7 +591,10 @@ ONE_DISK = "x,z,radius,mass\n1,1,1,1\n"
         (f"x,z,radius,weight\n{TWO_DISKS}", "column weight: unknown, did you mean mass? (mass or density, or neither)"),
         (f"x,z,radius,masses\n{TWO_DISKS}", "column masses: unknown, did you mean mass? (mass or density, or neither)"),
         (f"x,z,radius,Rho\n{TWO_DISKS}", "column rho: unknown, did you mean density? (mass or density, or neither)"),
-        (f"x [mm],z [mm],radius [cm],mass\n{TWO_DISKS}", "columns x, z and radius: must have the same unit of length"),
+        (
+            f"x [mm],z [mm],radius [cm],mass\n{TWO_DISKS}",
+            "must have the same unit of length, not mm, mm, cm; convert them in the table",
+        ),
         (f"X,x,z,radius\n{TWO_DISKS}", "column x is given 2 times, header must name x, z and radius"),
         (f"{ONE_DISK}1e300,1,1,1\n", "reach from 0 to 1e+300, packing.origin says where left wall and floor are"),
         (f"{ONE_DISK}4,1e300,1,1\n", "z = 1e+300: must be at most 1e+09, 1e9 mean radii"),
@@ -790,3 +793,40 @@ def test_a_damaged_name_of_a_gsd_file_is_no_missing_chunk(result, tmp_path, whol
     (tmp_path / "a.gsd").write_bytes(content + b"\0")
     with pytest.raises(SceneError, match=r"its parts end at byte \d+, it has \d+$"):
         build(tmp_path / "a.gsd")
+
+
+@pytest.mark.parametrize("header", ["x;z;radius;mass", "x_mm;z_mm;r_mm;mass_g", "X_UM,Z [µm],radius_μm,density_kg_m3"])
+def test_semicolons_between_columns_and_units_after_an_underscore(tmp_path, header):
+    between = ";" if ";" in header else ","
+    rows = (header, "1,1,1,1", "4,1,2,0.5")
+    packing = build(tmp_path / "a.csv", "\n".join(row.replace(",", between) for row in rows), width=9.0)
+    np.testing.assert_allclose(packing.position, np.array([[1, 1], [4, 1]]) / 1.5)
+    np.testing.assert_allclose(packing.mass, [2 / 3, 4 / 3] if "density" in header else [4 / 3, 2 / 3])
+
+
+@pytest.mark.parametrize(
+    ("text", "columns", "message"),
+    [
+        ("x;z;radius\n1,5;2;1\n", None, "line 2: x = '1,5': must be a finite number with a decimal point, not a comma"),
+        ("x_mm,z_mm,radius_um\n1,1,1\n", None, "columns x, z and radius: must have .*, not mm, mm, um; convert them "),
+        ("x_mm,z_mm,radius\n1,1,1\n", None, "the same unit of length, not mm, mm, none; "),
+        ("x_left,z_mm,r_mm\n1,1,1\n", None, "column x is missing"),
+        ("x_mm,z_mm,r_mm,r_cm\n1,1,1,1\n", {"x": "X_mm", "radius": "r_cm"}, "not mm, mm, cm; "),
+    ],
+)  # fmt: skip
+def test_separators_and_units_that_cannot_be_meant(tmp_path, text, columns, message):
+    with pytest.raises(SceneError, match=message):
+        build(tmp_path / "a.csv", text, width=9.0, columns=columns)
+
+
+def test_a_name_without_a_unit_comes_before_one_with_it(tmp_path):
+    packing = build(tmp_path / "a.csv", "x_mm,x,z,radius,radius_mm\n9,1,1,1,9\n", width=9.0)
+    np.testing.assert_allclose(packing.position, [[1, 1]])
+
+
+def test_velocities_with_a_unit_are_not_taken_for_reduced_ones(tmp_path):
+    (tmp_path / "a.csv").write_text("x,z,radius,vx [mm/s]\n1,1,1,40\n")
+    packing = {"kind": "file", "path": "a.csv", "width": 9}
+    scene = Scene.from_dict({"packing": packing, "motion": {"vx": "column"}, "loads": []}, folder=tmp_path)
+    with pytest.raises(SceneError, match=r"^motion\.vx = 'column': must be .* a column vx in reduced units$"):
+        scene.motion.of(scene.packing.build())

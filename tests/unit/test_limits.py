@@ -171,3 +171,11 @@ def test_walls_have_names_in_messages():
             check_overlaps(problem, sunk)
         with pytest.raises(gr.SolveError, match=r"take a smaller load or a larger contact\.normal_stiffness$"):
             check_overlaps(problem, replace(sunk, load_factor=0.5))
+
+
+def test_two_disks_inside_each_other_are_named_as_an_event_names_them():
+    problem = Problem.from_scene(gr.Scene.from_arrays(x=[1, 5], z=[1, 1], radius=1.0, width=10, scene={"loads": []}))
+    sunk = problem.relisted(replace(problem.bare_state(), position=np.array([[4.5, 3.0], [5.0, 3.0]])))
+    two = gr.Event(0.0, "opens", 0, 1).where
+    with pytest.raises(gr.SolveError, match=rf"^{two} overlap by 1\.5 mean radii at load factor 0"):
+        check_overlaps(problem, sunk)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from granular_response.scene import LaboratoryUnits, SceneError
+from granular_response.scene import FilePacking, LaboratoryUnits, Scene, SceneError
 
 #: pi (3.75 mm)^2 6.6 mm 1150 kg/m3 = 0.3353 g; weight 3.286 mN; sqrt(3.75 mm / 9.8 m/s2) = 19.56 ms.
 BY_HAND = {
@@ -70,3 +70,31 @@ def test_the_box_of_poured_disks_has_a_width_in_metres():
     assert poured["packing"]["width"] == pytest.approx(10.0)
     own = {"packing": {"kind": "file", "path": "disks.csv", "width": 0.0375}}
     assert units.reduced_scene(own) == own
+
+
+@pytest.mark.parametrize("header", ["x_mm,z_mm,diameter_mm", "X [mm];Z [mm];Diameter [mm]"])
+def test_a_table_that_names_its_unit_has_the_mean_radius_of_the_units(tmp_path, header):
+    """Diameters in the place of radii, or a radius of one species, would make every force wrong without a word."""
+    between = ";" if ";" in header else ","
+    rows = [between.join(map(str, row)) for row in ((3.75, 3.7, 7.4), (11.25, 3.8, 7.6))]
+    (tmp_path / "disks.csv").write_text("\n".join([header, *rows]) + "\n")
+    packing = {"kind": "file", "path": str(tmp_path / "disks.csv"), "width": 15.1}
+    for given in (packing, FilePacking(**packing)):
+        assert LaboratoryUnits(radius=3.77e-3).reduced_scene({"packing": given}) == {"packing": given}
+        with pytest.raises(SceneError) as caught:
+            LaboratoryUnits(radius=7.5e-3).reduced_scene({"packing": given})
+    assert str(caught.value) == (
+        f"radius = 0.0075: must be within 1% of 0.00375, the mean radius of {tmp_path / 'disks.csv'} in m"
+    )
+    for unit in ("", "_px"):  # of no known size
+        (tmp_path / "disks.csv").write_text(f"x{unit},z{unit},radius{unit}\n1,1,1\n")
+        assert LaboratoryUnits().reduced_scene({"packing": packing})
+
+
+def test_what_is_wrong_with_a_table_is_for_the_scene_to_say(tmp_path):
+    (tmp_path / "disks.csv").write_text("x_mm,z_mm,radius_mm\n1,1,one\n")
+    for given in ({"path": str(tmp_path / "disks.csv")}, {"path": 5}, {"path": "disks.csv", "widht": 3}):
+        data = {"packing": {"kind": "file", **given}}
+        assert LaboratoryUnits().reduced_scene(data) == data
+        with pytest.raises(SceneError, match=r"^packing\."):
+            Scene.from_dict(data).packing.build()

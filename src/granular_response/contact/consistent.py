@@ -7,16 +7,12 @@ a mean radius. At a kink, where the derivative jumps, a law is asked again a lit
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import cache
-from types import FunctionType
-from typing import Any
 
 import numba as nb
 import numpy as np
 
-from ..machine import lanes
 from .law import Law, elastic_force, energy, stiffness
 
 #: Overlaps (mean radii), none of them a round number at which a law may have a kink.
@@ -25,15 +21,6 @@ OVERLAPS = 1.0137 * np.geomspace(1e-6, 0.1, 11)
 STEP, TOLERANCE = 1e-4, 1e-4
 #: Radii of the bodies in contact; None is a wall.
 BODIES = ((1.0, 1.0), (0.8, 1.1), (1.0, None))
-
-#: What functions of lanes do to numbers, where Python cannot call them.
-_IN_PYTHON: dict[Any, Callable] = {
-    lanes.root: math.sqrt,
-    lanes.magnitude: abs,
-    lanes.select: lambda condition, yes, no: yes if condition else no,
-    lanes.quotient_where: lambda condition, dividend, divisor, other: dividend / divisor if condition else other,
-    lanes.less_product: lambda value, factor, other: value - factor * other,
-}
 
 
 def contradiction(law: Law) -> str:
@@ -51,7 +38,7 @@ def contradiction(law: Law) -> str:
 def _at(law: Law, overlap: float, shape: float | None) -> str:
     """The same at one overlap."""
     step = STEP * overlap
-    low, here, high = (_asked(law, overlap + k * step, shape) for k in (-1, 0, 1))
+    low, here, high = (_asked()(law, overlap + k * step, shape) for k in (-1, 0, 1))
     if not np.isfinite([low, here, high]).all():
         return f"energy, elastic_force or stiffness is no finite number at overlap {overlap:.3g}"
     work, force, stiff = here
@@ -65,33 +52,10 @@ def _at(law: Law, overlap: float, shape: float | None) -> str:
     return ""
 
 
-def _asked(law: Law, overlap: float, shape: float | None) -> tuple[float, float, float]:
-    """Energy, force and stiffness."""
-    try:
-        found = [float(one(law, overlap, shape)) for one in _in_python(type(law))]
-    except NotImplementedError:  # what a law calls has functions of lanes in it
-        found = _compiled()(law, overlap, shape)
-    return found[0], found[1], found[2]
-
-
 @cache
-def _in_python(kind: type) -> list[Callable]:
-    """The methods of a class of laws with what Python can call in the place of functions of lanes."""
+def _asked() -> Callable:
+    """Energy, force and stiffness of a law at an overlap, compiled: what they call need not be Python's."""
 
-    def plain(method: Any) -> Callable:
-        if not isinstance(method, FunctionType):
-            return method
-        known = {
-            name: _IN_PYTHON.get(one, one) if callable(one) and one.__hash__ else one
-            for name, one in method.__globals__.items()
-        }
-        return FunctionType(method.__code__, known, method.__name__, method.__defaults__, method.__closure__)
-
-    return [plain(getattr(kind, name)) for name in ("energy", "elastic_force", "stiffness")]
-
-
-@cache
-def _compiled() -> Callable:
     @nb.njit(error_model="numpy")
     def asked(law, overlap, shape):
         return energy(law, overlap, shape), elastic_force(law, overlap, shape), stiffness(law, overlap, shape)

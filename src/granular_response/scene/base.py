@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
@@ -19,7 +20,7 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from .errors import Problem, from_validation, suggestion
+from .errors import MISSING, Problem, SceneError, describe, show_key, suggestion
 from .given import plain, unordered
 
 if TYPE_CHECKING:
@@ -67,6 +68,33 @@ def unit_of(name: str, info: FieldInfo) -> str:
     return str(extra.get("unit", UNITS.get(name, "")))
 
 
+def refused(error: ValidationError) -> SceneError:
+    """The first mistake that pydantic found, with the number of further ones."""
+    found = error.errors(include_url=False)
+    first = found[0]
+    found_at = first["loc"]
+    kinds = {k for k, part in enumerate(found_at) if k and found_at[k - 1] == "packing" and part in PACKING_KINDS}
+    path = tuple(part for k, part in enumerate(found_at) if k not in kinds)  # tags of pydantic, which no file has
+    value = first["input"]
+    problem = first.get("ctx", {}).get("error")
+    if first["type"] == "missing":
+        message = f"{show_key(path)}: missing, must be given"
+    elif isinstance(problem, Problem):
+        value = value if problem.value is MISSING else problem.value
+        message = describe(path + problem.key, value, problem.allowed)
+    elif first["type"] == "literal_error":
+        choices = re.findall(r"'([^']*)'", first["ctx"]["expected"])
+        message = describe(path, value, f"must be {' or '.join(choices)}{suggestion(value, choices)}")
+    else:
+        said = first["msg"].replace("Input should be", "must be")
+        message = describe(path, value, said.replace("valid tuple", "list").replace("valid dictionary", "mapping"))
+    unit = UNITS.get(str(path[-1]) if path else "", "")
+    if unit and isinstance(value, str) and re.match(r"\s*[-+]?(?!0x)\.?\d[\d.]*(e[-+]?\d+)?\s*[a-zµ]", value, re.I):
+        message += f"; the unit is {unit}, gr.LaboratoryUnits converts"
+    more = len(found) - 1
+    return SceneError(message + (f" (and {more} more mistake{'s' * (more > 1)})" if more else ""))
+
+
 class _Public(ModelMetaclass):
     """Has ``help`` and ``dir`` list what a description adds, and nothing of pydantic."""
 
@@ -86,7 +114,7 @@ class Description(BaseModel, metaclass=_Public):
         try:
             super().__init__(**data)
         except ValidationError as error:
-            raise from_validation(error, PACKING_KINDS, UNITS) from None
+            raise refused(error) from None
 
     # Without this mark pydantic would call __init__ for nested descriptions too and lose the path of the key.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..state import FLOOR, LEFT_WALL, RIGHT_WALL, Box, FloatArray
-from ..state.box import WALL_MEANINGS, wall_normals
+from ..state.box import WALL_MEANINGS, bodies, wall_normals
 from .formats.lammps_dump import WALL_FIXES, read_contacts
 from .formats.table import FormatError, Once, Table, lines_of, number, shown, whole_number
 
@@ -35,9 +35,7 @@ class GivenContact(NamedTuple):
     @property
     def words(self) -> str:
         """Its two sides."""
-        if self.at_wall:
-            return f"disk {self.first} and the {WALL_MEANINGS[self.second].replace('_', ' ')}"
-        return f"disks {self.first} and {self.second}"
+        return bodies(self.first, self.second, self.at_wall)
 
 
 def checked(contacts: Iterable[GivenContact], disks: int) -> tuple[GivenContact, ...]:
@@ -96,7 +94,7 @@ def _of_pairs(path: Path, position: FloatArray, box: Box, table: Table) -> Itera
     if table.ids is None:
         raise FormatError("calls disks by their ids, so the file of the disks must have ids")
     known = {float(one): k for k, one in enumerate(table.ids)}
-    for (one, two, normal, x, y, z), place in zip(*read_contacts(path), strict=True):
+    for (one, two, normal, x, y, z), place in read_contacts(path):
         if one not in known or two not in known:
             raise FormatError(f"atoms {one:.0f} and {two:.0f}: must be ids of disks", place)
         apart = box.separation(position[known[one]], position[known[two]])

@@ -5,14 +5,13 @@ from __future__ import annotations
 import difflib
 import re
 import reprlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
-
-from pydantic import ValidationError
 
 from ..errors import GranularError
 
-_MISSING: Any = object()
+#: In place of a value that was not given.
+MISSING: Any = object()
 
 _short = reprlib.Repr()
 _short.maxstring = _short.maxother = 60
@@ -37,7 +36,7 @@ class Problem(GranularError, ValueError):
     ``key`` extends the path of the validated object and ``value`` replaces its input in the message.
     """
 
-    def __init__(self, allowed: str, *, key: Sequence[str | int] = (), value: Any = _MISSING) -> None:
+    def __init__(self, allowed: str, *, key: Sequence[str | int] = (), value: Any = MISSING) -> None:
         super().__init__(allowed)
         self.allowed, self.key, self.value = allowed, tuple(key), value
 
@@ -70,34 +69,3 @@ def describe(path: Iterable[str | int], value: object, allowed: str) -> str:
     """The one line itself."""
     key = show_key(path)
     return f"{key} = {show(value)}: {allowed}" if key else f"{show(value)}: {allowed}"
-
-
-def from_validation(error: ValidationError, kinds: Iterable[str], units: Mapping[str, str]) -> SceneError:
-    """The first mistake that pydantic found, with the number of further ones.
-
-    ``kinds`` are the tags that pydantic puts in the path of a tagged union and that no scene file has; ``units`` are
-    those of keys, for numbers that are given with a unit.
-    """
-    found = error.errors(include_url=False)
-    first = found[0]
-    found_at = first["loc"]
-    tags = tuple(kinds)
-    path = tuple(part for k, part in enumerate(found_at) if not (k and found_at[k - 1] == "packing" and part in tags))
-    value = first["input"]
-    problem = first.get("ctx", {}).get("error")
-    if first["type"] == "missing":
-        message = f"{show_key(path)}: missing, must be given"
-    elif isinstance(problem, Problem):
-        value = value if problem.value is _MISSING else problem.value
-        message = describe(path + problem.key, value, problem.allowed)
-    elif first["type"] == "literal_error":
-        choices = re.findall(r"'([^']*)'", first["ctx"]["expected"])
-        message = describe(path, value, f"must be {' or '.join(choices)}{suggestion(value, choices)}")
-    else:
-        said = first["msg"].replace("Input should be", "must be")
-        message = describe(path, value, said.replace("valid tuple", "list").replace("valid dictionary", "mapping"))
-    unit = units.get(str(path[-1]) if path else "", "")
-    if unit and isinstance(value, str) and re.match(r"\s*[-+]?(?!0x)\.?\d[\d.]*(e[-+]?\d+)?\s*[a-zµ]", value, re.I):
-        message += f"; the unit is {unit}, gr.LaboratoryUnits converts"
-    more = len(found) - 1
-    return SceneError(message + (f" (and {more} more mistake{'s' * (more > 1)})" if more else ""))

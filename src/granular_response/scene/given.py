@@ -27,7 +27,8 @@ def plain(value: Any) -> Any:
     ([1.0, nan], [1.0, 3.0], [0, 1])
     """
     if isinstance(value, np.generic):
-        return _number(value)
+        item = value.item()
+        return float(item) if isinstance(item, np.floating) else item  # those of more than 64 bits are their own items
     if isinstance(value, (list, tuple, range)):
         return [plain(part) for part in value]
     if isinstance(value, (array, memoryview)) or (hasattr(value, "__array__") and not isinstance(value, type)):
@@ -38,17 +39,8 @@ def plain(value: Any) -> Any:
             listed = values.tolist()
         except (TypeError, ValueError):  # a dataset, which has an __array__ that refuses
             return value
-        return [plain(part) for part in listed] if isinstance(listed, list) else _scalar(listed)
+        return plain(listed)
     return value
-
-
-def _scalar(value: Any) -> Any:
-    return _number(value) if isinstance(value, np.generic) else value
-
-
-def _number(value: np.generic) -> Any:
-    item = value.item()
-    return float(item) if isinstance(item, np.floating) else item  # those of more than 64 bits are their own items
 
 
 def unordered(value: Any) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -14,9 +15,12 @@ from .base import UNITS, unit_of
 from .errors import SceneError, describe, suggestion
 from .given import plain
 from .material import KNOWN_LAWS
+from .table import FilePacking
 
 Value = TypeVar("Value", float, NDArray[np.float64])
 
+#: By which the mean radius of a table may differ from that of the units, relatively: forces then differ by 2 %.
+SAME_RADIUS = 0.01
 #: Powers of length, mass and time in each quantity.
 _DIMENSIONS: Final = {
     "length": (1, 0, 0),
@@ -139,7 +143,8 @@ class LaboratoryUnits:
     def reduced_scene(self, scene: Mapping[str, Any]) -> dict[str, Any]:
         """The data of a scene with its forces, displacements, stiffnesses, times, energies and motion in SI units.
 
-        The keys are those of a scene file. Plain numbers stay, and columns of own disks, in any unit of length.
+        The keys are those of a scene file. Plain numbers stay, and columns of own disks, in any unit of length. A table
+        that names its unit (``radius_mm``) must have the mean radius of these units, within 1 %; else a SceneError.
 
         Examples
         --------
@@ -160,7 +165,18 @@ class LaboratoryUnits:
             number = quantity and isinstance(value, (int, float)) and not isinstance(value, bool)
             return self.to_reduced(quantity, float(value)) if number else value
 
+        self._check_radius(scene.get("packing"))
         return {key: reduced(part, keys=_quantities(key, part, scene)) for key, part in scene.items()}
+
+    def _check_radius(self, packing: Any) -> None:
+        """SceneError for a table with another mean radius; what is wrong with the table itself, a scene says."""
+        mean, described = None, isinstance(packing, Mapping) and packing.get("kind") == "file"
+        with contextlib.suppress(SceneError):
+            packing = FilePacking(**packing) if described else packing
+            mean = packing.mean_radius() if isinstance(packing, FilePacking) else None
+        if mean is not None and not math.isclose(mean, self.radius, rel_tol=SAME_RADIUS):
+            rule = f"must be within {SAME_RADIUS:.0%} of {mean:.4g}, the mean radius of {packing.path} in m"
+            raise SceneError(describe(("radius",), self.radius, rule))
 
     def define(self, registry: Any) -> None:
         """Define the units that results name in a registry of pint: mean_radius, mean_mass, reduced_time, mean_weight.

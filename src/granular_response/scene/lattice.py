@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from .base import Fraction, Index, PackingDescription, Sides, allowed
 from .errors import Problem
-from .packing import Packing, exact_mean
+from .packing import Packing, exact_mean, generator
 
 TOUCHING_LARGEST = "touching-largest"
 MOST_DISKS = 100_000_000
@@ -83,8 +83,7 @@ class LatticePacking(PackingDescription):
         count, left = self.row_count(), self._left()
         row = np.repeat(np.arange(len(count)), count)
         column = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
-        sequence = np.random.SeedSequence(self.seed, spawn_key=(self.realization,))
-        radius = 1.0 - self.polydispersity * np.random.default_rng(sequence).random(len(row))
+        radius = 1.0 - self.polydispersity * generator(self.seed, self.realization).random(len(row))
         a = self.spacing
         x = 0.5 * a * (1 + left[row] + 2 * column)
         z = 0.5 * a + row * (0.5 * math.sqrt(3.0) * a)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, ClassVar, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from .base import Description, Finite, Vector, allowed
+from .base import Description, Finite, Sparse, Vector, allowed
 from .errors import Problem, SceneError, show, show_key
 from .packing import Packing
 
@@ -69,7 +69,7 @@ Displacement = Annotated[
 ]
 
 
-class Load(Description):
+class Load(Sparse):
     """A force (mg) and a torque (mg × mean radius) on one disk, or a prescribed displacement (mean radii) of it.
 
     A disk that is displaced is held where the displacement says, and the force that this takes is part of the answer.
@@ -81,6 +81,8 @@ class Load(Description):
     Load(disk='top-centre', force=(0.0, -4.0))
     >>> pressed = gr.Load(disk="top-centre", displacement=(None, -0.01))
     """
+
+    sparse: ClassVar[tuple[str, ...]] = ("displacement",)
 
     disk: Selector = Field(
         description="The loaded disk: the topmost one nearest the middle in the initial equilibrium (top-centre), an "
@@ -111,11 +113,6 @@ class Load(Description):
                 rule = f"must be 0 along {name}, where displacement holds the disk"
                 raise Problem(rule, key=("force",), value=list(self.force))
         return self
-
-    @model_serializer(mode="wrap")
-    def _without_null(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """A load without a displacement is written without the key, as ever."""
-        return {key: value for key, value in whole(self).items() if key != "displacement" or value is not None}
 
     def holds(self, axis: int) -> bool:
         """Whether the disk is held along x (0) or z (1)."""

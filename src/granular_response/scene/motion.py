@@ -10,11 +10,10 @@ from pydantic import Field
 from ..state import FloatArray
 from .base import Flag, Sparse, allowed
 from .errors import SceneError, describe
+from .formats.csv_table import MOTION
 from .packing import Packing
 
 COLUMN = "column"
-#: Components of the motion of a disk: the keys, and the columns of a table of disks.
-COMPONENTS = ("vx", "vz", "spin")
 
 Numbers = Annotated[
     Annotated[float, Field(strict=True)]
@@ -28,8 +27,8 @@ class Motion(Sparse):
     """Velocities and spins with which disks start, for :func:`granular_response.motion`.
 
     A number is that of all disks, a list has one for each; ``column`` takes them from the file of the packing: the
-    column of that name in a CSV table, the velocities of a LAMMPS data file, ``vx vy omegaz`` of a dump. Equilibria
-    are found from rest, so ``solve`` refuses a scene with a motion.
+    column of that name, without a unit, in a CSV table, the velocities of a LAMMPS data file, ``vx vy omegaz`` of a
+    dump. Equilibria are found from rest, so ``solve`` refuses a scene with a motion.
 
     Examples
     --------
@@ -38,7 +37,7 @@ class Motion(Sparse):
     (0.1, -0.1)
     """
 
-    sparse: ClassVar[tuple[str, ...]] = (*COMPONENTS, "weightless")
+    sparse: ClassVar[tuple[str, ...]] = (*MOTION, "weightless")
 
     vx: Numbers = Field(default=0.0, description="Velocity to the right at the start.")
     vz: Numbers = Field(default=0.0, description="Velocity upwards at the start.")
@@ -56,12 +55,12 @@ class Motion(Sparse):
     def of(self, packing: Packing) -> FloatArray:
         """(n, 3) velocities and spins of the disks of a packing; SceneError where the numbers are not those of it."""
         found = np.zeros((packing.n, 3))
-        for k, name in enumerate(COMPONENTS):
+        for k, name in enumerate(MOTION):
             given = getattr(self, name)
             if given == COLUMN:
                 columns = packing.columns or {}
                 if name not in columns:
-                    rule = f"must be numbers, the packing is from no file with a column {name}"
+                    rule = f"must be numbers, the packing is from no file with a column {name} in reduced units"
                     raise SceneError(describe(("motion", name), given, rule))
                 given = columns[name]
                 if not np.isfinite(given).all():

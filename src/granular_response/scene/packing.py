@@ -26,6 +26,11 @@ def exact_mean(values: FloatArray) -> float:
     return math.fsum(np.asarray(values) / scale) / len(values) * scale
 
 
+def generator(seed: int, realization: int) -> np.random.Generator:
+    """Random numbers of one packing of an ensemble, the same ones each time."""
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(realization,)))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Packing:
     """n disks before the preparation, in reduced units; the arrays are never modified.

@@ -17,7 +17,7 @@ from pydantic import Field, model_validator
 from ..state import FloatArray
 from .base import Fraction, Index, PackingDescription, Positive, Sides, allowed
 from .errors import Problem
-from .packing import Packing, exact_mean
+from .packing import Packing, exact_mean, generator
 
 MOST_POURED = 20_000
 #: Distance, in mean radii, within which a disk is where it was.
@@ -83,22 +83,19 @@ class PouredPacking(PackingDescription):
         """Pour the disks: the same ones, in the same places, each time."""
         return _poured(self)
 
-    def _generator(self) -> np.random.Generator:
-        return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(self.realization,)))
-
     def _radius(self) -> FloatArray:
         """(n,) radii with mean 1, in the order in which the disks fall."""
-        generator = self._generator()
+        numbers = generator(self.seed, self.realization)
         share = np.cumsum(self.fractions or [1.0] * len(self.sizes))
-        which = np.searchsorted(share / share[-1], generator.random(self.disks), side="right")
-        radius = np.array(self.sizes)[which] * (1.0 - self.polydispersity * generator.random(self.disks))
+        which = np.searchsorted(share / share[-1], numbers.random(self.disks), side="right")
+        radius = np.array(self.sizes)[which] * (1.0 - self.polydispersity * numbers.random(self.disks))
         return radius / exact_mean(radius)
 
 
 @lru_cache(maxsize=4)
 def _poured(packing: PouredPacking) -> Packing:
     radius = packing._radius()
-    fall = packing._generator().spawn(1)[0].random(packing.disks)
+    fall = generator(packing.seed, packing.realization).spawn(1)[0].random(packing.disks)
     heap = _Heap(radius, packing.width, packing.periodic)
     for part in fall:
         heap.drop(part)

@@ -13,15 +13,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
-from ..inputs import read_text
+from ..inputs import read_text, unreadable
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
-from .base import MOST_STIFFNESS, PACKING_KINDS, PLACES, UNITS, Description, PackingDescription, Sparse
-from .errors import Problem, SceneError, SceneFileError, from_validation, show, show_key, suggestion
+from .base import MOST_STIFFNESS, PACKING_KINDS, PLACES, Description, PackingDescription, Sparse, refused
+from .errors import Problem, SceneError, SceneFileError, show, show_key, suggestion
+from .formats.csv_table import MOTION
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
 from .material import Contact, Wall
-from .motion import COLUMN, COMPONENTS, Motion
+from .motion import COLUMN, Motion
 from .poured import PouredPacking
 from .protocol import Preparation, Protocol, Taps
 from .table import FilePacking
@@ -140,7 +141,7 @@ class Scene(Sparse):
         if np.any(np.asarray(motion.spin) != 0.0) and not self.contact.rubs and not self.resolved_wall.rubs:
             rule = "must be 0 without friction and tangential springs (contact and wall: friction, stiffness_ratio)"
             raise Problem(f"{rule}, which alone turn disks", key=("motion", "spin"), value=motion.spin)
-        for name in COMPONENTS:
+        for name in MOTION:
             given = getattr(motion, name)
             if given == COLUMN and not isinstance(self.packing, FilePacking):
                 raise Problem("must be numbers, the packing is not from a file", key=("motion", name), value=given)
@@ -195,7 +196,7 @@ class Scene(Sparse):
         try:
             return cls.model_validate(data, context={"folder": folder})
         except ValidationError as error:
-            raise from_validation(error, PACKING_KINDS, UNITS) from None
+            raise refused(error) from None
 
     @classmethod
     def from_arrays(
@@ -282,14 +283,10 @@ class Scene(Sparse):
             return cls.from_text(read_text(path), folder=path.parent.absolute())
         except SceneError as error:
             raise SceneError(f"{path}: {error}") from None
-        except FileNotFoundError:
-            raise SceneFileError(f"{path}: no such file") from None
-        except UnicodeDecodeError:
-            raise SceneError(f"{path}: is not a text file in UTF-8") from None
-        except OSError as error:
-            raise SceneFileError(f"{path}: cannot be read: {error.strerror}") from None
+        except (OSError, UnicodeDecodeError) as error:
+            raise SceneFileError(f"{path}: {unreadable(error)}") from None
         except ValueError as error:  # no name of a file
-            raise SceneFileError(f"{str(path)!r}: cannot be read: {error}") from None
+            raise SceneFileError(f"{str(path)!r}: {unreadable(error)}") from None
 
     def to_dict(self) -> dict[str, Any]:
         """All keys as nested dicts, lists, numbers and text.

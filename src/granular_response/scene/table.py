@@ -13,6 +13,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationInfo, model_validator
 
+from ..inputs import unreadable
 from . import formats
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
 from .disks import ROUNDING, packed
@@ -123,6 +124,15 @@ class FilePacking(Sparse, PackingDescription):
         """All that it is read from."""
         return [self.file, *([Path(self._folder or ".", self.springs)] if self.springs else [])]
 
+    def _table(self) -> formats.Table:
+        return self._read(lambda: formats.read(self.file, self.format or formats.by_suffix(self.path), self.columns))
+
+    def mean_radius(self) -> float | None:
+        """Mean radius in m; None where the table names no unit of length. Raises SceneError if it cannot be read."""
+        table = self._table()
+        metres = csv_table.METRES.get(table.unit)
+        return None if metres is None else exact_mean(table.radius) * metres
+
     def build(self) -> Packing:
         """Read the table and rescale it.
 
@@ -134,7 +144,7 @@ class FilePacking(Sparse, PackingDescription):
 
         Warns (UserWarning) where a file of another program has disks of several sizes and no masses.
         """
-        table = self._read(lambda: formats.read(self.file, self.format or formats.by_suffix(self.path), self.columns))
+        table = self._table()
         left, floor, width = self._sides(table.box)
         try:
             packing = packed(table, left, floor, width, self.periodic)
@@ -179,14 +189,8 @@ class FilePacking(Sparse, PackingDescription):
                 return read()
         except formats.FormatError as error:
             raise self._error(str(error), error.place, key) from None
-        except FileNotFoundError:
-            raise self._error("no such file", key=key) from None
-        except UnicodeEncodeError:
-            raise self._error("has a name that this locale cannot spell", key=key) from None
-        except UnicodeDecodeError:
-            raise self._error("is not a text file in UTF-8", key=key) from None
-        except OSError as error:
-            raise self._error(f"cannot be read: {error.strerror}", key=key) from None
+        except (OSError, UnicodeError) as error:
+            raise self._error(unreadable(error), key=key) from None
 
     def _error(self, rule: str, place: str = "", key: str = "path") -> SceneError:
         return SceneError(describe(("packing", key), getattr(self, key), f"{place}: {rule}" if place else rule))

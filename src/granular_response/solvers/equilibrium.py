@@ -17,7 +17,7 @@ import numpy as np
 
 from ..errors import EquilibriumError
 from ..state import Certificate, FloatArray, State
-from ..state.box import WALL_MEANINGS
+from ..state.box import bodies
 from .problem import Problem
 from .stability import Spectrum
 from .system import Configuration, StaticSystem, Trial
@@ -211,9 +211,9 @@ def check_overlaps(problem: Problem, state: State) -> None:
         When two disks overlap by the smaller radius or more, or a disk and a wall by the radius.
     """
     radius = problem.packing.radius
-    for contacts, size, other in (
-        (state.pairs, np.minimum(radius[state.pairs.first], radius[state.pairs.second]), "disk {}".format),
-        (state.walls, radius[state.walls.first], lambda wall: f"the {WALL_MEANINGS[wall].replace('_', ' ')}"),
+    for contacts, size, at_wall in (
+        (state.pairs, np.minimum(radius[state.pairs.first], radius[state.pairs.second]), False),
+        (state.walls, radius[state.walls.first], True),
     ):
         beyond = np.flatnonzero(contacts.overlap >= size)
         if len(beyond):
@@ -222,7 +222,7 @@ def check_overlaps(problem: Problem, state: State) -> None:
             if state.load_factor == 0.0:  # no load does this, whatever the scene has
                 cure = "a larger contact.normal_stiffness"
             raise EquilibriumError(
-                f"disk {contacts.first[k]} and {other(contacts.second[k])} overlap by "
+                f"{bodies(contacts.first[k], contacts.second[k], at_wall)} overlap by "
                 f"{contacts.overlap[k]:.3g} mean radii at load factor {state.load_factor:g}, as much as a radius: "
                 f"take {cure}"
             )

@@ -35,6 +35,13 @@ def foot_points(position, radius, wall) -> FloatArray:
     return np.asarray(position) - np.asarray(radius)[:, None] * wall_normals(wall)
 
 
+def bodies(first: int, second: int, at_wall: bool) -> str:
+    """The two sides of a contact for people: "disks 3 and 1", or "disk 3 and the left wall"."""
+    if at_wall:
+        return f"disk {first} and the {WALL_MEANINGS[second].replace('_', ' ')}"
+    return f"disks {first} and {second}"
+
+
 @dataclass(frozen=True)
 class Box:
     """Floor and sides of a packing."""

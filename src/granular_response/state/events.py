@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .box import WALL_MEANINGS
+from .box import bodies
 
 #: What a contact does at an event.
 CONTACT_EVENTS = ("opens", "closes", "slides", "sticks", "reverses")
@@ -58,6 +58,4 @@ class Event:
             return "unknown disk"
         if self.second < 0:
             return f"disk {self.first}"
-        if self.at_wall:
-            return f"disk {self.first} and the {WALL_MEANINGS[self.second].replace('_', ' ')}"
-        return f"disks {self.first} and {self.second}"
+        return bodies(self.first, self.second, self.at_wall)

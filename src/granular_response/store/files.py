@@ -32,7 +32,7 @@ from xarray.backends import NetCDF4DataStore
 
 from .. import __version__
 from ..errors import GranularError
-from ..inputs import read_bytes
+from ..inputs import read_bytes, unreadable
 from . import atomic
 
 #: What the name of every file of datasets ends with.
@@ -225,10 +225,8 @@ def _verify(data: bytes, groups: Mapping[str, xr.Dataset]) -> None:
 def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
     try:
         data = read_bytes(path)
-    except FileNotFoundError:
-        raise _error(path, "no such file") from None
     except OSError as error:
-        raise _error(path, f"cannot be read: {error.strerror or error}") from None
+        raise _error(path, unreadable(error)) from None
     if not data:
         raise _error(path, "is empty")
     if not _SIGNATURE.startswith(data[: len(_SIGNATURE)]):

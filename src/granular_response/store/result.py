@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from functools import partial
 from typing import Any
@@ -26,18 +26,8 @@ from ..scene.material import KNOWN_LAWS
 from ..solvers.problem import Problem
 from ..solvers.solution import Solution
 from ..solvers.timestep import time_step_reason
-from ..state import (
-    CONTACT_EVENTS,
-    LOST_EVENTS,
-    ROLLING_EVENTS,
-    Box,
-    Certificate,
-    Contacts,
-    Event,
-    Reached,
-    State,
-    status,
-)
+from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Box, Certificate, Contacts, Event, Reached, State
+from ..state.status import MEANINGS
 from .variables import (
     CERTIFICATE,
     CONTACT,
@@ -58,23 +48,15 @@ from .variables import (
 #: The system of units of everything stored.
 UNITS = "reduced: mean disk radius, mean disk mass, g"
 
-STATUSES = flags(status.MEANINGS)
+STATUSES = flags(MEANINGS)
 _MOTION = ("position", "angle", "velocity", "angular_velocity")
-#: Lists of candidate contacts of a state, by what the names of their variables begin with.
-_LISTS = {"contact": "pairs", "wall": "walls"}
-#: By the same, the variables with the disk and with the other disk, or the wall.
-_CANDIDATES = {"contact": ("contact_disk", "contact_partner"), "wall": ("wall_disk", "wall_index")}
+#: By what the names of variables of contacts begin with: their list in a state, and the variables with the disk and
+#: with the other disk, or the wall.
+CONTACTS = {"contact": ("pairs", "contact_disk", "contact_partner"), "wall": ("walls", "wall_disk", "wall_index")}
 
 
 class ResultError(GranularError, ValueError):
     """A dataset that is not a result, or not one that can be continued. The message is one line."""
-
-
-def _dataset(
-    data: Mapping[str, xr.Variable], coordinates: Collection[str] = (), attributes: Mapping[str, Any] | None = None
-) -> xr.Dataset:
-    given = {name: one for name, one in data.items() if name not in coordinates}
-    return xr.Dataset(given, {name: one for name, one in data.items() if name in coordinates}, attributes)
 
 
 def common_candidates(states: Sequence[State], radius) -> list[State]:
@@ -90,35 +72,28 @@ def common_candidates(states: Sequence[State], radius) -> list[State]:
 
 def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
     """States of one packing and one candidate list, stacked along ``dimension``."""
-    return _dataset(_states(states, dimension), {"axis"})
-
-
-def _states(states: Sequence[State], along: str) -> dict[str, xr.Variable]:
-    data = {name: described(name, [getattr(state, name) for state in states], along=along) for name in _MOTION}
-    for prefix, (first, second) in _CANDIDATES.items():
-        contacts: list[Contacts] = [getattr(state, _LISTS[prefix]) for state in states]
+    stacked = partial(described, along=dimension)
+    data = {name: stacked(name, [getattr(state, name) for state in states]) for name in _MOTION}
+    for prefix, (kind, first, second) in CONTACTS.items():
+        contacts: list[Contacts] = [getattr(state, kind) for state in states]
         data |= {first: described(first, contacts[0].first), second: described(second, contacts[0].second)}
         for name in (*CONTACT, *(ROLLING if any(one.resists_rolling for one in contacts) else ())):
             values = [getattr(one, name) for one in contacts]
-            data[f"{prefix}_{name}"] = described(f"{prefix}_{name}", values, along=along)
-    data["load_factor"] = described("state_load_factor", [state.load_factor for state in states], along=along)
-    return {**data, "axis": described("axis", ["x", "z"])}
+            data[f"{prefix}_{name}"] = stacked(f"{prefix}_{name}", values)
+    data["load_factor"] = stacked("state_load_factor", [state.load_factor for state in states])
+    return xr.Dataset({**data, "axis": described("axis", ["x", "z"])})
 
 
 def certificates_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
     """The certificates of states along ``dimension``."""
-    return _dataset(_certificates(states, dimension))
-
-
-def _certificates(states: Sequence[State], along: str) -> dict[str, xr.Variable]:
     rolling = any(contacts.resists_rolling for state in states for contacts in (state.pairs, state.walls))
     found = {}
     for name in CERTIFICATE:
         if name != "rolling_excess" or rolling:
             values = [getattr(state.certificate, name) for state in states]
             numbers = [NOT_DETERMINED if value is None else value for value in values]
-            found[f"certificate_{name}"] = described(f"certificate_{name}", numbers, along=along)
-    return found
+            found[f"certificate_{name}"] = described(f"certificate_{name}", numbers, along=dimension)
+    return xr.Dataset(found)
 
 
 def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, xr.Variable]:
@@ -291,11 +266,12 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     forces = np.array([floor_force(s, disks) for s in loaded]).reshape(len(loaded), len(disks))
     change = forces - at_rest
     applied = np.array([solution.applied_force(state) for state in solution.loaded], float)
-    of_states = _states(states, "state")
-    data = {
+    of_states = dict(states_dataset(states).variables)
+    data: dict[Any, xr.Variable] = {
         "state_load_factor": of_states.pop("load_factor"),
         **of_states,
-        **described_forces(states),
+        "contact_force": described("contact_force", [state.pair_force() for state in states]),
+        "wall_force": described("wall_force", [state.wall_force() for state in states]),
         **load_coordinates(solution.load_factors),
     }
     numbers = {
@@ -315,19 +291,20 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     if loaded and len(problem.held):
         numbers["reaction"] = np.stack([solution.reaction(state) for state in solution.loaded])
     data |= {name: described(name, values) for name, values in numbers.items()}
-    data |= _listed(own, states) | _certificates(states, "state") | _reached(states)
+    data |= _listed(own, states) | dict(certificates_dataset(states).variables) | _reached(states)
     data |= described_events([(k, event) for k, state in enumerate(own) for event in state.reached.events])
     data |= {"floor_disk": described("floor_disk", disks), "x": described("x", x)}
     data["component"] = described("component", ["force_x", "force_z", "torque"])
     moved = any(state.reached.time_step is not None for state in states)
     choices = {"rest": solution.rest_choice, "load": solution.load_choice}
+    law = KNOWN_LAWS[solution.scene.contact.law].law  # from outside the package: its module registers it
     attributes = {
         "title": "quasi-static response of a granular packing",
         "package": "granular_response",
         "package_version": __version__,
         "scene": solution.scene.to_yaml(),
         "scene_folder_note": "paths in the scene are relative to the folder of the scene file",
-        **_law_module(solution.scene),
+        **({} if law is None else {"law_module": law.__module__}),
         **({"packing_frame": packing.frame} if packing.frame else {}),
         "width": packing.width,
         "sides": "periodic" if packing.box.periodic else "walls",
@@ -338,13 +315,8 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "settled": _verdict([s.reached.settled is not False for s in states]),
         "units": UNITS,
     }
-    return indexed(labelled(_dataset(data, COORDINATES, attributes)))
-
-
-def _law_module(scene: Scene) -> dict[str, str]:
-    """Where a law from outside the package is registered: the module of its class."""
-    law = KNOWN_LAWS[scene.contact.law].law
-    return {} if law is None else {"law_module": law.__module__}
+    coordinates = {name: data.pop(name) for name in [*data] if name in COORDINATES}
+    return indexed(labelled(xr.Dataset(data, coordinates, attributes)))
 
 
 def _own_places(own: Contacts, common: Contacts) -> np.ndarray:
@@ -360,7 +332,7 @@ def _own_places(own: Contacts, common: Contacts) -> np.ndarray:
 def _listed(own: Sequence[State], states: Sequence[State]) -> dict[str, xr.Variable]:
     """Which of the common candidates each state listed itself and in what order, where that is not the common one."""
     found = {}
-    for prefix, kind in _LISTS.items():
+    for prefix, (kind, *_) in CONTACTS.items():
         common = getattr(states[0], kind)
         places = np.stack([_own_places(getattr(state, kind), common) for state in own])
         if (places != np.arange(places.shape[1])).any():
@@ -380,12 +352,6 @@ def _as_solved(dataset: xr.Dataset, index: int) -> State:
         return Contacts(*(getattr(contacts, field.name)[kept] for field in fields(Contacts)))
 
     return replace(state, pairs=own(state.pairs, "contact"), walls=own(state.walls, "wall"))
-
-
-def described_forces(states: Sequence[State]) -> dict[str, xr.Variable]:
-    """Contact forces as vectors, on the disk named first."""
-    found = {"contact_force": [s.pair_force() for s in states], "wall_force": [s.wall_force() for s in states]}
-    return {name: described(name, forces) for name, forces in found.items()}
 
 
 def _verdict(all_states: Sequence[bool | None]) -> str:
@@ -416,7 +382,7 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         found = {
             name: one[f"{prefix}_{name}"].values for name in (*CONTACT, *ROLLING) if f"{prefix}_{name}" in one.variables
         }
-        first, second = (one[name].values.astype(np.int32) for name in _CANDIDATES[prefix])
+        first, second = (one[name].values.astype(np.int32) for name in CONTACTS[prefix][1:])
         return Contacts(first, second, **found)
 
     return State(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
+from itertools import chain
 from os import PathLike
 from typing import Any
 
@@ -24,6 +25,8 @@ from .variables import EVENT_KINDS, NOT_DETERMINED
 #: Attributes that a summary shows elsewhere or not at all.
 _HIDDEN = {"format", "scene", "scene_folder_note", "parameters", "method", "method_reason", "stable", "settled"}
 
+#: Titles of what is shown of the floor response.
+_RESPONSE = ("load factor", "total force", "sum", "at x = 0", "largest", "at x", "largest change")
 #: What is shown of the work that each state took.
 _WORK = ("steps", "increments", "factorisations", "newton_iterations")
 
@@ -88,15 +91,13 @@ def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     yield _text(path, style="bold")
     if not store.is_sealed(path):
         yield Text("not sealed: rewritten by another program, so its numbers are not vouched for", style="bold")
-    yield _pairs((name, _plain(value)) for name, value in attributes.items() if name not in _HIDDEN)
-    if result is not None:
-        yield from _result(result)
-    else:
-        yield from _study(datasets)
-    for name in ("scene", "parameters"):
-        if name in attributes:
-            yield Text(f"\n{name}", style="bold")
-            yield _text(_readable(str(attributes[name])).rstrip())
+    yield _pairs((name, value) for name, value in attributes.items() if name not in _HIDDEN)
+    keys = {name: str(attributes[name]) for name in ("scene", "parameters") if name in attributes}
+    texts = ((name, _text(_readable(text).rstrip())) for name, text in keys.items())
+    for title, part in chain(_study(datasets) if result is None else _result(result), texts):
+        if title:
+            yield Text(f"\n{title}", style="bold")
+        yield part
 
 
 def _readable(scene: str) -> str:
@@ -104,49 +105,45 @@ def _readable(scene: str) -> str:
     return scene_text.write(shortened(scene_text.read(scene))) if "kind: arrays" in scene else scene
 
 
-def _result(result: xr.Dataset) -> Iterator[RenderableType]:
-    yield Text("\nhow it was solved", style="bold")
+def _result(result: xr.Dataset) -> Iterator[tuple[str, RenderableType]]:
+    """Titles and what stands under them."""
     methods, reasons = (json.loads(result.attrs.get(name, "{}")) for name in ("method", "method_reason"))
     rows = [(stage, f"{method} ({reasons.get(stage, '')})") for stage, method in methods.items()]
-    yield _pairs([*rows, *((name, result.attrs[name]) for name in ("stable", "settled") if name in result.attrs)])
+    verdicts = [(name, result.attrs[name]) for name in ("stable", "settled") if name in result.attrs]
+    yield "how it was solved", _pairs([*rows, *verdicts])
     if work := {name: result[f"reached_{name}"].values for name in _WORK if f"reached_{name}" in result}:
-        yield Text("\nwork", style="bold")
-        yield _by_factor(result, ((name, ("-" if n == NOT_DETERMINED else n for n in work[name])) for name in work))
+        shown = ((name, ("-" if n == NOT_DETERMINED else n for n in work[name])) for name in work)
+        yield "work", _by_factor(result, shown)
     if "event_state" in result:
-        yield Text("\nevents on the way to each state", style="bold")
         yield from _events(result)
-    yield Text("\ncertificate", style="bold")
-    yield _by_factor(result, _certificate(result))
+    yield "certificate", _by_factor(result, _certificate(result))
     if "distance_from_given" in result:
-        yield Text("\ndistance of disks from where they were given", style="bold")
-        yield _by_factor(result, _from_given(result))
+        yield "distance of disks from where they were given", _by_factor(result, _from_given(result))
     if "reaction" in result:
-        yield Text("\nforce that holds displaced disks", style="bold")
-        yield _table(("at load factor", "disk", "x", "z"), _reaction(result))
-    yield Text("\nfloor response", style="bold")
-    titles = ("load factor", "total force", "sum", "at x = 0", "largest", "at x", "largest change")
-    yield _table(titles, _response(result))
+        titles = ("at load factor", "disk", "x", "z")
+        yield "force that holds displaced disks", _table(titles, _reaction(result))
+    yield "floor response", _table(_RESPONSE, _response(result))
 
 
-def _events(result: xr.Dataset) -> Iterator[RenderableType]:
+def _events(result: xr.Dataset) -> Iterator[tuple[str, RenderableType]]:
     """How many of each kind, the first opening, and each equilibrium that was lost."""
     found = events_from(result)
     counts = [Counter(event.kind for k, event in found if k == state) for state in range(result.sizes["state"])]
     kinds = [kind for kind in EVENT_KINDS if any(kind in one for one in counts)]
-    yield _by_factor(result, ((kind, (one[kind] for one in counts)) for kind in kinds))
+    numbers = ((kind, (one[kind] for one in counts)) for kind in kinds)
+    yield "events on the way to each state", _by_factor(result, numbers)
     opening = next((event for _, event in found if event.kind == "opens"), None)
     if opening is not None:
-        yield _text(f"first opening at load factor {opening.load_factor:.9g}, {opening.where}")
+        yield "", _text(f"first opening at load factor {opening.load_factor:.9g}, {opening.where}")
     if "reached_events_within" in result:
         within, error = (float(np.nanmax(result[f"reached_events_{name}"].values)) for name in ("within", "error"))
-        yield _text(f"events taken together within {within:.3g} mg, estimated error {error:.1e} of the load")
+        yield "", _text(f"events taken together within {within:.3g} mg, estimated error {error:.1e} of the load")
     if lost := [event for _, event in found if event.lost]:
-        yield Text("\nequilibria lost on the way", style="bold")
         titles = ("at load factor", "until", "what", "largest displacement", "of", "why")
         rows = (
             (f"{e.load_factor:.6g}", f"{e.until:.6g}", e.kind, f"{e.displacement:.3g}", e.where, e.reason) for e in lost
         )
-        yield _table(titles, rows, left=("what", "of", "why"))
+        yield "equilibria lost on the way", _table(titles, rows, left=("what", "of", "why"))
 
 
 def _certificate(result: xr.Dataset) -> Iterator[tuple[str, list[str]]]:
@@ -193,14 +190,13 @@ def _response(result: xr.Dataset) -> Iterator[tuple[str, ...]]:
         yield *row, f"{change[np.abs(change).argmax()]:.5g}" if change.size else "-"
 
 
-def _study(datasets: dict[str, xr.Dataset]) -> Iterator[RenderableType]:
+def _study(datasets: dict[str, xr.Dataset]) -> Iterator[tuple[str, RenderableType]]:
     titles = ("group", "dimensions", "variables")
     rows = []
     for name, dataset in datasets.items():
         sizes = ", ".join(f"{dimension} {size}" for dimension, size in dataset.sizes.items())
         rows.append((name or "/", sizes, ", ".join(map(str, dataset.data_vars))))
-    yield Text("\ndatasets", style="bold")
-    yield _table(titles, rows, left=titles, overflow="fold")
+    yield "datasets", _table(titles, rows, left=titles, overflow="fold")
 
 
 def _table(
@@ -230,7 +226,8 @@ def _by_factor(result: xr.Dataset, rows: Iterable[tuple[str, Iterable[object]]])
 def _pairs(rows: Iterable[tuple[str, object]]) -> Table:
     """Names and what they stand for, without titles."""
     titles = ("name", "value")
-    table = _table(titles, ((name.replace("_", " "), value) for name, value in rows), left=titles, overflow="fold")
+    shown = ((name, f"{value:.6g}" if isinstance(value, float) else value) for name, value in rows)
+    table = _table(titles, ((name.replace("_", " "), value) for name, value in shown), left=titles, overflow="fold")
     table.show_header, table.columns[0].style = False, "dim"
     return table
 
@@ -238,7 +235,3 @@ def _pairs(rows: Iterable[tuple[str, object]]) -> Table:
 def _text(value: object, style: str = "") -> Text:
     """What a file holds as it is: no markup, and no characters that a terminal obeys."""
     return Text("".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in str(value)), style)
-
-
-def _plain(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,9 +1,10 @@
 """CSV with a header that names x, z and radius, and mass or density if disks differ in material.
 
-Names may be written in any case, with a unit in brackets. Cameras and programs that track disks have other names for
-the same: y for the height where there is no z, r for the radius, or a diameter; ``columns`` of a scene says which
-column is meant where a table has others. Further columns are ignored, and so are empty lines and lines that begin with
-``#``, but for the mark of our own tables. Each disk has a line of its own.
+Columns are separated by commas or, where the header has more of them, by semicolons; numbers have decimal points. Names
+may be written in any case, with a unit in brackets or, as ``x_mm``, after an underscore: lengths have one unit. Cameras
+and programs that track disks have other names for the same: y for the height where there is no z, r for the radius, or
+a diameter; ``columns`` of a scene says which column is meant where a table has others. Further columns are ignored, and
+so are empty lines and lines that begin with ``#``, but for the mark of our own tables. Each disk has a line of its own.
 """
 
 from __future__ import annotations
@@ -31,7 +32,14 @@ NAMES = {
 LENGTHS, MATERIAL = ("x", "y", "z", "radius", "diameter"), ("mass", "density")
 #: What ``columns`` of a scene may name.
 NAMED = ("x", "z", "radius", "diameter", *MATERIAL)
-#: Columns that are read where they are, and taken where ``motion`` asks for them.
+#: Units of length in metres; pixels may be of any size.
+METRES = {"m": 1.0, "dm": 1e-1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
+#: Names with a unit after an underscore.
+_WITH_UNIT = re.compile(
+    rf"(x|y|z|radius|r|diameter|d)_({'|'.join(METRES)}|μm|px)|mass_(kg|g|mg|ug|μg)|density_(kg_m3|g_cm3)"
+)
+#: Components of the motion of a disk: columns that are read where they are and have no unit, and taken where the keys
+#: of ``motion`` ask for them.
 MOTION = ("vx", "vz", "spin")
 #: Columns that look as if they were heeded, and cannot be: contacts have one law.
 REFUSED = {
@@ -55,6 +63,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
     header: list[str] = []
     chosen: dict[str, int] = {}
     motion: dict[str, int] = {}
+    unit, between = "", ","
     mark: Mark | None = None
     once = Once()
     lines, whole = lines_of(path)
@@ -65,25 +74,26 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
                 once.add("mark of granular-response", place)
                 mark = found
             continue
+        if not header:
+            between = ";" if line.count(";") > line.count(",") else ","
         try:  # line by line: a quote that is not closed takes no further disk with it
-            cells = next(csv.reader([line], skipinitialspace=True, strict=True), [])
+            cells = next(csv.reader([line], delimiter=between, skipinitialspace=True, strict=True), [])
         except csv.Error as error:
             unclosed = "a quote that is not closed in its line" if "unexpected end" in str(error) else str(error)
             raise FormatError(f"is not CSV: {unclosed}", place) from None
         if not any(cell.strip() for cell in cells):
             continue
-        if not header:
+        if not header or cells == header:
+            once.add("header", place)
             header = cells
-            chosen = _chosen(header, columns or {})
-            titles = [_name_and_unit(cell)[0] for cell in header]
+            titles = _titles(header)
+            chosen = _chosen(header, titles, columns or {})
+            unit = titles[chosen["x"]][1]
             for name in MOTION:
-                if titles.count(name) > 1:
-                    raise FormatError(f"column {name} is given {titles.count(name)} times, must be given once", place)
-            motion = {name: titles.index(name) for name in MOTION if name in titles}
-            once.add("header", place)
+                if (times := titles.count((name, ""))) > 1:
+                    raise FormatError(f"column {name} is given {times} times, must be given once", place)
+            motion = {name: titles.index((name, "")) for name in MOTION if (name, "") in titles}
             continue
-        if cells == header:
-            once.add("header", place)
         if len(cells) != len(header):
             raise FormatError(f"has {len(cells)} values, must have {len(header)} as the header", place)
         rows.append(numbers([cells[column] for column in chosen.values()], tuple(chosen), place))
@@ -96,10 +106,9 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
         if "mass" not in chosen:
             raise FormatError("column mass is missing, which tables of granular-response have")
     values = dict(zip(chosen, np.array(rows).T, strict=True))
-    for name in MATERIAL:
-        if name in values and not (values[name] > 0.0).all():
-            bad = int(np.argmin(values[name] > 0.0))
-            raise FormatError(f"{name} = {float(values[name][bad])!r}: must be greater than 0", places[bad])
+    if "density" in values and not (values["density"] > 0.0).all():
+        bad = int(np.argmin(values["density"] > 0.0))
+        raise FormatError(f"density = {float(values['density'][bad])!r}: must be greater than 0", places[bad])
     up = "z" if "z" in values else "y"
     if "y" in values and "z" in values:
         up = upward(values["y"], values["z"])
@@ -107,7 +116,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
     mass = values["mass"] if "mass" in values else values["density"] * radius**2 if "density" in values else None
     velocities = dict(zip(motion, np.array(moved).T, strict=True))
     box = NO_BOX if mark is None else mark.box
-    return Table(values["x"], values[up], radius, places, mass, box, columns=velocities or None)
+    return Table(values["x"], values[up], radius, places, mass, box, columns=velocities or None, unit=unit)
 
 
 def _or_nan(cell: str) -> float:
@@ -117,22 +126,34 @@ def _or_nan(cell: str) -> float:
         return float("nan")
 
 
-def _name_and_unit(cell: str) -> tuple[str, str]:
-    """The name of a column, in small letters, and its unit: ``Radius [mm]`` is radius and mm."""
-    match = re.fullmatch(r"\s*([^(\[]*?)\s*(?:[(\[]([^)\]]*)[)\]])?\s*", cell)
-    return (match[1].casefold(), (match[2] or "").strip()) if match else (cell.strip(), "")
+def _titles(header: list[str]) -> list[tuple[str, str]]:
+    """The name of each column, in small letters, and its unit: ``Radius [mm]`` and ``radius_mm`` are radius and mm.
+
+    The latter is a name of its own where another column is called radius.
+    """
+    found = []
+    for cell in header:
+        match = re.fullmatch(r"\s*([^(\[]*?)\s*(?:[(\[]([^)\]]*)[)\]])?\s*", cell)
+        found.append((match[1].casefold(), match[2] or "") if match else (cell.strip(), ""))
+    known = {name for name, _ in found}
+    for k, (name, _) in enumerate(found):
+        short, _, ending = name.partition("_")
+        if _WITH_UNIT.fullmatch(name) and short not in known:
+            found[k] = short, ending
+    return [(name, unit.strip().replace("µ", "u").replace("μ", "u")) for name, unit in found]
 
 
-def _chosen(header: list[str], columns: Mapping[str, str]) -> dict[str, int]:
+def _chosen(header: list[str], titles: Sequence[tuple[str, str]], columns: Mapping[str, str]) -> dict[str, int]:
     """The column of each quantity that is read. Raises FormatError for a header that does not say what they are.
 
     What stands in the header is quoted only where it is one of a table of disks: the file may be another one.
     """
-    names, units = zip(*map(_name_and_unit, header), strict=True)
+    names, units = zip(*titles, strict=True)
     chosen: dict[str, int] = {}
     for name, wanted in columns.items():
         exact = [k for k, cell in enumerate(header) if cell.strip() == wanted.strip()]
-        places = exact or [k for k, one in enumerate(names) if one == wanted.strip().casefold()]
+        folded = wanted.strip().casefold()
+        places = exact or [k for k, cell in enumerate(header) if folded in (names[k], cell.strip().casefold())]
         if len(places) != 1:
             problem = "there is no such column" if not places else f"is given {len(places)} times"
             raise FormatError(f"columns.{name} = {shown(wanted)}: {problem}{_there(header, names)}")
@@ -149,9 +170,8 @@ def _chosen(header: list[str], columns: Mapping[str, str]) -> dict[str, int]:
             raise FormatError(f"column {name} {said}, header must name x, z and radius")
         if found:
             chosen[name] = found[0]
-    missing = [] if "x" in chosen else ["x"]
-    missing += [] if {"y", "z"} & chosen.keys() else ["z"]
-    missing += [] if _SIZES & chosen.keys() else ["radius"]
+    needed = {"x": {"x"}, "z": {"y", "z"}, "radius": _SIZES}
+    missing = [name for name, instead in needed.items() if not instead & chosen.keys()]
     if missing:
         most = f"{', '.join(missing[:-1])} and {missing[-1]}"
         several = f"columns {most} are" if len(missing) > 1 else f"column {missing[0]} is"
@@ -159,7 +179,9 @@ def _chosen(header: list[str], columns: Mapping[str, str]) -> dict[str, int]:
     given = [name for name in LENGTHS if name in chosen]
     if len({units[chosen[name]] for name in given}) > 1:
         lengths = f"{', '.join(given[:-1])} and {given[-1]}"
-        raise FormatError(f"columns {lengths}: must have the same unit of length")
+        there = ", ".join(units[chosen[name]] or "none" for name in given)
+        rule = f"must have the same unit of length, not {there}; convert them in the table"
+        raise FormatError(f"columns {lengths}: {rule}")
     ignored = [one for k, one in enumerate(names) if k not in chosen.values()]
     for column, key in REFUSED.items():
         if column in ignored:

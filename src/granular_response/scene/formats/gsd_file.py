@@ -58,7 +58,7 @@ class _Frames:
         self._index = index[:used]
         if not len(self._index):
             raise FormatError("is not a GSD file with particles: it has no frame")
-        self._last = int(self._index["frame"].max())
+        self.last = int(self._index["frame"].max())
         self._check_index(
             [(0, _HEADER.size), (index_at, index_size * _ENTRY.itemsize), (names_at, names_size * _NAME_BYTES)]
         )
@@ -66,7 +66,7 @@ class _Frames:
     def _check_index(self, regions: list[tuple[int, int]]) -> None:
         """Raise FormatError unless frames are numbered one by one, and each chunk has a name and a place of its own."""
         frame, name = self._index["frame"], self._index["name"]
-        if frame[0] != 0 or (np.diff(frame.astype(np.int64)) < 0).any() or len(np.unique(frame)) != self._last + 1:
+        if frame[0] != 0 or (np.diff(frame.astype(np.int64)) < 0).any() or len(np.unique(frame)) != self.last + 1:
             raise FormatError(f"{_DAMAGED}: its frames are not numbered one by one")
         if len(set(self._names)) < len(self._names) or name.max() >= len(self._names):
             raise FormatError(f"{_DAMAGED}: its list of names")
@@ -92,7 +92,7 @@ class _Frames:
             raise FormatError(_DAMAGED)
         return self._data[start : start + size]
 
-    def _chunk(self, frame: int, name: str, any_kind: bool = False) -> NDArray | None:
+    def _chunk(self, frame: int, name: str) -> NDArray | None:
         if name not in self._names:
             return None
         here = self._index[(self._index["frame"] == frame) & (self._index["name"] == self._names.index(name))]
@@ -100,31 +100,26 @@ class _Frames:
             return None
         rows, columns, at, kind = (int(here[0][key]) for key in ("rows", "columns", "at", "kind"))
         number = np.dtype(_KINDS[kind - 1])
-        expected = "u" if name == "particles/N" else "f" if name.startswith(("particles/", "configuration/")) else "uif"
-        if number.kind not in expected and not any_kind:
-            raise FormatError(f"chunk {name}: has values of another kind, code {kind}")
         return np.frombuffer(self._bytes(at, rows * columns * number.itemsize), number).reshape(rows, columns)
-
-    @property
-    def which(self) -> str:
-        """The last frame, of how many."""
-        return f"{self._last + 1} of {self._last + 1}"
 
     def check(self, name: str, rows: int, columns: int) -> None:
         """Raise FormatError where the last frame has a chunk of another shape."""
-        found = self._chunk(self._last, name, any_kind=True)
+        found = self._chunk(self.last, name)
         if found is not None and found.shape != (rows, columns):
             raise FormatError(f"chunk {name}: has {found.size} values, must have {rows * columns}")
 
     def has(self, name: str) -> bool:
         """Whether any frame that counts has the chunk."""
-        return any(self._chunk(frame, name) is not None for frame in (self._last, 0))
+        return any(self._chunk(frame, name) is not None for frame in (self.last, 0))
 
     def values(self, name: str, default: float | None, shape: tuple[int, ...]) -> FloatArray:
         """A chunk of that shape as numbers; ``default`` is what the format takes for a missing one, None: an error."""
-        for frame in (self._last, 0):
+        kinds = "u" if name == "particles/N" else "f" if name.startswith(("particles/", "configuration/")) else "uif"
+        for frame in (self.last, 0):
             found = self._chunk(frame, name)
-            if found is not None and (found.size == int(np.prod(shape)) or frame == self._last):
+            if found is not None and found.dtype.kind not in kinds:
+                raise FormatError(f"chunk {name}: has values of another kind, {found.dtype}")
+            if found is not None and (found.size == int(np.prod(shape)) or frame == self.last):
                 if found.size != int(np.prod(shape)):
                     raise FormatError(f"chunk {name}: has {found.size} values, must have {int(np.prod(shape))}")
                 return found.astype(float).reshape(shape)
@@ -150,8 +145,8 @@ def read(path: Path) -> Table:
     if box[3:].any():
         raise FormatError("the box must not be tilted")
     places = [f"particle {k}" for k in range(n)]
-    up = y if upward(y, z) == "y" else z
-    return Table(x, up, 0.5 * diameter, places, mass, _file_box(frames, float(box[0])), frame=frames.which)
+    up, which = y if upward(y, z) == "y" else z, f"{frames.last + 1} of {frames.last + 1}"
+    return Table(x, up, 0.5 * diameter, places, mass, _file_box(frames, float(box[0])), frame=which)
 
 
 def _file_box(frames: _Frames, width: float) -> FileBox:

@@ -44,6 +44,8 @@ _SECTIONS |= {f"{name.capitalize()} Coeffs": f"{name} types" for name in _NUMBER
 _SECTIONS |= {f"{name.capitalize()} Type Labels": f"{name} types" for name in _NUMBERED}
 
 
+#: How many values a line may have, and which: three numbers of the periodic image may follow an atom.
+_SIZES = {"Atoms": ((7, 10), "id type diameter density x y z"), "Velocities": ((7,), "id vx vy vz wx wy wz")}
 #: Sections whose lines begin with what they are about: an atom, or a type.
 _NAMED_ONCE = {name for name, header in _SECTIONS.items() if header == "atom types"} | {"Velocities"}
 
@@ -92,12 +94,7 @@ class _Header:
 def read(path: Path) -> Table:
     """The disks of section Atoms."""
     header, once = _Header(), Once()
-    ids: list[str] = []
-    rows: list[list[float]] = []
-    places: list[str] = []
-    found: dict[str, int] = {}  #: lines of each section
-    moving: dict[str, tuple[str, list[float]]] = {}  #: where each atom has its velocity and angular velocity, and these
-    types: dict[str, str] = {}  #: of atoms, and where one has it
+    sections: dict[str, list[tuple[str, list[str]]]] = {}  #: lines of each, with their places
     section = ""
     lines, whole = lines_of(path)
     mark = Mark.found(lines[0], "line 1") if lines else None
@@ -112,43 +109,38 @@ def read(path: Path) -> Table:
                 rule = f"{shown(section)}: is no section that atoms of style sphere have"
                 raise FormatError(rule, place)
             once.add(f"section {section}", place)
-            found[section] = 0
+            sections[section] = []
             if section == "Atoms" and comment.strip() != "sphere":  # other styles have as many columns
                 raise FormatError("atoms must be of style sphere, and say so: Atoms # sphere", place)
-            continue
-        if not section:
+        elif not section:
             once.add(header.add(cells, place), place)
-            continue
-        found[section] += 1
-        if whole_number(cells[0]) is None:
-            raise FormatError(f"{shown(cells[0])}: a line of section {section} must begin with a whole number", place)
-        if section in _NAMED_ONCE:
-            once.add(f"{cells[0]} in section {section}", place)
-        if section == "Atoms":
-            if len(cells) not in (7, 10):  # three numbers of the periodic image may follow
-                raise FormatError(f"has {len(cells)} values, must have id type diameter density x y z", place)
-            types[cells[1]] = place
-            ids.append(cells[0])
-            rows.append(numbers(cells[2:7], _COLUMNS, place))
-            places.append(place)
-        if section == "Velocities":
-            if len(cells) != 7:
-                raise FormatError(f"has {len(cells)} values, must have id vx vy vz wx wy wz", place)
-            moving[cells[0]] = place, numbers(cells[1:], _MOTION, place)
-    count = header.counts.get("atoms")
+        else:
+            if whole_number(cells[0]) is None:
+                rule = f"{shown(cells[0])}: a line of section {section} must begin with a whole number"
+                raise FormatError(rule, place)
+            if section in _NAMED_ONCE:
+                once.add(f"{cells[0]} in section {section}", place)
+            sections[section].append((place, cells))
+    for name, (sizes, names) in _SIZES.items():
+        for place, cells in sections.get(name, []):
+            if len(cells) not in sizes:
+                raise FormatError(f"has {len(cells)} values, must have {names}", place)
+    atoms, count = sections.get("Atoms", []), header.counts.get("atoms")
+    places = [place for place, _ in atoms]
+    rows = [numbers(cells[2:7], _COLUMNS, place) for place, cells in atoms]
+    moving = {cells[0]: (place, numbers(cells[1:], _MOTION, place)) for place, cells in sections.get("Velocities", [])}
     if count is None or "x" not in header.sides or len(rows) != count:
         rule = f"must have the headers atoms and xlo xhi, and as many atoms as it says (found {len(rows)})"
         raise FormatError(f"is not a whole LAMMPS data file, {rule}")
-    for name, number in found.items():
-        if number != (said := header.counts.get(_SECTIONS[name], 0)):
+    for name, found in sections.items():
+        if len(found) != (said := header.counts.get(_SECTIONS[name], 0)):
             rule = f"must have {said}, as the header {_SECTIONS[name]} says"
-            raise FormatError(f"section {name} has {number} lines, {rule}")
+            raise FormatError(f"section {name} has {len(found)} lines, {rule}")
     if not rows:
         raise FormatError("has no atoms")
     most = header.counts.get("atom types", 0)
-    for kind, place in types.items():
-        number_of_type = whole_number(kind)
-        if not 1 <= (0 if number_of_type is None else number_of_type) <= most and "Atom Type Labels" not in found:
+    for place, (_, kind, *_) in atoms:
+        if not 1 <= (whole_number(kind) or 0) <= most and "Atom Type Labels" not in sections:
             raise FormatError(f"type = {shown(kind)}: must be from 1 to {most}, as the header atom types says", place)
     if not whole:
         raise FormatError("is cut: its last line has no end")
@@ -158,7 +150,9 @@ def read(path: Path) -> Table:
         if (left, width) != (0.0, mark.width):
             rule = f"says width {mark.width!r}, the bounds xlo xhi {left!r} to {left + width!r}; must agree"
             raise FormatError(rule, "line 1")
-    order = by_id(ids, places)
+    ids = [cells[0] for _, cells in atoms]
+    known = by_id(ids, places)
+    order = list(known.values())
     for atom in moving.keys() - set(ids):
         raise FormatError(f"id = {shown(atom)}: must be that of an atom, section Velocities has it", moving[atom][0])
     diameter, density, x, y, z = np.array(rows)[order].T
@@ -169,5 +163,5 @@ def read(path: Path) -> Table:
     box = FileBox(left, width, reason=_REASON) if mark is None else mark.box
     return Table(
         x, z if up == "z" else y, 0.5 * diameter, [places[k] for k in order], density * diameter**3, box,
-        columns=columns, ids=[int(ids[k]) for k in order],
+        columns=columns, ids=list(known),
     )  # fmt: skip

@@ -44,11 +44,11 @@ WALL_FIXES = ("floor", "sides")
 
 
 class _Item(NamedTuple):
-    """An item of a frame: where its heading stands, the words after its name, and its lines with their numbers."""
+    """An item of a frame: where its heading stands, the words after its name, and its lines with their places."""
 
     place: str
     words: list[str]
-    lines: list[tuple[int, str]]
+    lines: list[tuple[str, str]]
 
 
 def _frames(lines: list[str], rows: str = "ATOMS") -> list[dict[str, _Item]]:
@@ -63,7 +63,7 @@ def _frames(lines: list[str], rows: str = "ATOMS") -> list[dict[str, _Item]]:
         if not line.startswith("ITEM:"):
             if item is None:
                 raise FormatError("is not a LAMMPS dump file of text, must begin with ITEM: TIMESTEP")
-            item.lines.append((k, line))
+            item.lines.append((place, line))
             continue
         heading = line[len("ITEM:") :].strip()
         name = max((name for name in known if f"{heading} ".startswith(f"{name} ")), key=len, default=None)
@@ -99,15 +99,11 @@ def _checked(frame: dict[str, _Item], which: str, rows: str = "ATOMS") -> int:
             if name == "BOX BOUNDS":
                 lines += ", and have flags of three axes or none"
             raise FormatError(f"must be followed by {lines}, not {len(item.lines)}", item.place)
-    k, text = frame["TIMESTEP"].lines[0]
-    if whole_number(text.strip()) is None:
-        raise FormatError(f"{shown(text)}: must be the number of the time step", f"line {k}")
-    k, text = frame[number_of].lines[0]
-    count = whole_number(text.strip())
-    if count is None:
-        raise FormatError(f"{shown(text)}: must be the number of {what}", f"line {k}")
-    found = len(frame[rows].lines)
-    if found != count:
+    for name, counted in (("TIMESTEP", "the time step"), (number_of, what)):
+        place, text = frame[name].lines[0]
+        if (count := whole_number(text.strip())) is None:
+            raise FormatError(f"{shown(text)}: must be the number of {counted}", place)
+    if (found := len(frame[rows].lines)) != count:
         raise FormatError(f"holds {found} of {count} {what} in its {which}", frame[rows].place)
     return count
 
@@ -126,17 +122,15 @@ def _last_frame(path: Path, rows: str = "ATOMS") -> tuple[dict[str, _Item], str]
     return frame, f"{last} of {last}, time step {frame['TIMESTEP'].lines[0][1].strip()}"
 
 
-def read_contacts(path: Path) -> tuple[list[list[float]], list[str]]:
-    """Rows ``id id force p1 p2 p3`` of the contacts in the last frame of a dump of local quantities, and their lines.
+def read_contacts(path: Path) -> list[tuple[list[float], str]]:
+    """Rows ``id id force p1 p2 p3`` of the contacts in the last frame of a dump of local quantities, with their places.
 
     The first two are ``patom1 patom2`` of ``compute property/local``, the others what ``compute pair/local`` has.
     """
     entries = _last_frame(path, "ENTRIES")[0]["ENTRIES"]
     if len(entries.words) != len(_CONTACT):
         raise FormatError(f"must have the six columns {' '.join(_CONTACT)}, not {len(entries.words)}", entries.place)
-    return [numbers(line.split(), _CONTACT, f"line {k}") for k, line in entries.lines], [
-        f"line {k}" for k, _ in entries.lines
-    ]
+    return [(numbers(line.split(), _CONTACT, place), place) for place, line in entries.lines]
 
 
 def read(path: Path) -> Table:
@@ -151,15 +145,14 @@ def read(path: Path) -> Table:
             given = f"is given {len(several)} times, as columns {' and '.join(several)}; must be given once"
             raise FormatError(f"column {shown(name)[1:-1]} {given}", heading)
     rows = [line.split() for _, line in atoms.lines]
-    places = [f"line {k}" for k, _ in atoms.lines]
+    places = [place for place, _ in atoms.lines]
     for cells, place in zip(rows, places, strict=True):
         if len(cells) != len(names):
             raise FormatError(f"has {len(cells)} values, must have {len(names)} as ITEM: ATOMS", place)
     ids = None
     if "id" in names:
-        order = by_id([cells[names.index("id")] for cells in rows], places)
-        ids = [int(rows[k][names.index("id")]) for k in order]
-        rows, places = [rows[k] for k in order], [places[k] for k in order]
+        known = by_id([cells[names.index("id")] for cells in rows], places)
+        ids, rows, places = list(known), [rows[k] for k in known.values()], [places[k] for k in known.values()]
 
     def column(at: int) -> FloatArray:
         return np.array([number(cells[at], names[at], place) for cells, place in zip(rows, places, strict=True)])
@@ -230,8 +223,7 @@ def _box(item: _Item) -> tuple[list[str], list[tuple[float, float]]]:
     if len(words) not in (0, 3) or not all(re.fullmatch("[pfsm]{2}", word) for word in words):
         raise FormatError("must be followed by three lines of bounds, and have flags of three axes or none", item.place)
     sides = []
-    for axis, (k, line) in enumerate(item.lines):
-        place = f"line {k}"
+    for axis, (place, line) in enumerate(item.lines):
         values = numbers(line.split(), names, place)
         if edges:
             upright(values[:axis] + values[axis + 1 : 3], place)

@@ -59,6 +59,7 @@ class Table:
     columns: Mapping[str, FloatArray] | None = None
     ids: Sequence[int] | None = None  #: (n,) by which other files call the disks
     frame: str = ""  #: which frame of its file this is, such as "3 of 3, time step 200", where the format has frames
+    unit: str = ""  #: of its lengths, such as mm, where the file says it
 
 
 @dataclass(frozen=True)
@@ -151,7 +152,8 @@ def number(text: str, name: str, place: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise FormatError(f"{name} = {shown(text)}: must be a finite number", place)
+        point = " with a decimal point, not a comma" if "," in text else ""
+        raise FormatError(f"{name} = {shown(text)}: must be a finite number{point}", place)
     return value
 
 
@@ -186,8 +188,8 @@ def upright(turned: Sequence[float], place: str) -> None:
         raise FormatError("the box must not be tilted or turned, its edges must lie along x, y and z", place)
 
 
-def by_id(ids: Sequence[str], places: Sequence[str]) -> list[int]:
-    """The order of disks by their ids, as LAMMPS writes them in any order.
+def by_id(ids: Sequence[str], places: Sequence[str]) -> dict[int, int]:
+    """Where the disk of each id stands, in the order of ids; LAMMPS writes them in any order.
 
     Raises FormatError for an id that is no whole number or that two disks have.
     """
@@ -198,7 +200,7 @@ def by_id(ids: Sequence[str], places: Sequence[str]) -> list[int]:
             raise FormatError(f"id = {shown(text)}: must be a whole number", place)
         if (known := first.setdefault(value, k)) != k:
             raise FormatError(f"id = {value}: must differ from that of {places[known]}", place)
-    return [first[value] for value in sorted(first)]
+    return dict(sorted(first.items()))
 
 
 #: How far, relative to the largest, numbers that other programs print may differ and still be the same.

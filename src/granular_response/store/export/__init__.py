@@ -24,9 +24,9 @@ from ...errors import GranularError
 from ...scene import formats
 from .. import atomic
 from ..checked import read_result
-from ..result import chosen_states
+from ..result import CONTACTS, chosen_states
 from . import gsd_file, lammps, text, vtk
-from .frames import PREFIXES, contact_force_sums
+from .frames import contact_force_sums
 
 #: Of one dataset, the files to write: content by path. Writers of frames take the index of the only state too.
 Writer = Callable[..., dict[Path, bytes]]
@@ -106,9 +106,8 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
     chosen = chosen_states(dataset, [0, -1 if state is None else state]) if states == "one" else dataset
     only = {} if states != "frames" or state is None else {"only": state % count}
     try:
-        atomic.check_output(output, read)
         output.parent.mkdir(parents=True, exist_ok=True)
-        atomic.check_writable(output)
+        atomic.check_writable(output, read)
         made = writer(chosen, output, **only)
         for path in made:
             atomic.check_writable(path, read)
@@ -140,7 +139,7 @@ def _lost(state: xr.Dataset, writer: Writer) -> Iterator[str]:
         bears = bool(state["contacts"] > 0) and bool(state["state"] > 0.0)
         if bears:
             yield "a motion has no springs of contacts: those that are closed begin anew"
-    elif any(np.any(state[f"{prefix}_spring"].values) for prefix in PREFIXES):
+    elif any(np.any(state[f"{prefix}_spring"].values) for prefix in CONTACTS):
         kept = "a .contacts.csv beside it has them, for packing.springs"
         yield f"the format has no springs of friction: read again, contacts begin anew ({kept})"
 

@@ -9,45 +9,33 @@ import numpy as np
 import xarray as xr
 
 from ...scene import formats
-from ...state import OPEN, Box, FloatArray
-
-PREFIXES = ("contact", "wall")
+from ...state import Box, FloatArray, State
+from ..result import state_from
 
 
 class Frame(NamedTuple):
     """One state as pictures need it."""
 
     step: int  #: index of the state in the result
-    factor: float  #: load factor
-    position: FloatArray  #: (n, 2)
-    angle: FloatArray  #: (n,)
+    state: State
     force_change: FloatArray  #: (n, 2) contact forces that the load adds
-    coordination: np.ndarray  #: (n,) closed contacts
 
 
 def frames(dataset: xr.Dataset, only: int | None = None) -> Iterator[Frame]:
     """The states in order, or the one with the index ``only``."""
-    rest, _ = contact_force_sums(dataset.isel(state=0))
+    rest = contact_force_sums(state_from(dataset, 0))
     for index in range(dataset.sizes["state"]) if only is None else [only]:
-        state = dataset.isel(state=index)
-        force, count = contact_force_sums(state)
-        factor = float(state["state_load_factor"])
-        yield Frame(index, factor, state["position"].values, state["angle"].values, force - rest, count)
+        state = state_from(dataset, index)
+        yield Frame(index, state, contact_force_sums(state) - rest)
 
 
-def contact_force_sums(state: xr.Dataset) -> tuple[FloatArray, np.ndarray]:
-    """(n, 2) sum of the contact forces on each disk of one state, and (n,) number of its closed contacts."""
-    force, count = np.zeros((state.sizes["disk"], 2)), np.zeros(state.sizes["disk"], int)
-    for prefix in PREFIXES:
-        acting = state[f"{prefix}_force"].values
-        touching = (state[f"{prefix}_status"].values != OPEN).astype(int)
-        first = state[f"{prefix}_disk"].values
-        np.add.at(force, first, acting)
-        np.add.at(count, first, touching)
-        if prefix == "contact":
-            np.add.at(force, state["contact_partner"].values, -acting)
-            np.add.at(count, state["contact_partner"].values, touching)
-    return force, count
+def contact_force_sums(state: State) -> FloatArray:
+    """(n, 2) sum of the contact forces on each disk of a state."""
+    force, on_pairs = np.zeros_like(state.position), state.pair_force()
+    np.add.at(force, state.pairs.first, on_pairs)
+    np.add.at(force, state.pairs.second, -on_pairs)
+    np.add.at(force, state.walls.first, state.wall_force())
+    return force
 
 
 def mark(dataset: xr.Dataset) -> formats.Mark:

@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ...state import OPEN, Box
 from .frames import extent, frames, in_plane
 
 
@@ -26,32 +25,31 @@ def files(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path
         made = Path(folder, "export.gsd")
         with gsd.hoomd.open(str(made), "w") as file:
             width, height = extent(dataset)
-            for index, factor, position, angle, force, count in frames(dataset, only):
+            for index, state, force_change in frames(dataset, only):
                 frame = gsd.hoomd.Frame()
                 frame.configuration.step = index
                 frame.configuration.dimensions = 2
                 frame.configuration.box = [2.0 * width, 2.0 * height, 0, 0, 0, 0]
-                frame.particles.N = len(position)
+                frame.particles.N = dataset.sizes["disk"]
                 frame.particles.types = ["disk"]
-                frame.particles.position = in_plane(position)
+                frame.particles.position = in_plane(state.position)
                 frame.particles.diameter = 2.0 * dataset["radius"].values
                 frame.particles.mass = dataset["mass"].values
-                half = 0.5 * angle
+                half = 0.5 * state.angle
                 frame.particles.orientation = np.column_stack([np.cos(half), 0 * half, 0 * half, np.sin(half)])
-                touching = dataset["contact_status"].values[index] != OPEN
-                pairs = np.column_stack([dataset["contact_disk"].values, dataset["contact_partner"].values])[touching]
-                frame.bonds.N = len(pairs)
+                pairs, touching = state.pairs, state.pairs.touching
+                frame.bonds.N = np.count_nonzero(touching)
                 frame.bonds.types = ["contact"]
-                frame.bonds.group = pairs
+                frame.bonds.group = np.column_stack([pairs.first, pairs.second])[touching]
                 frame.log = {
                     "origin": np.zeros(3),
                     "box_width": np.array([width]),
-                    "periodic": np.array([Box.of(dataset.attrs).periodic], np.uint8),
-                    "load_factor": np.array([factor]),
-                    "particles/force_change": in_plane(force),
-                    "particles/coordination": count.astype(np.int32),
-                    "bonds/normal_force": dataset["contact_normal_force"].values[index][touching],
-                    "bonds/tangential_force": dataset["contact_tangential_force"].values[index][touching],
+                    "periodic": np.array([state.box.periodic], np.uint8),
+                    "load_factor": np.array([state.load_factor]),
+                    "particles/force_change": in_plane(force_change),
+                    "particles/coordination": state.contact_count().astype(np.int32),
+                    "bonds/normal_force": pairs.normal_force[touching],
+                    "bonds/tangential_force": pairs.tangential_force[touching],
                 }
                 file.append(frame)
         return {path: made.read_bytes()}

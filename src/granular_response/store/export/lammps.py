@@ -24,8 +24,7 @@ from ...scene.formats.lammps_dump import WALL_FIXES
 from ...solvers.problem import Problem
 from ...solvers.timestep import resolve_time_step
 from ...state import Box, FloatArray, State, wall_normals
-from ..result import scene_of, state_from
-from .frames import PREFIXES
+from ..result import CONTACTS, scene_of, state_from
 from .text import lammps_data
 
 #: Time that a script runs for, after the ramp of its loads, in sqrt(R/g).
@@ -170,6 +169,6 @@ def script(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
 
 def wound_springs(state: xr.Dataset) -> bool:
     """Whether a script brings the tangential springs of a state with it; those of rolling have no such way."""
-    names = [f"{prefix}_{kind}" for prefix in PREFIXES for kind in ("spring", "rolling_spring")]
+    names = [f"{prefix}_{kind}" for prefix in CONTACTS for kind in ("spring", "rolling_spring")]
     tangential, rolling = (any(np.any(state[name]) for name in names[k::2] if name in state) for k in (0, 1))
     return tangential and not rolling

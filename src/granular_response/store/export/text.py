@@ -81,7 +81,7 @@ def lammps_dump(dataset: xr.Dataset, path: Path, only: int | None = None) -> dic
         lines += ["ITEM: TIMESTEP", str(frame.step), "ITEM: NUMBER OF ATOMS", str(len(radius))]
         lines += [f"ITEM: BOX BOUNDS {sides} ff pp", f"0.0 {width!r}", f"0.0 {height!r}", f"{-depth!r} {depth!r}"]
         lines.append("ITEM: ATOMS id type x y z radius mass c_force_change[1] c_force_change[2] c_force_change[3]")
-        rows = _rows([in_plane(frame.position), radius, mass, in_plane(frame.force_change)])
+        rows = _rows([in_plane(frame.state.position), radius, mass, in_plane(frame.force_change)])
         lines += [f"{k} 1 {row}" for k, row in enumerate(rows, start=1)]
     return _file(path, lines)
 
@@ -94,14 +94,14 @@ def xyz(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path, 
     depth = 2.0 * float(radius.max())
     periodic = "T" if Box.of(dataset.attrs).periodic else "F"
     lines = []
-    for _, factor, position, angle, force, count in frames(dataset, only):
-        lines.append(str(len(position)))
+    for _, state, force_change in frames(dataset, only):
+        lines.append(str(len(radius)))
         lines.append(
             f'Lattice="{width!r} 0.0 0.0 0.0 {height!r} 0.0 0.0 0.0 {depth!r}" Properties={columns} '
-            f'load_factor={factor!r} pbc="{periodic} F F"'
+            f'load_factor={state.load_factor!r} pbc="{periodic} F F"'
         )
-        rows = _rows([in_plane(position), radius, mass, angle, in_plane(force)])
-        lines += [f"X {row} {contacts}" for row, contacts in zip(rows, count.tolist(), strict=True)]
+        rows = _rows([in_plane(state.position), radius, mass, state.angle, in_plane(force_change)])
+        lines += [f"X {row} {count}" for row, count in zip(rows, state.contact_count(), strict=True)]
     return _file(path, lines)
 
 

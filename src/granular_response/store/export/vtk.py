@@ -1,13 +1,15 @@
 """VTK for ParaView: one state as ``.vtu``, or all of them as a series, ``.pvd``, with a ``.vtu`` beside it for each.
 
 Disks are vertices, contacts are lines. A wall contact ends at its foot, one across a periodic side where the other
-disk's image lies; these ends are points without a disk. The events on the way to a
-state are its field data.
+disk's image lies; these ends are points without a disk, and move as it does. The events on the way to a state are its
+field data. The times of a series are the load factors where these grow, and the numbers of the states where they do
+not: two states of one time would be one.
 """
 
 from __future__ import annotations
 
 import base64
+from itertools import pairwise
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -15,10 +17,9 @@ import numpy as np
 import xarray as xr
 
 from ...observe.stress import coarse_grained_stress, load_forces
-from ...state import OPEN, Box
-from ..result import events_from, state_from
+from ..result import CONTACTS, events_from, state_from
 from ..variables import EVENTS
-from .frames import PREFIXES, contact_force_sums, in_plane
+from .frames import contact_force_sums, in_plane
 
 
 def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
@@ -26,77 +27,66 @@ def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
     if path.suffix == ".vtu":
         return {path: _mesh(dataset, -1)}
     made, entries = {}, []
-    for index in range(dataset.sizes["state"]):
+    factors = dataset["state_load_factor"].values.tolist()
+    grows = all(later > before for before, later in pairwise(factors))
+    for index, time in enumerate(factors if grows else range(len(factors))):
         name = f"{path.stem}-{index}.vtu"
         made[path.with_name(name)] = _mesh(dataset, index)
-        entries.append(f'<DataSet timestep="{index}" part="0" file={quoteattr(name)}/>')
+        entries.append(f'<DataSet timestep="{time}" part="0" file={quoteattr(name)}/>')
     lines = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">']
     lines += ["<Collection>", *entries, "</Collection>", "</VTKFile>", ""]
     return {**made, path: "\n".join(lines).encode()}
 
 
 def _mesh(dataset: xr.Dataset, index: int) -> bytes:
-    """One state, with the stress that its load adds (Sec. V.C) at the centres of the disks."""
-    state = dataset.isel(state=index)
-    n = state.sizes["disk"]
-    position, bounds = state["position"].values, Box.of(dataset.attrs)
-    force, count = contact_force_sums(state)
-    points: list[np.ndarray] = [position]
-    ends: list[np.ndarray] = []
-    forces: list[np.ndarray] = []
-    for prefix in PREFIXES:
-        touching = np.flatnonzero(state[f"{prefix}_status"].values != OPEN)
-        near = state[f"{prefix}_disk"].values[touching]
-        if prefix == "contact":
-            far = state["contact_partner"].values[touching].astype(np.int64)
-            end = position[near] - bounds.separation(position[near], position[far])
-            own = np.any(np.abs(end - position[far]) > 1e-9, axis=1)  # across a periodic side
-        else:
-            far = np.zeros(len(near), np.int64)
-            end = bounds.on_wall(position[near], state["wall_index"].values[touching])
+    """One state, with what its load adds: displacements, and the stress at the centres of the disks (Sec. V.C)."""
+    rest, state = state_from(dataset, 0), state_from(dataset, index)
+    position, box, n = state.position, state.box, len(state.position)
+    moved = position - rest.position
+    points, moves, ends, values = [position], [moved], [], []
+    for contacts, at_wall in ((state.pairs, False), (state.walls, True)):
+        near, far = contacts.first[contacts.touching], contacts.second[contacts.touching].astype(np.int64)
+        if at_wall:
+            end = box.on_wall(position[near], far)
+            way = end - box.on_wall(rest.position[near], far)
             own = np.ones(len(near), bool)
+        else:
+            end, way = position[near] - box.separation(position[near], position[far]), moved[far]
+            own = np.any(np.abs(end - position[far]) > 1e-9, axis=1)  # across a periodic side
         far[own] = sum(map(len, points)) + np.arange(np.count_nonzero(own))
         points.append(end[own])
+        moves.append(way[own])
         ends.append(np.column_stack([near, far]))
-        names = ("normal_force", "tangential_force", "overlap", "status")
-        values = [state[f"{prefix}_{name}"].values[touching] for name in names]
-        rolling = f"{prefix}_rolling_force"
-        rolls = state[rolling].values[touching] if rolling in state else np.zeros(len(touching))
-        forces.append(np.column_stack([*values, np.full(len(touching), prefix == "wall"), rolls]))
-    lines, table = np.concatenate(ends), np.concatenate(forces)
-    centres = in_plane(np.concatenate(points))
+        of_contacts = {name: getattr(contacts, name)[contacts.touching] for name in _OF_CONTACTS}
+        values.append({**of_contacts, "wall": np.full(len(near), at_wall)})
+    lines, centres = np.concatenate(ends), in_plane(np.concatenate(points))
     feet = len(centres) - n
 
     def on_disks(array: np.ndarray) -> np.ndarray:
         return np.concatenate([array, np.zeros((feet, *array.shape[1:]), array.dtype)])
 
-    def on_lines(column: int, kind: type = float) -> np.ndarray:
-        return np.concatenate([np.zeros(n, kind), table[:, column].astype(kind)])
+    def on_lines(name: str) -> np.ndarray:
+        both = np.concatenate([one[name] for one in values])
+        kind = float if both.dtype.kind == "f" else np.int32
+        return np.concatenate([np.zeros(n, kind), both.astype(kind)])
 
-    factor = np.atleast_1d(state["state_load_factor"].values)
     loaded = np.zeros(n, np.int32)
-    loaded[state["loaded_disk"].values] = 1
-    stress = coarse_grained_stress(load_forces(state_from(dataset, 0), state_from(dataset, index)), position)
+    loaded[dataset["loaded_disk"].values] = 1
+    stress = coarse_grained_stress(load_forces(rest, state), position)
     cells: dict[str, np.ndarray] = {
         "connectivity": np.concatenate([np.arange(n), lines.ravel()]).astype(np.int64),
         "offsets": np.concatenate([np.arange(1, n + 1), n + 2 * np.arange(1, len(lines) + 1)]).astype(np.int64),
         "types": np.repeat(np.array([_VERTEX, _LINE], np.uint8), [n, len(lines)]),
     }
-    on_cells: dict[str, np.ndarray] = {
-        "normal_force": on_lines(0),
-        "tangential_force": on_lines(1),
-        "overlap": on_lines(2),
-        "status": on_lines(3, np.int32),
-        "wall": on_lines(4, np.int32),
-    }
-    if any(f"{prefix}_rolling_force" in state for prefix in PREFIXES):
-        on_cells["rolling_force"] = on_lines(5)
+    rolls = any(f"{prefix}_rolling_force" in dataset for prefix in CONTACTS)
+    names = ("normal_force", "tangential_force", "overlap", "status", "wall", *(("rolling_force",) if rolls else ()))
     on_points: dict[str, np.ndarray] = {
-        "radius": on_disks(state["radius"].values),
-        "angle": on_disks(state["angle"].values),
-        "coordination": on_disks(count.astype(np.int32)),
+        "radius": on_disks(dataset["radius"].values),
+        "angle": on_disks(state.angle),
+        "coordination": on_disks(state.contact_count().astype(np.int32)),
         "loaded": on_disks(loaded),
-        "contact_force": on_disks(in_plane(force)),
+        "displacement": in_plane(np.concatenate(moves)),
+        "contact_force": on_disks(in_plane(contact_force_sums(state))),
         **{f"added_stress_{'xz'[a]}{'xz'[b]}": on_disks(stress[:, a, b]) for a in range(2) for b in range(2)},
     }
     piece = f'<Piece NumberOfPoints="{len(centres)}" NumberOfCells="{n + len(lines)}">'
@@ -105,12 +95,12 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
             '<?xml version="1.0"?>',
             '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
             "<UnstructuredGrid>",
-            *_section("FieldData", {"load_factor": factor, **_events(dataset, index)}),
+            *_section("FieldData", {"load_factor": np.array([state.load_factor]), **_events(dataset, index)}),
             piece,
             *_section("Points", {"points": centres}),
             *_section("Cells", cells),
             *_section("PointData", on_points),
-            *_section("CellData", on_cells),
+            *_section("CellData", {name: on_lines(name) for name in names}),
             "</Piece>",
             "</UnstructuredGrid>",
             "</VTKFile>",
@@ -128,6 +118,8 @@ def _events(dataset: xr.Dataset, index: int) -> dict[str, np.ndarray]:
     return {name: array.astype(np.int32) if array.dtype.kind == "i" else array for name, array in arrays.items()}
 
 
+#: What lines have of their contacts.
+_OF_CONTACTS = ("normal_force", "tangential_force", "overlap", "status", "rolling_force")
 #: VTK's numbers of the two kinds of cells.
 _VERTEX, _LINE = 1, 3
 _TYPES = {"f8": "Float64", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
