@@ -20,9 +20,8 @@ from ..contact.rolling import Rolling, arms
 from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Contact, Packing, Scene, SceneError, resolve_disk
-from ..scene.contacts import GivenContact
 from ..state import Contacts, FloatArray, State
-from ..state.box import WALL_MEANINGS
+from ..state.box import bodies
 from .choice import Plan, plan
 from .close_pairs import close_pairs
 from .held import NOTHING, Held
@@ -96,10 +95,7 @@ def _check_overlaps(packing: Packing, most: float) -> None:
         return
     k = int(np.argmax(np.where(deep, overlap / smaller, 0.0)))
     m = k - len(first)
-    if m < 0:
-        two = f"disks {first[k]} and {second[k]}"
-    else:
-        two = f"disk {disk[m]} and the {WALL_MEANINGS[wall[m]].replace('_', ' ')}"
+    two = bodies(first[k], second[k], False) if m < 0 else bodies(disk[m], wall[m], True)
     cure = "are radii diameters, and walls and floor where they should be?"
     if packing.given is not None and most < 1.0:
         cure += " For measured disks packing.overlaps: removed takes overlaps of up to a radius out"
@@ -418,7 +414,7 @@ class Problem:
             force[k], roll[k], missing[k] = one.tangential, one.rolling, False
         if missing.any():
             at = int(missing.argmax())
-            two = GivenContact("", int(c.first[at]), int(c.second[at]), bool(at_wall), 0.0, 0.0).words
+            two = bodies(int(c.first[at]), int(c.second[at]), bool(at_wall))
             raise SceneError(f"packing.springs: {two} overlap by {c.overlap[at]:.2g} mean radii, must be among them")
         if len(over := np.flatnonzero(np.abs(force) > law.friction * (1.0 + ROUNDED))):
             most = f"{np.abs(force).max():.4g} of the normal force, {key}.friction is {law.friction:g}"
