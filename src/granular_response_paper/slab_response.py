@@ -18,7 +18,6 @@ from granular_response.observe.widths import half_maximum_width
 from granular_response.scene import Packing
 from granular_response.scene.lattice import TOUCHING_LARGEST, SlabPacking
 from granular_response.solvers.problem import Problem
-from granular_response.state import Event as PathEvent
 from granular_response.state import State
 from granular_response.store.result import certificates_dataset, common_candidates, states_dataset
 from granular_response.store.variables import RADII, WEIGHTS, variable
@@ -103,22 +102,6 @@ def locate(
     """Where on a path each of what is ``asked`` happens first, by its name; see :meth:`LoadPath.first`."""
     friction = path.scene.contact.friction
     return [Event(name, friction, *path.first(forces, what, width), what.definition) for name, what in asked.items()]
-
-
-@record
-class Lost:
-    """An equilibrium that a path has lost."""
-
-    friction: float = column("coefficient of friction of the path")
-    kind: str = column("how the path goes on")
-    start: float = column(f"force at which the equilibrium ends {WEIGHTS}")
-    until: float = column(f"force at which the path goes on {WEIGHTS}")
-    displacement: float = column(f"largest of a disk on the way {RADII}")
-
-    @classmethod
-    def of(cls, friction: float, event: PathEvent) -> Lost:
-        """As a path with this coefficient of friction records it."""
-        return cls(friction, event.kind, event.load_factor, event.until, event.displacement)
 
 
 def events_dataset(found: Sequence[Event]) -> xr.Dataset:

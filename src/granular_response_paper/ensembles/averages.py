@@ -9,7 +9,7 @@ import xarray as xr
 
 from granular_response.state import FloatArray
 from granular_response.store.variables import RADII
-from granular_response_paper.ensembles import OUTCOMES, smoothed
+from granular_response_paper.ensembles import smoothed
 from granular_response_paper.records import axes, variables
 
 
@@ -26,14 +26,13 @@ def averages_dataset(ensembles: xr.Dataset, x: FloatArray, *, widths: Sequence[f
     cases, steps = ensembles.sizes["case"], ensembles.sizes["step"]
     mean = np.full((len(widths), cases, steps, len(x)), np.nan)
     error, mean_few = mean.copy(), mean.copy()
-    count = np.zeros((len(OUTCOMES), cases, steps), np.int32)
+    count = np.zeros((cases, steps), np.int32)
     for c in range(cases):
-        outcome = ensembles["outcome"].values[c, : int(ensembles["realizations"][c])]
         responses = [smoothed(ensembles.isel(case=c), x, width) for width in widths]
         for s in np.flatnonzero(np.isfinite(ensembles["force"].values[c])):
-            count[:, c, s] = np.bincount(outcome[:, s], minlength=len(OUTCOMES))
             for w in range(len(widths)):
                 rows = at_rest(responses[w], int(s))
+                count[c, s] = len(rows)
                 if len(rows):
                     mean[w, c, s], mean_few[w, c, s] = rows.mean(axis=0), rows[:few].mean(axis=0)
                 if len(rows) > 1:
@@ -43,12 +42,11 @@ def averages_dataset(ensembles: xr.Dataset, x: FloatArray, *, widths: Sequence[f
         mean=(dims, mean, f"ensemble mean of the smoothed response {per}"),
         standard_error=(dims, error, f"standard error of the mean {per}"),
         mean_of_few=(dims, mean_few, f"mean over the first {few} realizations at rest {per}"),
+        count_at_rest=("case step", count, "realizations that are at rest"),
     )
-    for name, number in zip(OUTCOMES, count, strict=True):
-        text = f"realizations that are {name.replace('_', ' ')}"
-        data |= variables(**{f"count_{name}": ("case step", number, text)})
     coordinates = axes(
         width=(widths, f"width w of the smoothing Gaussian {RADII}"), x=(x, f"distance from the loaded disk {RADII}")
     )
-    kept = {name: ensembles[name].variable for name in ("polydispersity", "friction", "lattice_constant")}
+    names = ("polydispersity", "friction", "lattice_constant", "realizations")
+    kept = {name: ensembles[name].variable for name in names}
     return xr.Dataset(data | {"force": ensembles["force"].variable}, coordinates | kept, {"few": few})

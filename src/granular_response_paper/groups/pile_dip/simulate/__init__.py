@@ -83,7 +83,6 @@ class Pile:
     floor_force: FloatArray = column(f"vertical floor force {WEIGHTS}", "floor_disk")
     floor_dip: float = column(f"how far the floor force under the apex {DIP}")
     floor_asymmetry: float = column(f"largest difference of a floor force from its mirror image {WEIGHTS}")
-    open_contacts: float = column("contacts of the lattice that are open")
     central_open_contacts: float = column("open contacts in the connected region on the axis of the pile")
     central_horizontal: float = column("how many of them are horizontal on the lattice")
     central_height: float = column(f"height of the highest contact of that region above the floor {RADII}")
@@ -107,7 +106,6 @@ def _piles(packing: Packing, states: list[State]) -> xr.Dataset:
             floor_force=floor,
             floor_dip=peaks.central_dip(x, floor),
             floor_asymmetry=np.abs(floor - floor[::-1]).max(),
-            open_contacts=int(np.count_nonzero(opened)),
             central_open_contacts=region.count,
             central_horizontal=int(np.count_nonzero(region.contacts & horizontal)),
             central_height=centre[region.contacts, 1].max(initial=0.0),
