@@ -70,12 +70,6 @@ def test_copies_of_a_packing_are_the_same_packing():
     np.testing.assert_array_equal(np.sort(image.position, axis=0), np.sort(packing.position, axis=0))
     np.testing.assert_array_equal(image.position[0], packing.position[6])
 
-    mixed = copies.shuffled(packing, 3)
-    order = np.lexsort(packing.position.T)
-    np.testing.assert_array_equal(mixed.position[np.lexsort(mixed.position.T)], packing.position[order])
-    assert not np.array_equal(mixed.position, packing.position)
-    np.testing.assert_allclose(mixed.position[mixed.row == 0][:, 1], 1.0)
-
     shift = np.zeros((packing.n, 2))
     shift[0] = [1e-3, 2e-3]
     moved = copies.displaced(packing, shift, mirror_image=True)

@@ -21,7 +21,6 @@ from granular_response_paper.records import variables
 def copies_of(given: Copies, packing: Packing) -> dict[str, Packing]:
     """By how they differ from the packing."""
     found = {"as it is": packing, "numbered from right to left": mirrored(packing)}
-    found |= {f"numbered at random, seed {seed}": shuffled(packing, seed) for seed in given.seeds}
     for seed in given.seeds:
         shift = random_shift(packing.position.shape, given.displacement, seed)
         found[f"displaced at random, seed {seed}"] = displaced(packing, shift)
@@ -32,13 +31,6 @@ def copies_of(given: Copies, packing: Packing) -> dict[str, Packing]:
 def mirrored(packing: Packing) -> Packing:
     """The mirror image of a packing, each disk with its number: for a symmetric lattice only the numbers change."""
     return replace(packing, position=packing.position * [-1.0, 1.0] + [packing.width, 0.0])
-
-
-def shuffled(packing: Packing, seed: int) -> Packing:
-    """The same disks numbered at random, without the order of a lattice, by which neighbours are known."""
-    order = np.random.default_rng(seed).permutation(packing.n)
-    arrays = {name: getattr(packing, name)[order] for name in ("position", "radius", "row")}
-    return replace(packing, **arrays, left=None)
 
 
 def displaced(packing: Packing, shift: FloatArray, *, mirror_image: bool = False) -> Packing:
