@@ -108,7 +108,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     protocol = {"method": "dynamics", "ramp_time": given.ramp_time, "time_step": given.time_step}
     shaken = base.updated({"contact.friction": given.friction, "protocol": protocol})
     tasks: dict[Any, partial[Any]]
-    tasks = {force: partial(shake, shaken, main[given.friction].rest, force) for force in sorted(given.forces)}
+    tasks = {force: partial(shake, shaken, main[given.friction].rest, force) for force in given.forces}
     if np.isfinite(high) and not one_peak[0]:
         tasks["crossover"] = partial(narrow, base, axis.force, low, high, axis.tolerance)
     same = parameters.equal_rows
@@ -132,21 +132,20 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         .assign(force=variable((), axis.force, APPLIED)),
     }
     datasets |= {f"states_mu_{mu:g}": one.picture for mu, one in main.items() if one.picture is not None}
-    if done:
-        states, measured = zip(*done.values(), strict=True)
-        large = slab.measured_along("force", measured).assign_coords(axes(force=(done, APPLIED)))
-        datasets["large_forces"] = large.assign(
-            variables(
-                friction=("", given.friction, FRICTION),
-                ramp_time=("", given.ramp_time, "duration of the load ramp in sqrt(radius/g)"),
-                time_step=("", given.time_step, "time step in sqrt(radius/g)"),
-            )
+    states, measured = zip(*done.values(), strict=True)
+    large = slab.measured_along("force", measured).assign_coords(axes(force=(done, APPLIED)))
+    datasets["large_forces"] = large.assign(
+        variables(
+            friction=("", given.friction, FRICTION),
+            ramp_time=("", given.ramp_time, "duration of the load ramp in sqrt(radius/g)"),
+            time_step=("", given.time_step, "time step in sqrt(radius/g)"),
         )
-        rest = main[given.friction].rest
-        datasets["large_force_states"] = slab.states_picture([rest, *states], studies.LoadPath.of(shaken, rest).problem)
-        ends = studies.first_change(large["force"].values, large["asymmetry"].values > parameters.asymmetry)
-        text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {parameters.asymmetry:g}"
-        found.append(slab.Event("loss_of_symmetry", given.friction, *ends, text))
+    )
+    rest = main[given.friction].rest
+    datasets["large_force_states"] = slab.states_picture([rest, *states], studies.LoadPath.of(shaken, rest).problem)
+    ends = studies.first_change(large["force"].values, large["asymmetry"].values > parameters.asymmetry)
+    text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {parameters.asymmetry:g}"
+    found.append(slab.Event("loss_of_symmetry", given.friction, *ends, text))
     datasets["events"] = slab.events_dataset(found)
     datasets["events_equal_rows"] = slab.events_dataset(literal)
     return labelled(datasets, base)
