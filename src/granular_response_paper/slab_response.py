@@ -43,8 +43,9 @@ class Scalars:
     )
     peak_count: float = column("number of peaks of the floor response")
     double_peaked: float = column("1 where the floor response has a peak on each side of x = 0 that exceeds it")
-    third_peak: float = column("1 where a double-peaked response has a further peak at x = 0")
-    third_peak_prominence: float = column("prominence of that third peak, per largest response; 0 without it")
+    third_peak_prominence: float = column(
+        "prominence of a third peak at x = 0 of a double-peaked response, per largest response; 0 without it"
+    )
     asymmetry: float = column("largest difference of the response and its mirror image, per largest response")
     asymmetry_sign: float = column("1 if the part of the response at x > 0 is the larger one, -1 if that at x < 0 is")
     peak_height: float = column("largest floor response")
@@ -60,14 +61,13 @@ class Scalars:
     def of(cls, measures: Measures, state: State) -> Scalars:
         """Measured on a state."""
         m, x, response, region = measures, measures.x, measures.response(state), measures.region(state)
-        largest, third = float(response[m.interior].max()), m.third_peak(state)
+        largest = float(response[m.interior].max())
         return cls(
             response_at_centre=m.centre(state),
             central_dip=m.dip(state),
             peak_count=peaks.peak_count(x, response, interior=m.interior),
             double_peaked=m.double_peaked(state),
-            third_peak=third > 0.0,
-            third_peak_prominence=third / largest,
+            third_peak_prominence=m.third_peak(state) / largest,
             asymmetry=m.asymmetry(state),
             asymmetry_sign=peaks.asymmetry_sign(x, response),
             peak_height=largest,

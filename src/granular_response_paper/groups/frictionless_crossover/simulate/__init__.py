@@ -29,7 +29,7 @@ from granular_response_paper.slab_response import events_dataset
 from granular_response_paper.tasks import computed
 
 #: What is not kept of the measurements: it is about friction.
-LEFT_OUT = ("third_peak", "third_peak_prominence", "sliding_contacts", "asymmetry_sign", "mobilised_contacts")
+LEFT_OUT = ("third_peak_prominence", "sliding_contacts", "asymmetry_sign", "mobilised_contacts")
 
 #: Dips at x = 0, per largest response, from which on a response can be said to have two peaks; the event has 0.001.
 DIPS = (0.0, 0.005, 0.01, 0.02)
