@@ -53,7 +53,6 @@ class Outcome:
     open_at_rest: int = column("horizontal contacts of the lattice in the central third that are open at rest")
     measured: xr.Dataset  #: along ``force``
     events: list[Event]  #: of EVENTS, then the crossover by each dip of the task
-    brackets: list[tuple[float, float]]  #: their forces before and at
     pictures: dict[str, xr.Dataset]  #: ``rest`` and ``states`` at the forces, if they are kept
 
 
@@ -78,15 +77,13 @@ def solve(
         return Happening(lambda state: measures.dip(state) > dip, "a dip at x = 0")
 
     asked |= {f"dip {dip:g}": exceeds(dip) for dip in dips}
-    events = slab_response.locate(path, forces, asked, tolerance)
     level = (network.lattice_direction(rest) == network.HORIZONTAL) & measures.near
     return Outcome(
         rest_asymmetry(packing.position, rest, packing.width),
         new_neighbours(packing.position, rest),
         int(np.count_nonzero(level & ~rest.pairs.touching)),
         slab_response.measured(measures, states).rename(state="force").assign_coords(force=list(forces)),
-        events,
-        [(one.low, one.high) for one in events],
+        slab_response.locate(path, forces, asked, tolerance),
         pictures(path, states, measures) if keep_states else {},
     )
 
