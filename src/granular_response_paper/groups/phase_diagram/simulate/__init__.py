@@ -58,7 +58,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     collapsed = (source["outcome"].values == COLLAPSED).any(axis=-1).sum(axis=-1).astype(np.int32)
     text = "packings that collapse along their load paths"
     found["medians"] = found["medians"].assign(variables(collapsed=("case", collapsed, text)))
-    found["packings"] = packings.drop_vars("processor_time", errors="ignore")
+    found["packings"] = packings
     found["starts"] = side_by_side(compared, few, found["shapes"], max(asked.numbers))
     small = survey.read(Path(asked.survey), [asked.linear_range])["ensembles"]
     found["linear_range"] = _linear_range(small, asked.linear_width, np.concatenate([-x[:0:-1], x]))
