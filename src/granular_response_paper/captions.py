@@ -16,6 +16,7 @@ import re
 import string
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from granular_response.scene import text as yaml
@@ -95,12 +96,17 @@ class _Fields(string.Formatter):
         return values(value) if conversion == "v" else super().convert_field(value, conversion)
 
 
+@cache
+def _templates(group: str) -> dict[str, Any]:
+    return dict(yaml.read((group_path(group) / TEMPLATES).read_text("utf-8")))
+
+
 def of_group(group: str, parameters: Mapping[str, Mapping[str, Value]], **fields: Any) -> dict[str, Caption]:
     """The captions of those pictures of a group that have ``parameters``, by file stem, from the group's templates.
 
     Raises KeyError for a picture without a template, or a field that is not given.
     """
-    templates = yaml.read((group_path(group) / TEMPLATES).read_text("utf-8"))
+    templates = _templates(group)
 
     def filled(stem: str, name: str) -> str:
         return _Fields().vformat(templates[stem][name], (), fields)
@@ -110,12 +116,12 @@ def of_group(group: str, parameters: Mapping[str, Mapping[str, Value]], **fields
 
 def question(group: str) -> str:
     """The question that the figures of a group answer, as its ``captions.yaml`` says. Raises KeyError without one."""
-    return str(yaml.read((group_path(group) / TEMPLATES).read_text("utf-8"))["question"])
+    return str(_templates(group)["question"])
 
 
 def stems(group: str) -> list[str]:
     """The pictures that a group has templates for, by file stem."""
-    return [name for name in yaml.read((group_path(group) / TEMPLATES).read_text("utf-8")) if name != "question"]
+    return [name for name in _templates(group) if name != "question"]
 
 
 def of_scene(scene: Scene, *, frictions: Value | None = None, **others: Value | None) -> dict[str, Value]:

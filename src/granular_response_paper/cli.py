@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -117,7 +118,10 @@ def claims(
         int | None, typer.Option(help="With --list: the claims of one figure of the paper alone.")
     ] = None,
 ) -> None:
-    """Compare the claims with the stored datasets."""
+    """Compare the claims with the stored datasets.
+
+    A table that has verdicts on groups without datasets here stays as it is.
+    """
     from .claims import preparations as kept
     from .claims import table
 
@@ -126,6 +130,8 @@ def claims(
     loaded()
     one = collection(name)
     output, data = output or one.here / table.OUTPUT, data or one.here / "data"
+    if not every:
+        _keep_verdicts(output, [group for group in table.groups_read(one) if not (data / f"{group}.nc").exists()])
     found = table.read(output) if every else table.write(output, data, others or kept.OUTPUT, collection=one)
     rows = [row for row in found["table"] if figure is None or figure in row["figures"]]
     if every and not rows:
@@ -138,6 +144,22 @@ def claims(
             if text:
                 typer.echo(f"{'':20} {text}")
     typer.echo(f"{output}: {table.quoted(found)}")
+
+
+def _keep_verdicts(output: Path, absent: list[str]) -> None:
+    """Raises ClaimsError if a table has verdicts on groups whose datasets are ``absent``: they would be lost."""
+    from .claims import table
+
+    rows = []
+    with suppress(table.ClaimsError):  # what is no table has none
+        rows = table.read(output)["table"]
+    judged = {row["group"] for row in rows if row["verdict"] != "not measured"}
+    if lost := [group for group in absent if group in judged]:
+        some = ", ".join(lost[:3]) + (f" and {len(lost) - 3} more" if len(lost) > 3 else "")
+        raise table.ClaimsError(
+            f"{output}: has verdicts on groups without datasets here ({some}) and stays as it is; make these with make "
+            "reproduce, or give another --output"
+        )
 
 
 @commands.command("summary", "summary --data elsewhere/preparation.nc")

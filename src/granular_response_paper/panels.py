@@ -65,21 +65,6 @@ def material(polydispersity: float, friction: float) -> str:
     return f"{packing(polydispersity)}, {style.equals(style.FRICTION, friction)}"
 
 
-def materials(polydispersity: ArrayLike, friction: ArrayLike) -> list[tuple[str, dict[str, Any]]]:
-    """Name and look of each of some materials (m,): colour by the polydispersity, marker and dashes by the friction."""
-    spreads, frictions = (np.asarray(values, dtype=float).tolist() for values in (polydispersity, friction))
-    colours = dict(family(sorted(set(spreads)), of="polydispersity"))
-    dashes = dict(family(sorted(set(frictions)), of="friction", dashed=True))
-    return [
-        (material(delta, mu), dashes[mu] | {"color": colours[delta]["color"]})
-        for delta, mu in zip(spreads, frictions, strict=True)
-    ]
-
-
-#: Over symbols of slabs and packings of the survey.
-SURVEYED: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "white", "markeredgewidth": 0.9, "zorder": 3}
-
-
 def zero(*panels: Axes) -> None:
     """A faint line where there is no response, below everything."""
     for axes in panels:
@@ -172,8 +157,7 @@ def different(values: ArrayLike) -> list[Any]:
     return np.unique(np.asarray(values)).tolist()
 
 
-#: Lines to compare curves with, behind these, and their dashes.
-GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
+#: Dashes of lines to compare curves with.
 DASHED, DOTTED = (0, (4, 2)), (0, (1, 1.5))
 
 

@@ -18,7 +18,6 @@ from granular_response.observe.widths import half_maximum_width
 from granular_response.scene import Packing
 from granular_response.scene.lattice import TOUCHING_LARGEST, SlabPacking
 from granular_response.solvers.problem import Problem
-from granular_response.state import Event as PathEvent
 from granular_response.state import State
 from granular_response.store.result import certificates_dataset, common_candidates, states_dataset
 from granular_response.store.variables import RADII, WEIGHTS, variable
@@ -44,8 +43,9 @@ class Scalars:
     )
     peak_count: float = column("number of peaks of the floor response")
     double_peaked: float = column("1 where the floor response has a peak on each side of x = 0 that exceeds it")
-    third_peak: float = column("1 where a double-peaked response has a further peak at x = 0")
-    third_peak_prominence: float = column("prominence of that third peak, per largest response; 0 without it")
+    third_peak_prominence: float = column(
+        "prominence of a third peak at x = 0 of a double-peaked response, per largest response; 0 without it"
+    )
     asymmetry: float = column("largest difference of the response and its mirror image, per largest response")
     asymmetry_sign: float = column("1 if the part of the response at x > 0 is the larger one, -1 if that at x < 0 is")
     peak_height: float = column("largest floor response")
@@ -61,14 +61,13 @@ class Scalars:
     def of(cls, measures: Measures, state: State) -> Scalars:
         """Measured on a state."""
         m, x, response, region = measures, measures.x, measures.response(state), measures.region(state)
-        largest, third = float(response[m.interior].max()), m.third_peak(state)
+        largest = float(response[m.interior].max())
         return cls(
             response_at_centre=m.centre(state),
             central_dip=m.dip(state),
             peak_count=len(peaks.find_peaks(x, response, interior=m.interior)),
             double_peaked=m.double_peaked(state),
-            third_peak=third > 0.0,
-            third_peak_prominence=third / largest,
+            third_peak_prominence=m.third_peak(state) / largest,
             asymmetry=m.asymmetry(state),
             asymmetry_sign=peaks.asymmetry_sign(x, response),
             peak_height=largest,
@@ -103,22 +102,6 @@ def locate(
     """Where on a path each of what is ``asked`` happens first, by its name; see :meth:`LoadPath.first`."""
     friction = path.scene.contact.friction
     return [Event(name, friction, *path.first(forces, what, width), what.definition) for name, what in asked.items()]
-
-
-@record
-class Lost:
-    """An equilibrium that a path has lost."""
-
-    friction: float = column("coefficient of friction of the path")
-    kind: str = column("how the path goes on")
-    start: float = column(f"force at which the equilibrium ends {WEIGHTS}")
-    until: float = column(f"force at which the path goes on {WEIGHTS}")
-    displacement: float = column(f"largest of a disk on the way {RADII}")
-
-    @classmethod
-    def of(cls, friction: float, event: PathEvent) -> Lost:
-        """As a path with this coefficient of friction records it."""
-        return cls(friction, event.kind, event.load_factor, event.until, event.displacement)
 
 
 def events_dataset(found: Sequence[Event]) -> xr.Dataset:

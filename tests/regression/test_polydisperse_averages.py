@@ -25,13 +25,10 @@ def test_mean_is_that_of_the_realizations_at_rest(datasets) -> None:
     )
 
 
-def test_every_realization_is_accounted_for(datasets) -> None:
-    averages = datasets["averages"]
-    total = sum(averages[f"count_{name}"] for name in ensembles.OUTCOMES)
-    planned = datasets["ensembles"]["realizations"]
-    for c in range(total.sizes["case"]):
-        used = np.isfinite(averages["force"].values[c])
-        assert np.all(total.values[c, used] == int(planned[c]))
+def test_realizations_at_rest_are_counted(datasets) -> None:
+    averages, outcome = datasets["averages"], datasets["ensembles"]["outcome"]
+    np.testing.assert_array_equal(averages["count_at_rest"], (outcome == AT_REST).sum("realization"))
+    assert np.all(averages["count_at_rest"].max("step") == averages["realizations"])
 
 
 def test_states_are_certified_and_balance_the_load(datasets) -> None:

@@ -140,8 +140,7 @@ def test_nothing_is_written_if_a_file_is_refused(tmp_path, monkeypatch):
     }
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(drawing, "group_member", lambda group, module, name, optional=False: made.get(name))
-    monkeypatch.setattr(drawing, "stored_datasets", lambda group, path: (Path("data.nc"), {}))
-    monkeypatch.setattr(drawing, "_parameters", lambda group, path: None)
+    monkeypatch.setattr(drawing, "_stored", lambda group, path: ({}, None))
     drawing.draw("pile_dip")
     files = {path: path.read_bytes() for path in Path("figures/pile_dip").iterdir()}
     digitised.FOLDER.mkdir()

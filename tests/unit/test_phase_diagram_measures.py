@@ -172,8 +172,7 @@ def test_crossing_counts_draws_beyond_the_path() -> None:
     whole = make_ensemble(3.0, 12)
     ensemble = Ensemble(whole.force[:2], whole.response[:, :2])
     found = cross(ensemble, X, 6.0, numbers=(5,), draws=200, seed=0)
-    np.testing.assert_allclose(found.draw_part.sum(), 1.0)
-    assert 0.0 < found.draw_part[ABOVE] < 1.0
+    assert 0.0 < np.mean(found.draws == np.inf) < 1.0
     assert found.interval[-1] == np.inf
     assert np.all(np.diff(found.shape_interval, axis=1) >= 0.0)
 

@@ -13,6 +13,11 @@ AT_REST, COLLAPSED, FAILED, NOT_REACHED = 0, 1, 2, 3
 OUTCOMES = ("at_rest", "collapsed", "failed", "not_reached")
 
 
+def at_rest(responses: FloatArray, step: int) -> FloatArray:
+    """(r, len(x)) responses of the realizations that are at rest at one step."""
+    return responses[np.isfinite(responses[:, step, 0]), step]
+
+
 def smoothed(case: xr.Dataset, x: FloatArray, width: float) -> FloatArray:
     """(realization, step, len(x)) responses of one case with Gaussian coarse graining; nan where not at rest.
 

@@ -41,7 +41,6 @@ class Packed:
         "mean number of contacts of a disk 10 radii off the side walls, 4 off floor and top"
     )
     coordination_number_with_walls: float = column("mean number of contacts of a disk, walls included")
-    coordination_number_bearing: float = column("mean number of contacts between disks that bear load")
     horizontal_contacts: float = column("contacts of disks within 30 degrees of the horizontal, per number of disks")
     oblique_contacts: float = column("contacts of disks more than 30 degrees from the horizontal, per number of disks")
     loose_disks: float = column("disks with fewer than two contacts")
@@ -49,7 +48,6 @@ class Packed:
     torque_residual: float = column("largest unbalanced torque on a disk at rest, in mean weight times mean radius")
     coulomb_excess: float = column(f"largest excess of a tangential force over the Coulomb limit at rest {WEIGHTS}")
     negative_modes: float = column("unstable directions of the tangent stiffness at rest")
-    largest_overlap: float = column(f"largest overlap of two disks at rest {RADII}")
     settling_steps: float = column("time steps of the fall to rest")
     contact_angle_density: FloatArray = column(
         "distribution of the directions of contacts at rest, per radian", "angle"
@@ -67,10 +65,8 @@ class Packed:
             coordination_number=of_disks(rest),
             coordination_number_bulk=of_disks(rest, bulk) if bulk.any() else float("nan"),
             coordination_number_with_walls=network.coordination_number(rest),
-            coordination_number_bearing=of_disks(rest, without_rattlers=True),
             horizontal_contacts=np.count_nonzero(horizontal) / count,
             oblique_contacts=np.count_nonzero(~horizontal) / count,
-            largest_overlap=float(rest.pairs.overlap.max()),
             settling_steps=float(rest.reached.steps or 0),
             contact_angle_density=network.contact_angle_histogram(rest, ANGLE_BINS)[1],
             **_certified(rest, cls),
@@ -87,8 +83,6 @@ class Packed:
 class Loaded:
     """What is measured under each force; nan after the end."""
 
-    sink: FloatArray = column(f"how far the load has pushed its disk down {RADII}", "step")
-    largest_displacement: FloatArray = column(f"largest displacement of a disk since rest {RADII}", "step")
     force_residual: FloatArray = column(f"largest unbalanced force on a disk under load {WEIGHTS}", "step")
     torque_residual: FloatArray = column(
         "largest unbalanced torque on a disk under load, in mean weight times mean radius", "step"
@@ -106,7 +100,6 @@ class Realization:
     """What is left of a task."""
 
     x: FloatArray = column(f"rest position of a floor disk from the loaded disk {RADII}", "slot")
-    floor_force_rest: FloatArray = column(f"vertical floor force at rest {WEIGHTS}", "slot")
     floor_response: FloatArray = column("vertical floor force that the load adds, per applied force", "step", "slot")
     outcome: NDArray[np.int8] = column("what became of the realization", "step", attributes=flags(OUTCOMES))
     message: str = column("why a realization failed")
@@ -137,7 +130,7 @@ def realize(
     except SolveError as error:
         outcome[:1], message, none = FAILED, f"gravity: {error}", np.zeros(0)
         unknown = Loaded(**loaded), Packed.unknown()
-        return Realization(none, none, np.zeros((count, 0)), outcome, message, *unknown, ())
+        return Realization(none, np.zeros((count, 0)), outcome, message, *unknown, ())
     problem, rest = path.problem, path.rest
     disk = int(problem.load_disk[0])
     path.lowest = float(rest.position[disk, 1]) - collapse_depth
@@ -145,23 +138,16 @@ def realize(
     for k, force in enumerate(forces):
         try:
             state = path.at(force)
-        except Collapsed as collapse:
-            outcome[k], loaded["sink"][k] = COLLAPSED, rest.position[disk, 1] - collapse.height
+        except Collapsed:
+            outcome[k] = COLLAPSED
             break
         except SolveError as error:
             outcome[k], message = FAILED, f"force {force:g}: {error}"
             break
-        moved = state.position - rest.position
-        values = {
-            "sink": -moved[disk, 1],
-            "largest_displacement": np.hypot(*moved.T).max(),
-            "lost": len(lost([state])),
-            "by_motion": by_motion(state),
-            **_certified(state, Loaded),
-        }
+        values = {"lost": len(lost([state])), "by_motion": by_motion(state), **_certified(state, Loaded)}
         for name, value in values.items():
             loaded[name][k] = value
-        if values["sink"] > collapse_depth:
+        if rest.position[disk, 1] - state.position[disk, 1] > collapse_depth:
             outcome[k] = COLLAPSED
             break
         outcome[k] = AT_REST
@@ -174,7 +160,7 @@ def realize(
     kept = (rest, *(states[k] for k in range(len(states)) if forces[k] in keep)) if keep else ()
     x = rest.position[disks, 0] - rest.position[disk, 0]
     known = Loaded(**loaded), Packed.of(problem, rest)
-    return Realization(x, at_rest, response, outcome, message, *known, kept)
+    return Realization(x, response, outcome, message, *known, kept)
 
 
 def ensemble_task(parameters: EnsembleGroup, case: Case, realization: int) -> partial[Realization]:

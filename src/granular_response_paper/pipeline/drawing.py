@@ -36,8 +36,8 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None, forma
     wanted = tuple(dict.fromkeys(("png", *formats)))
     if unknown := set(wanted) - set(style.FORMATS):
         raise GroupError(f"formats: {', '.join(sorted(unknown))} is unknown, must be among {', '.join(style.FORMATS)}")
-    path, datasets = stored_datasets(group, data)
-    described = _parameters(group, path)
+    path = data or data_path(group)
+    datasets, described = _stored(group, path)
     target = folder or figures_folder(group)
     paths: list[Path] = []
     try:
@@ -63,24 +63,15 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None, forma
     return [*paths, beside]
 
 
-def _parameters(group: str, path: Path) -> Any:
-    """The validated parameters that the datasets were made with."""
-    kind = group_member(group, "parameters", "Parameters")
-    try:
-        return kind(**text.read(store.read_attributes(path).get("parameters", "{}")))
-    except SceneError as error:
-        raise GroupError(f"{path}: was made with parameters that {group} does not have now: {error}") from None
-
-
-def stored_datasets(group: str, path: Path | None = None) -> tuple[Path, dict[str, xr.Dataset]]:
-    """The file with a group's datasets, by default the one where they are kept, and what it holds.
-
-    Raises GroupError if they are those of another group, StoreError if they cannot be read.
-    """
-    path = path or data_path(group)
-    found = store.read(path)
-    stored = store.read_attributes(path).get("group")
+def _stored(group: str, path: Path) -> tuple[dict[str, xr.Dataset], Any]:
+    """The datasets of a group, and the validated parameters that they were made with."""
+    found, attributes = store.read(path), store.read_attributes(path)
+    stored = attributes.get("group")
     if stored != group:
         what = f"those of {stored}" if stored else "not those of a figure group"
         raise GroupError(f"{path}: holds datasets of another kind, {what}, must be those of {group}")
-    return path, found
+    kind = group_member(group, "parameters", "Parameters")
+    try:
+        return found, kind(**text.read(attributes.get("parameters", "{}")))
+    except SceneError as error:
+        raise GroupError(f"{path}: was made with parameters that {group} does not have now: {error}") from None

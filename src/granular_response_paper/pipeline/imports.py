@@ -33,14 +33,14 @@ def file_of(module: str) -> Path | None:
 
 
 @cache
-def imported(path: Path, package: tuple[str, ...], *, for_types: bool = False) -> frozenset[str]:
-    """Full names of modules in all import statements of a file of a ``package``, and of what is taken from them.
+def imported(path: Path, package: tuple[str, ...]) -> frozenset[str]:
+    """Full names of modules in the import statements of a file of a ``package``, and of what is taken from them.
 
-    What stands there for the type checker alone is never run, and counts only ``for_types``.
+    What stands there for the type checker alone is never run, and does not count.
     """
     tree = ast.parse(path.read_text(encoding="utf-8"))
     found: set[str] = set()
-    for node in () if for_types else ast.walk(tree):
+    for node in ast.walk(tree):
         if isinstance(node, ast.If) and ast.unparse(node.test) in ("TYPE_CHECKING", "typing.TYPE_CHECKING"):
             node.body = []
     for node in ast.walk(tree):

@@ -49,10 +49,8 @@ def write(collection: Collection = PAPER, root: Path = Path(".")) -> Path:
 
 def starts(collection: Collection, kind: str, group: str) -> list[str]:
     """The modules at which a stage of a group starts, but for those that only its command line imports."""
-    own = f"{collection.package}.{group}"
-    wanted = {"simulate": ("parameters", "simulate"), "draw": ("parameters", "draw")}[kind]
-    module = {"simulate": "simulation", "draw": "drawing"}[kind]
-    return [f"{_PAPER}.pipeline.{module}", *(f"{own}.{name}" for name in wanted)]
+    own, module = f"{collection.package}.{group}", {"simulate": "simulation", "draw": "drawing"}[kind]
+    return [f"{_PAPER}.pipeline.{module}", f"{own}.parameters", f"{own}.{kind}"]
 
 
 def judging(collection: Collection) -> list[str]:

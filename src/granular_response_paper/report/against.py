@@ -18,6 +18,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.scene import Scene
+from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.store import files as store
 
 from .markdown import table
@@ -61,29 +62,13 @@ class Row:
         return np.atleast_1d(self.of(np.asarray(value))).astype(float)
 
 
-def _loads(force: NDArray[Any]) -> float:
-    return round(float(np.hypot(*force)), 9)
-
-
-def _below_horizontal(force: NDArray[Any]) -> float:
-    return round(float(np.degrees(np.arctan2(-force[1], force[0]))), 9)
-
-
-def _realizations(response: NDArray[Any]) -> int:
-    return response.shape[1]
-
-
-def _numbers(starts: NDArray[Any]) -> list[float]:
-    """Those initial lattice constants that are no words."""
-    return [float(start) for start in starts if start != "touching-largest"]
-
-
+#: What makes the parameter, by its name in ``stated.csv``; of initial lattice constants some are words.
 _OF: Mapping[str, Callable[[NDArray[Any]], Any]] = {
     "": np.ravel,
-    "loads": _loads,
-    "below_horizontal": _below_horizontal,
-    "realizations": _realizations,
-    "numbers": _numbers,
+    "loads": lambda force: round(float(np.hypot(*force)), 9),
+    "below_horizontal": lambda force: round(float(np.degrees(np.arctan2(-force[1], force[0]))), 9),
+    "realizations": lambda response: response.shape[1],
+    "numbers": lambda starts: [float(start) for start in starts if start != TOUCHING_LARGEST],
 }
 _HEADING, *_STATED = csv.reader(
     resources.files(__package__).joinpath("stated.csv").read_text(encoding="utf-8").splitlines(), delimiter="|"

@@ -65,9 +65,7 @@ class Slab:
     chosen: list[tuple[int, int]]  #: for each force, which of ``states``, and which state of it
     rows: list[xr.Dataset]  #: for each force, what is measured
     friction: float
-    wall_friction: float
-    stiffness_ratio: float
-    normal_stiffness: float
+    scene: Scene  #: with all else
     motion: float | None = None  #: smallest force whose state dynamics from rest reached; below it lies the load path
 
     def measured(self, name: str) -> NDArray[Any]:
@@ -123,12 +121,12 @@ def _described(slab: Slab, contacts: _Contacts, study: Datasets) -> dict[str, An
         "centre": _rounded(slab.measured("response_at_centre"), 6),
         "peaks": slab.measured("peak_count").astype(int).tolist(),
         "symmetric": [asymmetry(slab.x, row) <= ASYMMETRY for row in slab.response],
-        "walls": slab.wall_friction,
+        "walls": slab.scene.resolved_wall.friction,
         "motion": slab.motion,
         "paper": [
             {"force": force, "what": what, "place": place, "here": _here(study, mu, events)}
             for mu, force, what, place, events in PAPER
-            if (slab.stiffness_ratio, mu) == (0.8, slab.friction)
+            if (slab.scene.contact.stiffness_ratio, mu) == (0.8, slab.friction)
         ],
     }
 
@@ -139,9 +137,10 @@ def _rounded(values: FloatArray, digits: int) -> list[float]:
 
 def _about(slab: Slab) -> str:
     """The parameters in words."""
-    ratio = f", k_T/k_N = {slab.stiffness_ratio:g}" if slab.friction or slab.wall_friction else ""
-    walls = f"µ_wall = {slab.wall_friction:g}"
-    return f"ordered packing, µ = {slab.friction:g}, {walls}{ratio}, k_N = {slab.normal_stiffness:g} mg/R"
+    contact, walls = slab.scene.contact, slab.scene.resolved_wall.friction
+    ratio = f", k_T/k_N = {contact.stiffness_ratio:g}" if slab.friction or walls else ""
+    friction = f"µ = {slab.friction:g}, µ_wall = {walls:g}"
+    return f"ordered packing, {friction}{ratio}, k_N = {contact.normal_stiffness:g} mg/R"
 
 
 def _here(datasets: Datasets, friction: float, names: Sequence[str]) -> str:
@@ -182,16 +181,7 @@ def _slabs(datasets: Datasets) -> Iterator[Slab]:
                     chosen.append((source, k))
                     rows.append(measured.isel(force=int(here[0])))
         scene = Scene.from_text(datasets[name].attrs["scene"])
-        yield Slab(
-            states=tuple(states for states, _ in sources),
-            chosen=chosen,
-            rows=rows,
-            friction=friction,
-            wall_friction=float(scene.resolved_wall.friction),
-            stiffness_ratio=float(scene.contact.stiffness_ratio),
-            normal_stiffness=float(scene.contact.normal_stiffness),
-            motion=motion,
-        )
+        yield Slab(tuple(states for states, _ in sources), chosen, rows, friction, scene, motion)
 
 
 @dataclass(frozen=True)

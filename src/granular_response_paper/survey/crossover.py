@@ -272,7 +272,6 @@ class Crossover:
 class Crossing(Crossover):
     """The crossover of one case with its statistics; arrays along the k forces of the case."""
 
-    draw_part: FloatArray = column("part of the bootstrap draws of each kind", "kind_of_draw")
     limits: tuple[float, float] = column(f"smallest and largest force with a mean {WEIGHTS}", "end")
     shape: FloatArray = column("shape of the mean response: positive with two peaks", "step")
     shape_interval: FloatArray = column("quantiles of the bootstrapped shape", "step", "level")
@@ -310,14 +309,11 @@ def cross(
         force, kind = crossover(ensemble.force, shapes, limit)
         return Crossover(force, np.int8(kind), quantiles(found), found)
 
-    usual = at(tolerance)
-    found = usual.draws
     used = ensemble.force[np.isfinite(shapes)]
     parts = [two_peaked_means(ensemble, x, width, n, draws=draws, seed=seed, tolerance=tolerance) for n in numbers]
     seen = seen_in_samples(ensemble, x, width, min(numbers), seed=seed, tolerance=tolerance)
     return Crossing(
-        **vars(usual),
-        draw_part=np.array([np.isfinite(found).mean(), (found == -np.inf).mean(), (found == np.inf).mean()]),
+        **vars(at(tolerance)),
         limits=(float(used[0]), float(used[-1])) if used.size else (float("nan"), float("nan")),
         shape=shapes,
         shape_interval=np.quantile(drawn, LEVELS, axis=0).T,  # nan where a draw has none

@@ -17,7 +17,7 @@ def read(folder: Path, blocks: Sequence[str]) -> dict[str, xr.Dataset]:
     """Datasets ``ensembles`` and ``packings`` with the cases of all ``blocks``, in their order.
 
     Where a case has fewer realizations, forces or disks on the floor than another one, nan or NOT_REACHED fill it up.
-    What one of the files lacks is left out. Raises StoreError if a file cannot be read.
+    Raises StoreError if a file cannot be read.
     """
     found = [store.read(folder / f"{block}.nc") for block in blocks]
     return {name: _joined([one[name] for one in found]) for name in ("ensembles", "packings")}
@@ -31,8 +31,8 @@ def _joined(parts: list[xr.Dataset]) -> xr.Dataset:
         missing = {d: (0, sizes[d] - n) for d, n in variable.sizes.items() if d != "case"}
         return variable.pad(missing, constant_values=fill)
 
-    variables = {name: one for name, one in parts[0].variables.items() if all(name in part.variables for part in parts)}
+    variables = dict(parts[0].variables)
     for name, first in variables.items():
         if "case" in first.dims:
             variables[name] = xr.Variable.concat([filled(part.variables[name]) for part in parts], "case")
-    return xr.Dataset(variables, attrs=parts[0].attrs).set_coords([str(name) for name in parts[0].coords])
+    return xr.Dataset(variables, attrs=parts[0].attrs).set_coords(list(parts[0].coords))

@@ -141,8 +141,7 @@ def block_datasets(cases: list[Case], found: Mapping[Place, Realization]) -> dic
     for name, digits in (("floor_response", RESPONSE_DIGITS), ("x", POSITION_DIGITS)):
         values = ensembles[name].values
         ensembles[name] = ensembles[name].copy(data=(np.round(values * 2.0**digits) / 2.0**digits).astype(np.float32))
-    packings = packings_dataset(cases, found)[list(PACKINGS)].drop_vars("angle", errors="ignore")
-    packings = packings.assign_coords(wall_friction=wall_friction)
+    packings = packings_dataset(cases, found)[list(PACKINGS)].assign_coords(wall_friction=wall_friction)
     return {"ensembles": ensembles, "packings": packings.astype(np.float32)}
 
 

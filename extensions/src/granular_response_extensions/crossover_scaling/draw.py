@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import SURVEYED, different, family, label_ends, titles
+from granular_response_paper.panels import different, family, label_ends, titles
 
 from .parameters import Parameters, varied
 
@@ -23,6 +23,9 @@ ROW = float(np.sqrt(3.0))
 
 #: Behind an exponent: no curve runs through it.
 WHITE: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "pad": 0.3}
+
+#: Over symbols of slabs of the survey.
+SURVEYED: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "white", "markeredgewidth": 0.9, "zorder": 3}
 
 #: Least ratio of numbers of layers that are labelled.
 NEXT_LABEL = 1.25

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,8 +11,9 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.field import draw_field, root_norm
+from granular_response_extensions.panels import GUIDE
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import banded, family, polarised, titles
+from granular_response_paper.panels import DOTTED, banded, family, polarised, titles
 
 from . import LATTICE
 from .parameters import Parameters
@@ -23,7 +23,7 @@ DEPTHS, REACH, PIXELS = (4.0, 8.0, 12.0, 16.0), 22.0, 560
 #: The small force of experiments in which the response was linear, in mean weights.
 SMALL = 3.0
 TITLES = "vertical force", "oblique force", "widths", "moved disks"
-GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5, "linestyle": (0, (1, 1.5))}
+DOTS = GUIDE | {"linestyle": DOTTED}
 
 
 @style.context()
@@ -80,7 +80,7 @@ def _directions(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
         middle, low, high = means["direction"].isel(case=case).transpose("estimate", "angle").values
         banded(axes, means["angle"], middle, (low, high), style.line(k), label=_name(means, case))
     for angle in (LATTICE, 180.0 - LATTICE):
-        axes.axvline(angle, ymax=0.62, **GUIDE)  # the legend is above
+        axes.axvline(angle, ymax=0.62, **DOTS)  # the legend is above
     axes.set(xlabel="direction below horizontal (°)", ylabel=rf"added force per radian$\,/\,{style.F_EXT}$")
     axes.set(xticks=[30, 60, 90, 120, 150], ylim=(0.0, None))
     if cases:
@@ -95,7 +95,7 @@ def _widths(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
         banded(axes, one["depth"], middle, (low, high), style.line(k), label=_name(means, case))
     depth = np.array([4.0, 30.0])
     for power in (1.0, 0.5):
-        axes.plot(depth, 2.4 * (depth / depth[0]) ** power, **GUIDE)
+        axes.plot(depth, 2.4 * (depth / depth[0]) ** power, **DOTS)
     ticks = [2, 5, 10, 20, 40]
     axes.set(xlabel=style.DEPTH, ylabel=rf"half width$\,/\,{style.RADIUS}$", xscale="log", yscale="log")
     axes.set(xticks=ticks, xticklabels=ticks, yticks=ticks, yticklabels=ticks, ylim=(0.8, 40.0))
@@ -108,7 +108,7 @@ def _moves(axes: Axes, packings: xr.Dataset, cases: list[int]) -> None:
         moves = np.sort(packings["moved"].isel(case=case).dropna("realization"))
         part = np.arange(1, len(moves) + 1) / len(moves)
         axes.step(np.maximum(moves, 1e-3), part, where="post", label=_name(packings, case), **style.line(k))
-    axes.axvline(packings.attrs["largest_move"], ymax=0.62, **GUIDE)
+    axes.axvline(packings.attrs["largest_move"], ymax=0.62, **DOTS)
     axes.set(xlabel=rf"way of the loaded disk$\,/\,{style.RADIUS}$", ylabel="part of packings", xscale="log")
     axes.set(ylim=(0.0, 1.75), yticks=[0.0, 0.5, 1.0])
     axes.legend(fontsize=6, loc="upper left", handlelength=1.6)

@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from granular_response.plot import style
+from granular_response_extensions.panels import materials
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
-from granular_response_paper.panels import materials, titles, zero
+from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
 

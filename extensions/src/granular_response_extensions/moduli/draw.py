@@ -16,8 +16,9 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import network, style
 from granular_response.theory.moduli import bulk_and_shear
+from granular_response_extensions.panels import materials
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import banded, materials, outer, titles, zero
+from granular_response_paper.panels import banded, outer, titles, zero
 
 from .parameters import Parameters
 

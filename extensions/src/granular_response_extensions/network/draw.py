@@ -11,8 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
+from granular_response_extensions.panels import GUIDE
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import DASHED, DOTTED, GUIDE, among, family, packing, titles
+from granular_response_paper.panels import DASHED, DOTTED, among, family, packing, titles
 
 from .parameters import Parameters
 

@@ -32,13 +32,11 @@ DIFFERENCE_LEVELS = (0.05, 0.3)
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig13_force_chains``, ``fig14_vertical_stress`` and ``fig15_force_profiles``."""
-    drawn = {
+    return {
         "fig13_force_chains": _force_chains(datasets["forces"]),
         "fig14_vertical_stress": _vertical_stress(datasets["stress"]),
+        "fig15_force_profiles": _force_profiles(datasets["profiles"]),
     }
-    if "profiles" in datasets:
-        drawn["fig15_force_profiles"] = _force_profiles(datasets["profiles"])
-    return drawn
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
@@ -46,7 +44,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     frictions, profiles = list(parameters.frictions), list(parameters.profiles.frictions)
     given = of_scene(scene, force=parameters.force, frictions=frictions)
     each = [f"µ = µ_wall = {mu:g}" for mu in frictions]
-    below = sorted(datasets["profiles"]["depth"].values.tolist()) if "profiles" in datasets else []
+    below = sorted(datasets["profiles"]["depth"].values.tolist())
     return of_group(
         "friction_fields",
         {

@@ -15,7 +15,7 @@ from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Positive
 class Profiles(Description):
     """Fig. 15."""
 
-    frictions: tuple[float, ...] = Field(description="Among the others.")
+    frictions: Coefficients = Field(description="Among the others.")
     force: Positive = Field(description="In mean disk weights, by dynamics from rest.")
     rows: Positives = Field(description="Below the loaded disk; half-integers are between rows.")
 

@@ -60,7 +60,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
         states = datasets.get(f"states_mu_{friction:g}")
         if states is not None:
             figures[stem] = _contacts(states, friction)
-    if "large_forces" in datasets and LARGE_FRICTION in stored:
+    if LARGE_FRICTION in stored:
         figures["fig16_large_forces"] = _large_forces(response, datasets["large_forces"])
     return figures
 
@@ -86,7 +86,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     )
     if np.isin(PROFILE_FRICTIONS, frictions).all():
         given["fig07_friction_response"] = said(drawn(response.sel(friction=0.2), PROFILE_FORCES), PROFILE_FRICTIONS)
-    if "large_forces" in datasets and LARGE_FRICTION in frictions:
+    if LARGE_FRICTION in frictions:
         dynamic = datasets["large_forces"]
         beyond, left = drawn(dynamic, DYNAMIC_FORCES), drawn(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
         given["fig16_large_forces"] = said(sorted({*left, *beyond}), [0.2, float(dynamic["friction"])])

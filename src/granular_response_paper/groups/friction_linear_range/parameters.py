@@ -38,7 +38,7 @@ class LargeForces(Description):
     """Fig. 16b: dynamics from rest to each force."""
 
     friction: Ratio
-    forces: tuple[Positive, ...] = Field(description="None: left out.")
+    forces: Growing
     ramp_time: NonNegative
     time_step: Positive
 
@@ -66,7 +66,7 @@ class Parameters(SceneGroup):
 
     @model_validator(mode="after")
     def _check_frictions(self) -> Parameters:
-        if self.dynamics.forces and self.dynamics.friction not in self.frictions:
+        if self.dynamics.friction not in self.frictions:
             rule = f"must be one of frictions = {list(self.frictions)}"
             raise Problem(rule, key=("dynamics", "friction"), value=self.dynamics.friction)
         return self

@@ -137,17 +137,13 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
 
 def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
     chosen = nearest(states["force"].values, NETWORK_FORCES)
-    columns = min(3, len(chosen))
-    rows = -(-len(chosen) // columns)
-    figure, panels = style.figure(rows, columns, width="double", height=0.2 + 1.85 * rows)
+    figure, (panels,) = style.figure(1, len(chosen), width="double", height=2.05)
     handles: dict[str, LineCollection] = {}
-    for axes in panels.flat[len(chosen) :]:
-        axes.set_axis_off()
-    for axes, k in zip(panels.flat, chosen, strict=False):
+    for axes, k in zip(panels, chosen, strict=True):
         one = states.isel(force=k)
         handles |= draw_state_changes(axes, rest.isel(state=0), one, one["contact_status"].values == SLIDING)
     forces = states["force"].values[chosen]
-    titles(panels.flat, [style.equals(style.F_EXT, force, style.WEIGHT) for force in forces])
+    titles(panels, [style.equals(style.F_EXT, force, style.WEIGHT) for force in forces])
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
     return figure
 

@@ -74,9 +74,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         "wall_friction": frictions,
         "polydispersity": deltas,
         "realizations": realizations or 1,
-        "width": parameters.widths,
+        "width": parameters.widths[-1],
     }
-    given["width"] = parameters.widths[-1]
     last, count = chr(ord("a") - 1 + len(deltas)), len(deltas)
     few = ", ".join(f"({chr(ord('a') + count + k)})" for k in range(len(_disorders(crossovers))))
     return of_group(

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.ensembles import OUTCOMES
 from granular_response_paper.panels import (
     Contacts,
     different,
@@ -322,7 +321,7 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
     steps = usable[np.unique(np.linspace(0, len(usable) - 1, min(MOST_FORCES, len(usable))).round().astype(int))]
     if not usable.size:
         return
-    total = int(_realizations(one)[usable[0]])
+    total = int(one["realizations"])
     for step, look in family(steps, of="force", marked=False, dashed=True):
         mean, error = one["mean"].values[step], one["standard_error"].values[step]
         count = int(one["count_at_rest"][step])
@@ -332,11 +331,6 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
     zero(axes)
     handles, names = axes.get_legend_handles_labels()
     axes.legend(handles[-len(steps) :], names[-len(steps) :], ncols=len(steps), **OVER)
-
-
-def _realizations(one: xr.Dataset) -> np.ndarray:
-    """(..., step) how many a case has, whatever became of them."""
-    return np.sum([one[f"count_{name}"].values for name in OUTCOMES], axis=0)
 
 
 def _packings(data: xr.Dataset) -> Figure:

@@ -17,7 +17,7 @@ import xarray as xr
 from granular_response.observe.floor import floor_disks, interior_mask
 from granular_response.scene import Packing, Scene
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.small_loads import at_limit, influence
+from granular_response.solvers.small_loads import influence
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII
 from granular_response.sweeps.rest import rest_state
@@ -39,7 +39,6 @@ class Outcome:
     height: FloatArray = column(f"mean height of the loads {RADII}", "row")
     spacing: float = column(f"distance of neighbours in a row {RADII}")
     exponent: FloatArray = column("power of height with which the difference falls", "separation", "fit")
-    at_limit: float = column("contacts at the Coulomb limit, taken to stick")
     position: FloatArray = column(f"centre from the middle {RADII}", "disk", "axis")
     radius: FloatArray = column(f"disk radius {RADII}", "disk")
     total: FloatArray = column("sum of the absolute answers of all floor disks to a unit vertical force", "disk")
@@ -56,8 +55,8 @@ def compute(scene: Scene, separations: tuple[int, ...], margin: float, fitted: t
     exponent = [decay(height, difference[:, k], spacing * apart, fitted) for k, apart in enumerate(separations)]
     middle = np.array([0.5 * packing.width, 0.0])
     return Outcome(
-        difference, height, spacing, np.array(exponent), at_limit(problem, rest),
-        rest.position - middle, packing.radius, np.abs(found).sum(axis=0),
+        difference, height, spacing, np.array(exponent), rest.position - middle, packing.radius,
+        np.abs(found).sum(axis=0),
     )  # fmt: skip
 
 

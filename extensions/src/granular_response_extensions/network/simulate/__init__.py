@@ -43,8 +43,9 @@ class Statistics:
 
     force_density: FloatArray = column("probability density of normal forces over their local mean", "force")
     force_mean: float = column("mean of normal forces over their local mean")
-    tail_excess: float = column("mean excess over the mean of normal forces above it, over their local mean")
-    tail_variation: float = column("coefficient of variation of that excess; 1 for an exponential")
+    tail_variation: float = column(
+        "coefficient of variation of the excess over the mean of normal forces above it; 1 for an exponential"
+    )
     mobilization_density: FloatArray = column(
         "probability density of tangential forces over friction times normal force", "mobilization"
     )
@@ -78,7 +79,6 @@ def measure(path: LoadPath, state: State, load: float, asked: Parameters) -> Sta
     return Statistics(
         force_density=density(forces, FORCES),
         force_mean=float(forces.mean()),
-        tail_excess=float(excess.mean()),
         tail_variation=float(excess.std() / excess.mean()),
         mobilization_density=mobilization if friction else np.full_like(mobilization, np.nan),
         angle_density=network.contact_angle_histogram(state, ANGLES, inside)[1],

@@ -46,21 +46,6 @@ class Prepared:
     wall_friction: float = column("coefficient of friction of walls")
 
 
-#: Counted in a slab at rest, for each of ``MARGINS``.
-LIMITED = "contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit"
-
-
-@record
-class Rest:
-    """The slab at rest."""
-
-    contacts: float = column("contacts of disks at rest")
-    level_force: float = column(
-        f"mean normal force at rest of touching horizontal contacts in the central third {WEIGHTS}"
-    )
-    rest_mobilised: FloatArray = column(LIMITED, "margin")
-
-
 @record
 class Mobilized:
     """Which contacts of a slab at rest are fully mobilized, and which force it bears in what way."""
@@ -69,8 +54,10 @@ class Mobilized:
     realization: int = column("realization of the disorder")
     taps: int = column("how often the slab was tapped")
     tap_amplitude: float = column("largest acceleration of the box in a tap in g; 0 untapped")
-    tap_duration: float = column("duration of a tap in sqrt(radius/g); 0 untapped")
-    mobilized_part: FloatArray = column(f"part of the {LIMITED}", "margin")
+    mobilized_part: FloatArray = column(
+        "part of the contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit",
+        "margin",
+    )
     force: FloatArray = column(f"force of the event; nan if it does not come {WEIGHTS}", "name")
 
 
@@ -81,7 +68,6 @@ AGAINST = ("linear_range", "first_opening", "crossover")
 @dataclass(frozen=True)
 class Outcome:
     prepared: Prepared
-    rest: Rest
     measured: xr.Dataset
     events: list[slab.Event]
     mobilized: Mobilized
@@ -94,17 +80,16 @@ def compute(
     problem = Problem.from_scene(scene)
     path = studies.LoadPath.of(scene, tapped(problem, rest_state(problem), *taps))
     states, measures = path.through(forces), studies.Measures(path)
-    touching = float(path.rest.pairs.touching.sum())
-    rest = Rest(touching, measures.confinement, np.array(measures.mobilised(path.rest)))
     events = slab.locate(path, forces, studies.happenings(measures, states[0], asymmetry))
     packing, high = scene.packing.model_dump(), {event.name: event.high for event in events}
     if packing["polydispersity"]:
         high["crossover"] = np.nan
-    part, against = rest.rest_mobilised / rest.contacts, np.array([high[name] for name in AGAINST])
-    mobilized = Mobilized(packing["polydispersity"], packing["realization"], *taps, part, against)
+    part = np.array(measures.mobilised(path.rest)) / float(path.rest.pairs.touching.sum())
+    against = np.array([high[name] for name in AGAINST])
+    mobilized = Mobilized(packing["polydispersity"], packing["realization"], *taps[:2], part, against)
     gravity, contact = scene.preparation, scene.contact
     given = gravity.gravity, gravity.ramp_time, contact.damping_ratio, contact.friction, scene.wall.friction
-    return Outcome(Prepared(way, *given), rest, slab.measured(measures, states), events, mobilized)
+    return Outcome(Prepared(way, *given), slab.measured(measures, states), events, mobilized)
 
 
 def tasks(parameters: Parameters) -> dict[tuple[Any, ...], partial[Outcome]]:
@@ -132,7 +117,6 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     cases = [one for one in every if not one.mobilized.polydispersity and not one.mobilized.taps]
     parts = [((k, slice(one.measured.sizes["state"])), one.measured) for k, one in enumerate(cases)]
     response = slab.measured_dataset(("case", "force"), parts, (len(cases), len(forces)))
-    response = response.assign(table([one.rest for one in cases], "case").variables)
     response = response.assign_coords(axes(force=(forces, f"applied force {WEIGHTS}")))
     events = slab.events_dataset([event for one in cases for event in one.events])
     names = axes(name=(AGAINST, "event"), margin=(MARGINS, "fraction below the Coulomb limit"))

@@ -95,8 +95,10 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     )
     stress = stress_dataset(parameters, packing, disk, list(zip(rest, loaded, strict=True)))
     frictions = axes(friction=(results, FRICTION))
-    datasets = {"forces": forces.assign_coords(frictions), "stress": stress.assign_coords(frictions)}
-    if of_profiles.frictions:
-        chosen = [results[mu] for mu in of_profiles.frictions]
-        datasets["profiles"] = profiles_dataset(of_profiles, disk, packing.radius, chosen)
+    chosen = [results[mu] for mu in of_profiles.frictions]
+    datasets = {
+        "forces": forces.assign_coords(frictions),
+        "stress": stress.assign_coords(frictions),
+        "profiles": profiles_dataset(of_profiles, disk, packing.radius, chosen),
+    }
     return labelled(datasets, base)

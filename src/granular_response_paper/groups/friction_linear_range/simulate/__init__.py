@@ -23,7 +23,7 @@ from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.friction_linear_range.parameters import EqualRows, Parameters
-from granular_response_paper.records import axes, table, variables
+from granular_response_paper.records import axes, variables
 from granular_response_paper.tasks import computed
 
 FRICTION, APPLIED = "coefficient of friction between disks", f"applied force {WEIGHTS}"
@@ -36,7 +36,6 @@ class PathResult:
     forces: tuple[float, ...]
     measured: xr.Dataset
     events: list[slab.Event]
-    lost: list[slab.Lost]
     method: str
     rest: State
     picture: xr.Dataset | None  #: of the states at rest and at ``forces``, where these are kept
@@ -58,7 +57,6 @@ def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = No
         forces,
         slab.measured(measures, states),
         slab.locate(path, forces, asked),
-        [slab.Lost.of(measures.friction, event) for event in studies.lost(states)],
         path.method,
         path.rest,
         slab.states_picture([path.rest, *states], path.problem) if keep else None,
@@ -98,7 +96,7 @@ def narrow(scene: Scene, force: float, low: float, high: float, tolerance: float
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``response`` (friction, force), ``states_mu_<friction>`` (at rest first), ``friction_axis`` (friction),
-    ``large_forces`` (force) with ``large_force_states``, ``events``, ``events_equal_rows`` and ``lost``.
+    ``large_forces`` (force) with ``large_force_states``, ``events`` and ``events_equal_rows``.
     """
     base, axis, given = parameters.base, parameters.friction_axis, parameters.dynamics
     paths = computed(_paths(parameters), "load paths")
@@ -110,7 +108,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     protocol = {"method": "dynamics", "ramp_time": given.ramp_time, "time_step": given.time_step}
     shaken = base.updated({"contact.friction": given.friction, "protocol": protocol})
     tasks: dict[Any, partial[Any]]
-    tasks = {force: partial(shake, shaken, main[given.friction].rest, force) for force in sorted(given.forces)}
+    tasks = {force: partial(shake, shaken, main[given.friction].rest, force) for force in given.forces}
     if np.isfinite(high) and not one_peak[0]:
         tasks["crossover"] = partial(narrow, base, axis.force, low, high, axis.tolerance)
     same = parameters.equal_rows
@@ -132,24 +130,22 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "friction_axis": slab.measured_along("friction", on_axis)
         .assign_coords(axes(friction=(axis_frictions, FRICTION)))
         .assign(force=variable((), axis.force, APPLIED)),
-        "lost": table([one for result in main.values() for one in result.lost], "lost", kind=slab.Lost),
     }
     datasets |= {f"states_mu_{mu:g}": one.picture for mu, one in main.items() if one.picture is not None}
-    if done:
-        states, measured = zip(*done.values(), strict=True)
-        large = slab.measured_along("force", measured).assign_coords(axes(force=(done, APPLIED)))
-        datasets["large_forces"] = large.assign(
-            variables(
-                friction=("", given.friction, FRICTION),
-                ramp_time=("", given.ramp_time, "duration of the load ramp in sqrt(radius/g)"),
-                time_step=("", given.time_step, "time step in sqrt(radius/g)"),
-            )
+    states, measured = zip(*done.values(), strict=True)
+    large = slab.measured_along("force", measured).assign_coords(axes(force=(done, APPLIED)))
+    datasets["large_forces"] = large.assign(
+        variables(
+            friction=("", given.friction, FRICTION),
+            ramp_time=("", given.ramp_time, "duration of the load ramp in sqrt(radius/g)"),
+            time_step=("", given.time_step, "time step in sqrt(radius/g)"),
         )
-        rest = main[given.friction].rest
-        datasets["large_force_states"] = slab.states_picture([rest, *states], studies.LoadPath.of(shaken, rest).problem)
-        ends = studies.first_change(large["force"].values, large["asymmetry"].values > parameters.asymmetry)
-        text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {parameters.asymmetry:g}"
-        found.append(slab.Event("loss_of_symmetry", given.friction, *ends, text))
+    )
+    rest = main[given.friction].rest
+    datasets["large_force_states"] = slab.states_picture([rest, *states], studies.LoadPath.of(shaken, rest).problem)
+    ends = studies.first_change(large["force"].values, large["asymmetry"].values > parameters.asymmetry)
+    text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {parameters.asymmetry:g}"
+    found.append(slab.Event("loss_of_symmetry", given.friction, *ends, text))
     datasets["events"] = slab.events_dataset(found)
     datasets["events_equal_rows"] = slab.events_dataset(literal)
     return labelled(datasets, base)

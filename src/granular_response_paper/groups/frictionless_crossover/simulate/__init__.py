@@ -29,7 +29,7 @@ from granular_response_paper.slab_response import events_dataset
 from granular_response_paper.tasks import computed
 
 #: What is not kept of the measurements: it is about friction.
-LEFT_OUT = ("third_peak", "third_peak_prominence", "sliding_contacts", "asymmetry_sign", "mobilised_contacts")
+LEFT_OUT = ("third_peak_prominence", "sliding_contacts", "asymmetry_sign", "mobilised_contacts")
 
 #: Dips at x = 0, per largest response, from which on a response can be said to have two peaks; the event has 0.001.
 DIPS = (0.0, 0.005, 0.01, 0.02)
@@ -106,7 +106,7 @@ def stiffnesses(
     data = along("normal_stiffness", outcomes, slabs, forces)
     soft, stiff = (data["response_at_centre"].sel(normal_stiffness=k).values for k in compared)
     text = "relative change of the response at x = 0 from the second to the first of compared_stiffness"
-    crossovers = [outcomes[slab].brackets[len(EVENTS) :] for slab in slabs]
+    crossovers = [[(one.low, one.high) for one in outcomes[slab].events[len(EVENTS) :]] for slab in slabs]
     between = f"forces {WEIGHTS} between which the dip at x = 0 comes to exceed this one; nan if not up to the first"
     return data.assign(
         variables(
@@ -136,7 +136,8 @@ def along(
     data = {name: of(name, "force", "floor_place") for name in map(str, measured[0]) if name not in LEFT_OUT}
     for k, (name, text) in enumerate(EVENTS.items()):
         between = f"forces {WEIGHTS} between which: {text}; nan if not up to the first"
-        data[f"{name}_bracket"] = variable((dimension, "bracket"), [one.brackets[k] for one in each], between)
+        ends = [(one.events[k].low, one.events[k].high) for one in each]
+        data[f"{name}_bracket"] = variable((dimension, "bracket"), ends, between)
     return xr.Dataset(data).assign_coords(
         {
             **table(slabs, dimension).variables,

@@ -53,7 +53,6 @@ class Outcome:
     open_at_rest: int = column("horizontal contacts of the lattice in the central third that are open at rest")
     measured: xr.Dataset  #: along ``force``
     events: list[Event]  #: of EVENTS, then the crossover by each dip of the task
-    brackets: list[tuple[float, float]]  #: their forces before and at
     pictures: dict[str, xr.Dataset]  #: ``rest`` and ``states`` at the forces, if they are kept
 
 
@@ -78,15 +77,13 @@ def solve(
         return Happening(lambda state: measures.dip(state) > dip, "a dip at x = 0")
 
     asked |= {f"dip {dip:g}": exceeds(dip) for dip in dips}
-    events = slab_response.locate(path, forces, asked, tolerance)
     level = (network.lattice_direction(rest) == network.HORIZONTAL) & measures.near
     return Outcome(
         rest_asymmetry(packing.position, rest, packing.width),
         new_neighbours(packing.position, rest),
         int(np.count_nonzero(level & ~rest.pairs.touching)),
         slab_response.measured(measures, states).rename(state="force").assign_coords(force=list(forces)),
-        events,
-        [(one.low, one.high) for one in events],
+        slab_response.locate(path, forces, asked, tolerance),
         pictures(path, states, measures) if keep_states else {},
     )
 
@@ -120,13 +117,8 @@ def new_neighbours(position: FloatArray, rest: State) -> int:
 def pictures(path: LoadPath, states: Sequence[State], measures: Measures) -> dict[str, xr.Dataset]:
     """``rest``, and ``states`` along ``force`` with the region of opened contacts in each."""
     rest, *loaded = common_candidates([path.rest, *states], path.problem.packing.radius)
-    regions = np.stack([measures.region(state).contacts for state in states])
-    count, horizontal = regions.sum(axis=1), network.lattice_direction(rest) == network.HORIZONTAL
-    share = np.where(count > 0, (regions & horizontal).sum(axis=1) / np.maximum(count, 1), np.nan)
+    regions = np.stack([measures.region(state).contacts for state in states]).astype(np.int8)
     inside = "1 for contacts of the connected region of opened contacts below the load"
-    part = "fraction of the region's contacts that are horizontal at rest; nan without a region"
-    further = variables(
-        teardrop=("force contact", regions.astype(np.int8), inside), teardrop_horizontal=("force", share, part)
-    )
-    along = slab_response.states_picture(loaded, path.problem, "force").assign(further)
+    along = slab_response.states_picture(loaded, path.problem, "force")
+    along = along.assign(variables(teardrop=("force contact", regions, inside)))
     return {"rest": slab_response.states_picture([rest], path.problem), "states": along}

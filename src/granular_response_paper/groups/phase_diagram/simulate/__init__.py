@@ -58,7 +58,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     collapsed = (source["outcome"].values == COLLAPSED).any(axis=-1).sum(axis=-1).astype(np.int32)
     text = "packings that collapse along their load paths"
     found["medians"] = found["medians"].assign(variables(collapsed=("case", collapsed, text)))
-    found["packings"] = packings.drop_vars("processor_time", errors="ignore")
+    found["packings"] = packings
     found["starts"] = side_by_side(compared, few, found["shapes"], max(asked.numbers))
     small = survey.read(Path(asked.survey), [asked.linear_range])["ensembles"]
     found["linear_range"] = _linear_range(small, asked.linear_width, np.concatenate([-x[:0:-1], x]))
@@ -112,7 +112,7 @@ def _datasets(
         of_each[name] = of_each[name].astype(np.float32)
     of_each["kind"] = of_each["kind"].copy(data=np.nan_to_num(of_each["kind"].values, nan=-1).astype(np.int8))
 
-    crossovers = of_mean[["force", "kind", "interval", "draw_part", "draws", "limits", "seen", "seen_interval"]]
+    crossovers = of_mean[["force", "kind", "interval", "draws", "limits", "seen", "seen_interval"]]
     force = variables(applied_force=("case step", source["force"].values, APPLIED))
     spread = of_each[["spread", "spread_interval", "largest_step", "largest_step_interval"]].variables
     shapes = xr.Dataset(force | dict(of_mean[["shape", "shape_interval", "two_peaked_means"]].variables) | dict(spread))
@@ -126,10 +126,9 @@ def _datasets(
         level=(LEVELS, "part of the bootstrap draws below"),
     ) | {name: source[name].variable for name in CASE}
     tolerance = {"tolerance": parameters.tolerance}
-    kinds = axes(kind_of_draw=(crossover.KINDS, "kinds of bootstrap draws"))
     tolerances = axes(tolerance=(parameters.other_tolerances, "shape from which on there are two peaks"))
     found = {
-        "crossovers": (crossovers.assign_attrs(tolerance), kinds),
+        "crossovers": (crossovers.assign_attrs(tolerance), {}),
         "definitions": (by_tolerance.assign(limits=crossovers["limits"].variable), tolerances),
         "shapes": (shapes.assign_attrs(tolerance), axes(number=(parameters.numbers, "realizations in a mean"))),
         "realizations": (realizations.assign(variables(collapse_force=("case realization", collapse, collapsed))), {}),

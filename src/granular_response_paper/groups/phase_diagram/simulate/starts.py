@@ -10,7 +10,7 @@ import xarray as xr
 from granular_response.scene.lattice import touching_largest
 from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS
-from granular_response_paper.ensembles.averages import at_rest
+from granular_response_paper.ensembles import at_rest
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
 from granular_response_paper.records import column, record, stacked, table, variables
 from granular_response_paper.survey.crossover import CONFIDENCE, LEVELS, Ensemble, shapes_of_samples, weights

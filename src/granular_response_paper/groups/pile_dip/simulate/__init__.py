@@ -26,7 +26,7 @@ from granular_response.state import FloatArray, State
 from granular_response.store.result import STATUSES, certificates_dataset, common_candidates
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.rest import rest_state
-from granular_response_paper.datasets import labelled, stress_components
+from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.pile_dip.parameters import Parameters
 from granular_response_paper.groups.pile_dip.simulate import glued
 from granular_response_paper.records import axes, column, record, table, variables
@@ -83,7 +83,6 @@ class Pile:
     floor_force: FloatArray = column(f"vertical floor force {WEIGHTS}", "floor_disk")
     floor_dip: float = column(f"how far the floor force under the apex {DIP}")
     floor_asymmetry: float = column(f"largest difference of a floor force from its mirror image {WEIGHTS}")
-    open_contacts: float = column("contacts of the lattice that are open")
     central_open_contacts: float = column("open contacts in the connected region on the axis of the pile")
     central_horizontal: float = column("how many of them are horizontal on the lattice")
     central_height: float = column(f"height of the highest contact of that region above the floor {RADII}")
@@ -107,7 +106,6 @@ def _piles(packing: Packing, states: list[State]) -> xr.Dataset:
             floor_force=floor,
             floor_dip=peaks.central_dip(x, floor),
             floor_asymmetry=np.abs(floor - floor[::-1]).max(),
-            open_contacts=int(np.count_nonzero(opened)),
             central_open_contacts=region.count,
             central_horizontal=int(np.count_nonzero(region.contacts & horizontal)),
             central_height=centre[region.contacts, 1].max(initial=0.0),
@@ -146,13 +144,14 @@ def _stress(packing: Packing, states: list[State], asked: Parameters) -> xr.Data
     x: FloatArray = spacing * np.arange(-int(half / spacing), int(half / spacing) + 1, dtype=np.float64)
     z = np.arange(0.0, float(packing.position[:, 1].max()) + 1.0 + 0.5 * spacing, spacing)
 
-    def fields(z: FloatArray) -> FloatArray:
+    def vertical(z: FloatArray) -> FloatArray:
         points = grid_points(x + half, z)
-        return np.stack([coarse_grained_stress(contact_forces(state), points, width) for state in states])
+        return np.stack([coarse_grained_stress(contact_forces(state), points, width)[..., 1, 1] for state in states])
 
-    line = fields(np.array([height]))[:, 0, :, 1, 1]
+    line = vertical(np.array([height]))[:, 0]
     dips = [peaks.central_dip(x, profile) for profile in (*line, line[:2].mean(axis=0))]
-    further = variables(
+    data = variables(
+        stress_zz=("case z x", vertical(z), "vertical stress in weights per mean radius"),
         profile_zz=("case x", line, "vertical stress at the height of the dip, in weights per mean radius"),
         dip=("case", dips[:-1], f"how far the vertical stress on the axis {DIP}"),
         dip_of_mean=("", dips[-1], "the same of the mean of the two frictionless minima"),
@@ -160,5 +159,4 @@ def _stress(packing: Packing, states: list[State], asked: Parameters) -> xr.Data
         stress_width=("", width, f"width w of the coarse-graining Gaussian {RADII}"),
     )
     places = axes(x=(x, f"distance from the axis of the pile {RADII}"), z=(z, f"height above the floor {RADII}"))
-    components = stress_components(("case", "z", "x"), fields(z), "in weights per mean radius")
-    return xr.Dataset(components | further, axes(case=CASES) | places)
+    return xr.Dataset(data, axes(case=CASES) | places)

@@ -25,14 +25,16 @@ from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.studies import linear_end
 from granular_response_paper.datasets import labelled
-from granular_response_paper.ensembles import AT_REST, datasets, smoothed
-from granular_response_paper.ensembles.averages import at_rest, averages_dataset
+from granular_response_paper.ensembles import AT_REST, at_rest, datasets, smoothed
 from granular_response_paper.ensembles.parameters import Case
 from granular_response_paper.ensembles.realizations import Loaded, Realization, ensemble_task
 from granular_response_paper.groups.polydisperse_averages.parameters import Individual, LinearRange, Parameters
 from granular_response_paper.records import axes, column, columns, record, table, variables
 from granular_response_paper.slab_response import states_picture
 from granular_response_paper.tasks import computed
+
+#: What tells the cases of a figure apart.
+OF_CASE = ("polydispersity", "friction", "lattice_constant")
 
 
 @record
@@ -75,13 +77,46 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     x = np.arange(-half, half + 1, dtype=float) * asked.spacing
     made = {
         "ensembles": ensembles,
-        "averages": averages_dataset(ensembles, x, widths=asked.widths, few=asked.few),
+        "averages": _averages(ensembles, x, asked.widths, asked.few),
         "individual": _individual(ensembles, asked.individual, x),
         "packings": datasets.packings_dataset(cases, found),
         "linear_range": _linear_range(linear, grid, [done["linear range", k, 0] for k in range(len(grid))]),
         "forces": _forces_dataset(tasks[shown].args[0], done[shown], picture.polydispersity),
     }
     return labelled(made, next(iter(tasks.values())).args[0])
+
+
+def _averages(ensembles: xr.Dataset, x: FloatArray, widths: Sequence[float], few: int) -> xr.Dataset:
+    """Fig. 21: mean smoothed responses with standard errors, and means of the first ``few`` realizations at rest.
+
+    A standard error needs two realizations, and is nan below.
+    """
+    cases, steps = ensembles.sizes["case"], ensembles.sizes["step"]
+    mean = np.full((len(widths), cases, steps, len(x)), np.nan)
+    error, mean_few = mean.copy(), mean.copy()
+    count = np.zeros((cases, steps), np.int32)
+    for w, width in enumerate(widths):
+        for c in range(cases):
+            responses = smoothed(ensembles.isel(case=c), x, width)
+            for s in range(steps):
+                rows = at_rest(responses, s)
+                count[c, s] = len(rows)
+                if len(rows):
+                    mean[w, c, s], mean_few[w, c, s] = rows.mean(axis=0), rows[:few].mean(axis=0)
+                if len(rows) > 1:
+                    error[w, c, s] = rows.std(axis=0, ddof=1) / np.sqrt(len(rows))
+    dims, per = "width case step x", "in 1/mean radius: vertical stress on the floor per applied force"
+    data = variables(
+        mean=(dims, mean, f"ensemble mean of the smoothed response {per}"),
+        standard_error=(dims, error, f"standard error of the mean {per}"),
+        mean_of_few=(dims, mean_few, f"mean over the first {few} realizations at rest {per}"),
+        count_at_rest=("case step", count, "realizations that are at rest"),
+    )
+    coordinates = axes(
+        width=(widths, f"width w of the smoothing Gaussian {RADII}"), x=(x, f"distance from the loaded disk {RADII}")
+    )
+    kept = {name: ensembles[name].variable for name in (*OF_CASE, "realizations")}
+    return xr.Dataset(data | {"force": ensembles["force"].variable}, coordinates | kept, {"few": few})
 
 
 def _individual(ensembles: xr.Dataset, shown: Individual, x: FloatArray) -> xr.Dataset:
@@ -98,9 +133,7 @@ def _individual(ensembles: xr.Dataset, shown: Individual, x: FloatArray) -> xr.D
         step = int(np.flatnonzero(ensembles["force"].values[case] == force)[0])
         rows = at_rest(smoothed(ensembles.isel(case=int(case)), x, width), step)[:most]
         response[k, : len(rows)] = rows
-    kept = {
-        name: ensembles[name].isel(case=cases).variable for name in ("polydispersity", "friction", "lattice_constant")
-    }
+    kept = {name: ensembles[name].isel(case=cases).variable for name in OF_CASE}
     return xr.Dataset(
         variables(
             response=("case realization x", response, "smoothed response in 1/mean radius: stress per applied force"),

@@ -118,10 +118,9 @@ def held(asked: Parameters, rest: State) -> xr.Dataset:
         after = relax(dynamics, HELD_STOP, load=(state.load_factor, state.load_factor, 0.0))
         settled.append(replace(after, reached=after.reached.after(state.reached)))
     moved = [np.abs(after.position - before.position).max() for before, after in zip(states, settled, strict=True)]
-    branch = slab.measured(measures, states)
+    branch = [measures.asymmetry(state) for state in states]
     further = variables(
-        branch_asymmetry=("force", branch["asymmetry"], "asymmetry of the floor response before the displacement"),
-        branch_response=("force floor_disk", branch["floor_response"], "floor response before the displacement"),
+        branch_asymmetry=("force", branch, "asymmetry of the floor response before the displacement"),
         moved=("force", moved, f"largest distance from the place before {RADII}"),
         displacement=("", given.displacement, f"largest random displacement {RADII}"),
     )
@@ -157,6 +156,6 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "copies": compared({name: done[name] for name in packings}, force),
         "states": slab.states_picture([rest, *found[0].states], studies.LoadPath.of(base, rest).problem),
     }
-    for dataset in datasets.values():
-        dataset["friction_coefficient"] = variable((), base.contact.friction, "coefficient of friction between disks")
+    friction = variable((), base.contact.friction, "coefficient of friction between disks")
+    datasets["states"] = datasets["states"].assign(friction_coefficient=friction)
     return labelled(datasets, base)

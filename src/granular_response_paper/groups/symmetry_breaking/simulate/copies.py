@@ -21,7 +21,6 @@ from granular_response_paper.records import variables
 def copies_of(given: Copies, packing: Packing) -> dict[str, Packing]:
     """By how they differ from the packing."""
     found = {"as it is": packing, "numbered from right to left": mirrored(packing)}
-    found |= {f"numbered at random, seed {seed}": shuffled(packing, seed) for seed in given.seeds}
     for seed in given.seeds:
         shift = random_shift(packing.position.shape, given.displacement, seed)
         found[f"displaced at random, seed {seed}"] = displaced(packing, shift)
@@ -32,13 +31,6 @@ def copies_of(given: Copies, packing: Packing) -> dict[str, Packing]:
 def mirrored(packing: Packing) -> Packing:
     """The mirror image of a packing, each disk with its number: for a symmetric lattice only the numbers change."""
     return replace(packing, position=packing.position * [-1.0, 1.0] + [packing.width, 0.0])
-
-
-def shuffled(packing: Packing, seed: int) -> Packing:
-    """The same disks numbered at random, without the order of a lattice, by which neighbours are known."""
-    order = np.random.default_rng(seed).permutation(packing.n)
-    arrays = {name: getattr(packing, name)[order] for name in ("position", "radius", "row")}
-    return replace(packing, **arrays, left=None)
 
 
 def displaced(packing: Packing, shift: FloatArray, *, mirror_image: bool = False) -> Packing:
@@ -60,17 +52,10 @@ def copied(scene: Scene, packing: Packing, force: float) -> xr.Dataset:
 
 
 def compared(found: Mapping[str, xr.Dataset], force: float) -> xr.Dataset:
-    """The copies by name, and how far each is from the first one and from its mirror image."""
-    dataset = slab.measured_along("copy", list(found.values()))
-    response = dataset["floor_response"].values
-    largest = response[0].max()
-    text = "largest difference of the floor response to {} of the first copy, per largest response"
-    one, other = (np.abs(image - response[0]).max(axis=1) / largest for image in (response, response[:, ::-1]))
-    return dataset.assign(
+    """The copies by name."""
+    return slab.measured_along("copy", list(found.values())).assign(
         variables(
             name=("copy", list(found), "how the copy differs from the packing"),
             force=("", force, f"applied force {WEIGHTS}"),
-            difference=("copy", one, text.format("that")),
-            mirror_difference=("copy", other, text.format("the mirror image")),
         )
     )

@@ -1,7 +1,7 @@
 """Predictions without simulation: Fig. 1, the peak criterion of Sec. V.C, and the lattice moduli tested.
 
 ``predictions`` holds the pressure on the floor under the elliptic and the hyperbolic description,
-``peak_criterion`` the function r and its roots, ``moduli`` eqs. (7)-(10) beside the moduli of a periodic
+``peak_criterion`` the function r and its roots, ``moduli`` how far eqs. (7)-(10) are from the moduli of a periodic
 lattice that was strained.
 """
 
@@ -12,7 +12,7 @@ from typing import get_args
 import numpy as np
 import xarray as xr
 
-from granular_response.theory import crossover, half_plane, lattice, rays
+from granular_response.theory import half_plane, lattice, rays
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab
@@ -29,8 +29,6 @@ SPRINGS = (
     Springs(2.0, 0.5, 1.7, 0.1),
 )
 ROTATIONS = get_args(lattice.Rotations)
-BODIES = get_args(crossover.Body)
-
 TURNING = axes(rotations=(ROTATIONS, "whether the disks turn"))
 
 
@@ -48,7 +46,6 @@ def _predictions(p: Parameters) -> xr.Dataset:
     hyperbolic = [depth * rays.pressure(x * depth, depth, **ray) for depth in p.depths]
     pressure = "floor pressure times slab height / force"
     below = half_plane.pressure(x, 1.0, solid), "pressure times depth / force in a half plane, same depth"
-    width = "squared width of a ray over depth, in mean disk radii"
     return xr.Dataset(
         variables(
             slab_rough=("x", rough, f"{pressure}, rough floor"),
@@ -57,7 +54,6 @@ def _predictions(p: Parameters) -> xr.Dataset:
             rays=("depth x", hyperbolic, f"{pressure}, two diffusing rays"),
             poisson_ratio=("", poisson_ratio, "two-dimensional Poisson ratio of the elastic slab"),
             ray_angle=("", p.ray_angle, "angle of the rays to the vertical in degrees"),
-            diffusion_length=("", p.diffusion_length, width),
         ),
         axes(x=(x, "distance from the force in slab heights"), depth=(p.depths, "slab height in mean disk radii")),
     )
@@ -67,16 +63,13 @@ def _peak_criterion() -> xr.Dataset:
     beta = np.linspace(0.0, 1.0, 101)
     criterion = [[lattice.peak_criterion(one, rotations) for one in beta] for rotations in ROTATIONS]
     root = [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS]
-    ratio = [[crossover.stiffness_ratio(body, rotations) for body in BODIES] for rotations in ROTATIONS]
-    turn = "k_2t/k_2n at which the pressure below the force turns into a minimum"
     return xr.Dataset(
         variables(
             criterion=("rotations beta", criterion, "r of the lattice without horizontal springs; two peaks if < 0"),
             root=("rotations", root, "k_2t/k_2n at which r = 0"),
             root_closed_form=("rotations", [2.0 * np.sqrt(7.0) - 5.0, 3.0 / 11.0], "the same, closed form"),
-            crossover=("rotations body", ratio, turn),
         ),
-        axes(beta=(beta, "k_2t/k_2n")) | TURNING | axes(body=(BODIES, "elastic body that carries the force")),
+        axes(beta=(beta, "k_2t/k_2n")) | TURNING,
     )
 
 
@@ -84,20 +77,5 @@ def _moduli() -> xr.Dataset:
     formula = [[lattice.moduli(springs, rotations).matrix() for springs in SPRINGS] for rotations in ROTATIONS]
     measured = [[lattice.measured_moduli(springs, rotations) for springs in SPRINGS] for rotations in ROTATIONS]
     error = np.abs(np.subtract(measured, formula)).max(axis=(2, 3)) / np.max(formula, axis=(2, 3))
-    component, spring = ["xx", "zz", "xz"], ["k1n", "k2n", "k1t", "k2t"]
-    springs = [[getattr(one, name) for name in spring] for one in SPRINGS]
-    tensor = "rotations case stress strain"
-    return xr.Dataset(
-        variables(
-            formula=(tensor, formula, "modulus of eqs. (7)-(10), or with free rotations"),
-            measured=(tensor, measured, "modulus of the strained periodic lattice, relaxed"),
-            error=("rotations case", error, "largest difference of the two / largest modulus"),
-            springs=("case spring", springs, "stiffness of the lattice's springs"),
-        ),
-        TURNING
-        | axes(
-            spring=(spring, "spring of Fig. 11"),
-            stress=(component, "stress component"),
-            strain=(component, "strain component (tensor)"),
-        ),
-    )
+    off = "largest difference of the moduli of a strained periodic lattice from eqs. (7)-(10) / largest modulus"
+    return xr.Dataset(variables(error=("rotations case", error, off)), TURNING)
