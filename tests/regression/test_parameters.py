@@ -32,7 +32,6 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"forces": [1.0, 0.5]}, r"forces = \[1\.0, 0\.5\]: must be a list of growing numbers above 0"),
         ({"tolerence": 0.1}, r"tolerence = 0\.1: unknown key, did you mean tolerance\?"),
         ({"sizes": [[5, 11], [6]]}, r"sizes = .*: must be a list of \[layers, disks_per_row\], from 2 and 7 on"),
-        ({"compared_stiffnesses": [1000.0, 2000.0]}, r"compared_stiffnesses = .*: must be two of"),
     ],
     "hysteresis": [({"cases": [LOOP, LOOP]}, "must have each material once"), ({"cases": []}, "cases")],
     "network": [

@@ -9,13 +9,16 @@ from granular_response.scene import SlabPacking
 from granular_response.theory.lattice import poisson_ratio
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab
-from granular_response_paper.groups.friction_fields.simulate.stress import axis_measures, harmonic_lattice
+from granular_response_paper.groups.friction_fields.simulate.stress import axis_measures
+from granular_response_paper.harmonic import harmonic_lattice
 
 
 def test_harmonic_lattice_is_isotropic_where_it_is_fine() -> None:
     """Against the isotropic slab of the same Poisson ratio, a few disks away from the load."""
     packing = SlabPacking(layers=15, disks_per_row=61).build()
-    forces = harmonic_lattice(packing, packing.n - 31, 1.0, 2.0)
+    load = np.zeros((packing.n, 2))
+    load[-31, 1] = -1.0
+    forces = harmonic_lattice(packing, load, 1.0, 2.0)
     x = np.linspace(-30.0, 30.0, 61)
     height = 10.0
     found = coarse.coarse_grained_stress(forces, np.stack([x + 61.0, np.full(61, height)], axis=1), 2.0)

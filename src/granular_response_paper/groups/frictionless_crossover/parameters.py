@@ -34,13 +34,9 @@ class Parameters(SceneGroup):
     region_forces: Growing = Field(description="On these, at which it is.")
     stiffnesses: Growing = Field(description="Normal stiffnesses of the first slab.")
     stiffness_forces: Growing = Field(description="On it at each of them.")
-    compared_stiffnesses: Growing = Field(description="Two of them, whose responses are compared (Sec. IV.C).")
 
     @model_validator(mode="after")
     def _check(self) -> Parameters:
-        if len(self.compared_stiffnesses) != 2 or not set(self.compared_stiffnesses) <= set(self.stiffnesses):
-            given = list(self.compared_stiffnesses)
-            raise Problem("must be two of stiffnesses", key=("compared_stiffnesses",), value=given)
         if self.region_layers < min(layers for layers, _ in self.sizes):
             raise Problem("must be layers of one of sizes", key=("region_layers",), value=self.region_layers)
         return self

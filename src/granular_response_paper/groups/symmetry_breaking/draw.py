@@ -23,8 +23,6 @@ MARGIN = 0.05
 ASYMMETRIC = 0.01
 #: Part of the slab that profiles show, to both sides of the load (radii).
 REACH = 30.0
-#: Most copies of the packing in one panel.
-COPIES = 4
 #: The force at which the paper sees the symmetry lost, in mean disk weights (Sec. V.E).
 PAPER = 91.0
 #: Legends stand over their panel.
@@ -107,14 +105,12 @@ def _lost(runs: xr.Dataset) -> str:
 
 
 def _copies(panel: Axes, copies: xr.Dataset) -> None:
-    """Profiles of some copies; those that lie on each other have markers of different size."""
-    names = copies["name"].values
-    shown = [0, 1, *(k for k, name in enumerate(names) if "displaced" in name)][:COPIES]
-    for index, k in enumerate(shown):
-        look = style.marked_line(index)
-        look |= {"markersize": 2.6} if index < 2 else {"markersize": 5.0, "markerfacecolor": "none"}
-        look["markeredgewidth"] = 0.0 if index < 2 else 0.8
-        panel.plot(copies["x"], copies["floor_response"].isel(copy=k), label=names[k], **look)
+    """Profiles of the copies; those that lie on each other have markers of different size."""
+    for k, name in enumerate(copies["name"].values):
+        look = style.marked_line(k)
+        look |= {"markersize": 2.6} if k < 2 else {"markersize": 5.0, "markerfacecolor": "none"}
+        look["markeredgewidth"] = 0.0 if k < 2 else 0.8
+        panel.plot(copies["x"], copies["floor_response"].isel(copy=k), label=name, **look)
     zero(panel)
     panel.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(-REACH, REACH))
     panel.legend(**OVER)

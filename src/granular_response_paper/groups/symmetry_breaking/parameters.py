@@ -29,7 +29,7 @@ class Copies(Description):
 
     force: Positive
     displacement: Positive
-    seeds: tuple[Index, ...]
+    seed: Index
 
 
 class Held(Description):

@@ -5,20 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import scipy.sparse as sp
 import xarray as xr
-from numpy.typing import NDArray
-from scipy.sparse.linalg import spsolve
 
 from granular_response.observe import stress as coarse
 from granular_response.observe.difference import force_misalignment, pair_force_difference
 from granular_response.observe.network import contact_centre
 from granular_response.observe.profile import ROW_SPACING
 from granular_response.scene import Packing
-from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, FloatArray, State
+from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response_paper.datasets import stress_components
 from granular_response_paper.groups.friction_fields.parameters import Parameters
+from granular_response_paper.harmonic import harmonic_lattice
 from granular_response_paper.records import axes, column, record, table, variables
 
 #: "Near the load" in the claims: within this distance (mean radii). It is left out of distances of fields, since
@@ -48,48 +46,6 @@ class Scalars:
     )
     antisymmetric_near_mean: float = column(
         f"root mean square antisymmetric part per root mean square pressure, within {NEAR:g} radii of the load"
-    )
-
-
-def harmonic_lattice(
-    packing: Packing, loaded_disk: int, normal_stiffness: float, wall_stiffness: float
-) -> coarse.ContactForces:
-    """Contact forces of a unit vertical load on a lattice of two-sided springs, no friction, no gravity.
-
-    The elastic reference of Fig. 14: all bonds alike, so the medium is isotropic, and none can open. Floor and
-    side walls hold the disks nearest to them by springs too. Solved to first order in the displacements.
-    """
-    pairs = packing.neighbour_pairs()
-    if pairs is None:
-        raise ValueError("packing: must be a lattice, a packing from a file has no lattice bonds")
-    n, position = packing.n, packing.position
-    first, second = pairs[:, 0], pairs[:, 1]
-    branch = position[first] - position[second]
-    half = 0.5 * float(packing.lattice_constant or 2.0)
-    (x, z), within = position.T, half + 1e-6
-    which, wall_disk = np.nonzero([z < within, x < within, x > packing.width - within])
-    wall = np.array([FLOOR, LEFT_WALL, RIGHT_WALL])[which]
-    normal = branch / np.linalg.norm(branch, axis=1, keepdims=True)
-
-    def compression(*ends: tuple[NDArray, FloatArray]) -> sp.csr_array:
-        """Maps displacements [x | z] to the changes of distances, given disks and directions at the ends of these."""
-        count = len(ends[0][0])
-        parts = [(np.arange(count), disks + axis * n, along[:, axis]) for disks, along in ends for axis in range(2)]
-        rows, columns, values = map(np.concatenate, zip(*parts, strict=True))
-        return sp.csr_array((values, (rows, columns)), shape=(count, 2 * n))
-
-    bonds = compression((first, normal), (second, -normal))
-    holds = compression((wall_disk, WALL_NORMAL[wall]))
-    stiffness = normal_stiffness * (bonds.T @ bonds) + wall_stiffness * (holds.T @ holds)
-    external = np.zeros(2 * n)
-    external[n + loaded_disk] = -1.0
-    displacement = spsolve(sp.csc_array(stiffness), external)
-    force = -normal_stiffness * (bonds @ displacement)
-    wall_force = -wall_stiffness * (holds @ displacement)
-    return coarse.ContactForces(
-        point=np.concatenate([position[first], position[wall_disk]]),
-        branch=np.concatenate([branch, half * WALL_NORMAL[wall]]),
-        force=np.concatenate([force[:, None] * normal, wall_force[:, None] * WALL_NORMAL[wall]]),
     )
 
 
@@ -127,7 +83,9 @@ def stress_dataset(asked: Parameters, packing: Packing, disk: int, pairs: Sequen
     z = np.arange(0.0, float(packing.position[:, 1].max()) + 1.0 + 0.5 * spacing, spacing)
     points = coarse.grid_points(x + middle[0], z)
     fields = np.stack([coarse.coarse_grained_stress(coarse.load_forces(a, b), points, w) / force for a, b in pairs])
-    springs = harmonic_lattice(packing, disk, contact.normal_stiffness, walls.normal_stiffness)
+    unit = np.zeros_like(packing.position)
+    unit[disk, 1] = -1.0
+    springs = harmonic_lattice(packing, unit, contact.normal_stiffness, walls.normal_stiffness)
     elastic = coarse.coarse_grained_stress(springs, points, w)[..., 1, 1]
     near = np.linalg.norm(points - middle, axis=-1) <= NEAR
 

@@ -57,7 +57,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "sizes": along("slab", outcomes, *asked["sizes"]),
         "regions": along("slab", outcomes, *asked["regions"])[list(REGION)],
         "widths": along("slab", outcomes, *asked["widths"]),
-        "stiffness": stiffnesses(outcomes, *asked["stiffness"], parameters.compared_stiffnesses),
+        "stiffness": stiffnesses(outcomes, *asked["stiffness"]),
     }
 
 
@@ -99,21 +99,14 @@ def tasks(parameters: Parameters) -> dict[Slab, partial[Outcome]]:
     }
 
 
-def stiffnesses(
-    outcomes: Mapping[Slab, Outcome], slabs: Sequence[Slab], forces: Sequence[float], compared: tuple[float, ...]
-) -> xr.Dataset:
-    """As :func:`along`, and how much the response at x = 0 changes between two stiffnesses (Sec. IV.C)."""
-    data = along("normal_stiffness", outcomes, slabs, forces)
-    soft, stiff = (data["response_at_centre"].sel(normal_stiffness=k).values for k in compared)
-    text = "relative change of the response at x = 0 from the second to the first of compared_stiffness"
+def stiffnesses(outcomes: Mapping[Slab, Outcome], slabs: Sequence[Slab], forces: Sequence[float]) -> xr.Dataset:
+    """As :func:`along`, and the crossovers by other dips."""
     crossovers = [[(one.low, one.high) for one in outcomes[slab].events[len(EVENTS) :]] for slab in slabs]
     between = f"forces {WEIGHTS} between which the dip at x = 0 comes to exceed this one; nan if not up to the first"
-    return data.assign(
+    return along("normal_stiffness", outcomes, slabs, forces).assign(
         variables(
-            response_change=("force", soft / stiff - 1.0, text),
             crossovers=("normal_stiffness dip bracket", crossovers, between),
             dip=("dip", DIPS, "dip at x = 0, per largest response, from which on there are two peaks"),
-            compared_stiffness=("compared", compared, "normal stiffnesses whose responses are compared"),
         )
     )
 

@@ -28,7 +28,7 @@ from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.pile_dip.parameters import Parameters
-from granular_response_paper.groups.pile_dip.simulate import glued
+from granular_response_paper.harmonic import harmonic_lattice
 from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.tasks import computed
 
@@ -68,7 +68,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     packing = frictional.packing.build()
     states = common_candidates([*settled["without"], *settled["with"]], packing.radius)
     piles = _piles(packing, states)
-    found = {"piles": piles, "glued": _glued(piles, glued.floor_forces(packing, without))}
+    found = {"piles": piles, "glued": _glued(piles, packing, without.contact.normal_stiffness)}
     return labelled(found | {"stress": _stress(packing, states, parameters)}, frictional)
 
 
@@ -128,7 +128,11 @@ def _piles(packing: Packing, states: list[State]) -> xr.Dataset:
     return of_piles.merge(certificates_dataset(states, "case"))
 
 
-def _glued(piles: xr.Dataset, force: FloatArray) -> xr.Dataset:
+def _glued(piles: xr.Dataset, packing: Packing, stiffness: float) -> xr.Dataset:
+    weight = np.stack([np.zeros(packing.n), -packing.mass], axis=1)
+    springs = harmonic_lattice(packing, weight, stiffness, 2.0 * stiffness)
+    bottom = np.flatnonzero(packing.row == 0)
+    force = springs.force[-len(bottom) - 2 :][: len(bottom), 1]  # before those of the two side walls
     dip = peaks.central_dip(piles["x_floor"].values, force)
     return xr.Dataset(
         variables(

@@ -21,10 +21,9 @@ from granular_response_paper.records import variables
 def copies_of(given: Copies, packing: Packing) -> dict[str, Packing]:
     """By how they differ from the packing."""
     found = {"as it is": packing, "numbered from right to left": mirrored(packing)}
-    for seed in given.seeds:
-        shift = random_shift(packing.position.shape, given.displacement, seed)
-        found[f"displaced at random, seed {seed}"] = displaced(packing, shift)
-        found[f"displaced at random, seed {seed}, mirror image"] = displaced(packing, shift, mirror_image=True)
+    shift, name = random_shift(packing.position.shape, given.displacement, given.seed), f"seed {given.seed}"
+    found[f"displaced at random, {name}"] = displaced(packing, shift)
+    found[f"displaced at random, {name}, mirror image"] = displaced(packing, shift, mirror_image=True)
     return found
 
 
