@@ -149,14 +149,15 @@ def claims(
 def _keep_verdicts(output: Path, absent: list[str]) -> None:
     """Raises ClaimsError if a table has verdicts on groups whose datasets are ``absent``: they would be lost."""
     from .claims import table
+    from .claims.claim import ClaimsError
 
     rows = []
-    with suppress(table.ClaimsError):  # what is no table has none
+    with suppress(ClaimsError):  # what is no table has none
         rows = table.read(output)["table"]
     judged = {row["group"] for row in rows if row["verdict"] != "not measured"}
     if lost := [group for group in absent if group in judged]:
         some = ", ".join(lost[:3]) + (f" and {len(lost) - 3} more" if len(lost) > 3 else "")
-        raise table.ClaimsError(
+        raise ClaimsError(
             f"{output}: has verdicts on groups without datasets here ({some}) and stays as it is; make these with make "
             "reproduce, or give another --output"
         )
