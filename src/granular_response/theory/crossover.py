@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import Literal
 
-from scipy.optimize import brentq
-
 from . import lattice
 from .lattice import Rotations, Springs
 from .slab import Slab
@@ -31,5 +29,7 @@ def stiffness_ratio(body: Body = "half plane", rotations: Rotations = "suppresse
     def curvature(beta: float) -> float:
         moduli = lattice.moduli(Springs(0.0, 1.0, 0.0, beta), rotations)
         return Slab(1.0, moduli, "smooth" if body == "smooth floor" else "rough").curvature_below_force()
+
+    from scipy.optimize import brentq  # a fifth of a second at the start of every process
 
     return float(brentq(curvature, 0.1, 0.8, xtol=1e-12))

@@ -23,7 +23,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from .moduli import Moduli
 from .moduli import peak_criterion as criterion
@@ -104,6 +103,8 @@ def peak_criterion_root(rotations: Rotations = "suppressed") -> float:
     Found numerically to rounding; in closed form ``2 sqrt(7) - 5 = 0.2915`` with suppressed rotations
     (the paper's number) and ``3 / 11 = 0.2727`` with free ones.
     """
+    from scipy.optimize import brentq  # a fifth of a second at the start of every process
+
     return float(brentq(peak_criterion, 0.0, 1.0, args=(rotations,), xtol=1e-15, rtol=1e-15))
 
 
