@@ -16,7 +16,6 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.timestep import stability_limit
 from granular_response.state import FloatArray, State
 from granular_response_paper.groups.stability.simulate import time_steps
-from granular_response_paper.records import column, record
 
 #: Distance of the side walls from what happens.
 FAR = 500.0
@@ -96,48 +95,25 @@ def rolling_speed(time: FloatArray, friction: float, speed: float, spin: float) 
     return speed - np.sign(slip) * friction * slid, rim + 2.0 * np.sign(slip) * friction * slid
 
 
-def kinetic_energy(state: State, problem: Problem) -> float:
-    """Of all disks together."""
-    turning = float(problem.packing.inertia @ state.angular_velocity**2)
-    return 0.5 * (float(problem.weight @ (state.velocity**2).sum(axis=1)) + turning)
+def drift(scene: Scene, system: str, integrator: str, part: float, time: float, kick: float, seed: int) -> FloatArray:
+    """Change (101,) of the total energy of an undamped system, per energy that it moves with.
 
-
-def energy_change(
-    problem: Problem, state: State, integrator: str, step: float, time: float
-) -> tuple[FloatArray, FloatArray]:
-    """101 times from 0 to about ``time``, and the total energy then minus the first one."""
-    dynamics = Dynamics(problem, state, integrator, step)
-    dynamics.set_ramps()
-    times, energy = [0.0], [mechanical_energy(dynamics)]
-    for _ in range(100):
-        dynamics.advance(max(1, round(0.01 * time / step)))
-        times.append(dynamics.time)
-        energy.append(mechanical_energy(dynamics))
-    return np.array(times), np.array(energy) - energy[0]
-
-
-@record
-class Drifted:
-    time: FloatArray = column("time in sqrt(radius/g)", "reading")
-    energy_change: FloatArray = column(
-        "change of the total energy of an undamped system, per energy that it moves with", "reading"
-    )
-
-
-def drift(scene: Scene, system: str, integrator: str, part: float, time: float, kick: float, seed: int) -> Drifted:
-    """An undamped system in motion: a disk that bounces on the floor, or a slab at rest that is kicked.
-
+    The system is a disk that bounces on the floor, or a slab at rest that is kicked.
     The kick is strong enough for contacts to open and slide. Springs are ahead of positions by half a time step, so
     in a feeble motion about large forces the total energy cannot be read off.
     """
     undamped = scene.updated({"contact.damping_ratio": 0.0, "wall.damping_ratio": 0.0})
     if system == "bouncing disk":
         problem, state = free_disks(undamped, np.array([(0.0, 1.5)]), np.zeros((1, 2)), np.zeros(1))
-        energy = 0.5
     else:
         problem, state, _ = time_steps.prepared(Problem.from_scene(undamped))
         state = time_steps.kick(problem, state, seed, kick)
-        energy = kinetic_energy(state, problem)
     step = part * stability_limit(problem, "verlet")
-    times, change = energy_change(problem, state, integrator, step, time)
-    return Drifted(times, change / energy)
+    dynamics = Dynamics(problem, state, integrator, step)
+    dynamics.set_ramps()
+    moving = 0.5 if system == "bouncing disk" else dynamics.kinetic_energy() * problem.n
+    energy = [mechanical_energy(dynamics)]
+    for _ in range(100):
+        dynamics.advance(max(1, round(0.01 * time / step)))
+        energy.append(mechanical_energy(dynamics))
+    return (np.array(energy) - energy[0]) / moving
