@@ -1,4 +1,4 @@
-"""Kills, and the wheel."""
+"""Kills, where only the order of writes keeps files whole, and the wheel."""
 
 import contextlib
 import io
@@ -27,9 +27,6 @@ SCENE = {
     "contact": {"friction": 0.3},
     "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}],
 }
-
-
-# Kills. A process that is killed at once cannot tidy up: only the order of its writes keeps files whole.
 
 
 def command(folder: str, arguments: list[str]) -> None:
@@ -111,12 +108,6 @@ def test_killed_studies_leave_whole_datasets_or_none(tmp_path, processes):
     (tmp_path / "params.yaml").write_text(yaml.safe_dump(parameters))
     arguments = ["simulate", "theory", "--workers", "1"]
     killed_at_random(processes, tmp_path, arguments, tmp_path / "data" / "theory.nc", max(KILLS // 4, 2))
-
-
-# Damaged and foreign files
-
-
-# The wheel
 
 
 @pytest.mark.parametrize(

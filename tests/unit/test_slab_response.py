@@ -10,9 +10,7 @@ from granular_response.studies import LoadPath, Measures, happenings
 from granular_response_paper.groups.symmetry_breaking.simulate import copies
 from granular_response_paper.records import table
 from granular_response_paper.slab_response import (
-    Event,
     Lost,
-    events_dataset,
     locate,
     measured,
     measured_dataset,
@@ -40,17 +38,6 @@ def test_a_lost_equilibrium_is_recorded():
     names = ("friction", "kind", "start", "until", "displacement")
     assert [found[name].item() for name in names] == [0.2, "jump", 4.0, 4.5, 0.1]
     assert table([], "lost", kind=Lost).sizes["lost"] == 0
-
-
-def test_events_become_a_table():
-    found = events_dataset([Event("a", 0.2, 1.0, float("nan"), "never"), Event("b", 0.5, 1, 2, "x")])
-    assert found["name"].values.tolist() == ["a", "b"]
-    assert found["definition"].values.tolist() == ["never", "x"]
-    assert np.isnan(found["high"].values[0])
-    assert found["low"].values.tolist() == [1.0, 1.0]
-    for name in found.variables:
-        assert found[name].attrs["long_name"]
-        assert found[name].attrs["units"] == "1"
 
 
 def test_measurements_are_spread_over_a_grid(path):

@@ -87,14 +87,6 @@ def test_measures_know_the_symmetric_slab(path):
     assert measures.response(state).sum() == pytest.approx(1.0, abs=1e-9)
 
 
-def test_contacts_far_from_the_load_are_not_near(path):
-    measures = Measures(path)
-    pairs = path.rest.pairs
-    middle = 0.5 * (path.rest.position[pairs.first, 0] + path.rest.position[pairs.second, 0])
-    width = path.problem.packing.width
-    np.testing.assert_array_equal(measures.near, (middle >= width / 3) & (middle <= 2 * width / 3))
-
-
 def test_mobilised_contacts_are_near_the_coulomb_limit(path):
     state = path.rest
     touching = np.flatnonzero(state.pairs.touching)[:4]

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from printed import shown
 from small_scenes import free_disks, scene
-from test_events import shown
 
 import granular_response as gr
 from granular_response.scene import Scene

@@ -12,10 +12,9 @@ from granular_response.observe.stress import (
     grid_points,
     line_forces,
     line_stress,
-    load_forces,
 )
 from granular_response.observe.teardrop import teardrop
-from granular_response.scene import Scene, SceneError
+from granular_response.scene import Scene
 from granular_response.solvers.close_pairs import close_pairs
 from granular_response.solvers.solution import solve_scene
 from granular_response.store.result import to_dataset
@@ -67,25 +66,6 @@ def test_neighbours_across_the_sides():
     for position in (packing.position, shifted):
         found = close_pairs(position, packing.radius, 0.1, packing.box.period)
         assert np.array_equal(np.stack(found, axis=1), pairs)
-
-
-def test_stress_beyond_a_side_is_that_at_the_other():
-    top = (LAYERS - 1) * ROW
-    solution = solve_scene(slab(top))
-    forces = load_forces(solution.rest, solution.loaded[-1])
-    z = np.linspace(2.0, 10.0, 5)
-    left, right = (np.stack([np.full(5, x), z], axis=1) for x in (0.5, 0.5 + solution.problem.packing.width))
-    assert coarse_grained_stress(forces, left) == pytest.approx(coarse_grained_stress(forces, right), abs=1e-12)
-
-
-def test_what_a_periodic_slab_cannot_hold_is_refused():
-    with pytest.raises(
-        SceneError, match="is the sum of the forces along x, must be 0 with periodic sides on a smooth floor"
-    ):
-        slab("top-centre").updated({"loads": [{"disk": 3, "force": [1.0, -4.0]}]})
-    slab("top-centre").updated({"loads": [{"disk": 3, "force": [1.0, -4.0]}], "wall.friction": 0.3})
-    with pytest.raises(SceneError, match=r"packing\.disks_per_row = 4: must be at least 5 with periodic sides"):
-        slab("top-centre").updated({"packing.disks_per_row": 4})
 
 
 def distance_to_the_elastic_slab(sides: str, disks_per_row: int) -> float:
