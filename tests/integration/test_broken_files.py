@@ -12,7 +12,6 @@ from places import ROOT
 from stress import random_scenes
 
 from granular_response.inputs import read_json
-from granular_response.sweeps.resources import using
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -88,31 +87,3 @@ def test_no_random_scene_was_solved_wrongly():
     resist = [sum(sum(one.values()) for one in rolls), sum(one["certified"] for one in rolls)]
     assert quoted("random_scenes.json")[:4] == [sum(found.values()), found["certified"], *resist]
     assert unlike_scenes.STEPS in quoted("random_scenes.json")
-
-
-def test_a_run_of_scenes_that_was_interrupted_goes_on_where_it_was(tmp_path, monkeypatch, capsys):
-    tried, seed, output = [], 20260101, tmp_path / "scenes.json"
-    whole = unlike_scenes.run
-
-    def run(maximum_steps, entropy, index, **more):
-        if len(tried) == 5:
-            raise KeyboardInterrupt
-        tried.append(index)
-        return whole(2_000, entropy, index, **more)
-
-    monkeypatch.setattr(unlike_scenes, "run", run)
-    with using(workers=1):
-        with pytest.raises(KeyboardInterrupt):
-            unlike_scenes.main(12, seed, output)
-        assert not output.exists()
-        monkeypatch.setattr(
-            unlike_scenes, "run", lambda _, *given, **more: tried.append(given[1]) or whole(2_000, *given, **more)
-        )
-        unlike_scenes.main(12, seed, output)
-        assert tried == list(range(12))
-        said = capsys.readouterr()
-        assert "scenes, 5 of 12 taken from the checkpoint: 5 of 12" in said.err and "scenes: 2 of 12" in said.err
-        unlike_scenes.main(12, seed, again := tmp_path / "again.json")
-    assert len(tried) == 24 and read_json(again) == read_json(output)
-    assert capsys.readouterr().out == said.out
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["again.json", "scenes.json"]

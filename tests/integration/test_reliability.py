@@ -102,14 +102,6 @@ def test_a_run_that_is_told_to_end_leaves_the_old_result(tmp_path, processes, nu
     assert (tmp_path / "result.nc").read_bytes() == b"old"
 
 
-def test_killed_studies_leave_whole_datasets_or_none(tmp_path, processes):
-    parameters = yaml.safe_load((ROOT / "params.yaml").read_text())
-    parameters["theory"].update(points=11, half_width=1.0, depths=[10.0])
-    (tmp_path / "params.yaml").write_text(yaml.safe_dump(parameters))
-    arguments = ["simulate", "theory", "--workers", "1"]
-    killed_at_random(processes, tmp_path, arguments, tmp_path / "data" / "theory.nc", max(KILLS // 4, 2))
-
-
 @pytest.mark.parametrize(
     ("project", "package"),
     [

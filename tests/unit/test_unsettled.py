@@ -9,9 +9,8 @@ from small_scenes import free_disks, scene
 
 import granular_response as gr
 from granular_response.scene import Scene
-from granular_response.solvers.dynamics import Dynamics, Relaxation, Stop
+from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.equilibrium import certify
-from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import solve_scene
 from granular_response.solvers.timestep import resolve_time_step
 from granular_response.store import files as store
@@ -26,28 +25,6 @@ def test_a_disk_that_falls_from_high_is_not_at_rest_before_it_has_landed(tmp_pat
     assert rest.reached.settled
     assert rest.reached.time > np.sqrt(2.0 * 9.0)
     assert rest.position[0, 1] == pytest.approx(1.0 - 1.0 / 6000.0, abs=1e-7)
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"protocol__time_step": 4e-4},
-        {"contact__normal_stiffness": 1e6, "protocol__time_step": "auto"},
-        {"contact__friction": 0.2, "contact__normal_stiffness": 3e7, "protocol__time_step": "auto"},
-    ],
-    ids=["small step", "stiff", "stiff, with friction"],
-)
-def test_a_packing_in_free_fall_is_not_at_rest(changes):
-    """Nearly all disks start without a contact: in their first steps they are slow, and used to count as settled."""
-    gaps = {"packing__polydispersity": 0.1, "packing__lattice_constant": "touching-largest", "contact__friction": 0.0}
-    problem = Problem.from_scene(scene(3, 5, **(gaps | changes)))
-    dynamics = Dynamics(problem, problem.bare_state(), time_step=resolve_time_step(problem))
-    run = Relaxation(dynamics, Stop(problem.plan.stop_energy))
-    while dynamics.in_flight(dynamics.touching()):
-        assert not run.ended
-        dynamics.advance(100)
-        run.look()
-    assert run.dynamics.time > 0.1
 
 
 def test_a_packing_pressed_together_is_not_at_rest_before_it_has_moved():

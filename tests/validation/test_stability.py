@@ -156,12 +156,6 @@ DESCRIPTION = {
 }
 
 
-def test_a_scene_with_a_right_answer_is_certified_and_so_is_its_twin(tmp_path):
-    trial = random_scenes.attempt(DESCRIPTION, str(tmp_path), twin=True)
-    assert trial.outcome == "certified"
-    assert trial.twin_difference < random_scenes.TWINS
-
-
 def test_a_table_of_disks_has_twins_too(tmp_path):
     """Mirrored, in another order and another unit; forces and displacements alike."""
     third = 1.0 + np.sqrt(3.0)
