@@ -74,24 +74,6 @@ def test_the_least_time_within_an_error_is_of_the_runs_within_it(script):
     assert (row["0.01"], row["0.001"], row["0.0001"], row["least_error"]) == (1.0, 3.0, None, 2e-4)
 
 
-@pytest.mark.parametrize("friction", [0.2, 0.0])
-def test_kernels_say_what_they_do(script, monkeypatch, friction):
-    """What Beeman's formulas have for each unknown, and of each pair one root and one quotient."""
-    limits = script("limits")
-    monkeypatch.setattr(limits, "LAYERS", 4)
-    monkeypatch.setattr(limits, "PER_ROW", 9)
-    counts = limits.counted(friction)
-    unknowns = (3 if friction else 2) * 34
-    assert counts["integration"]["additions"] == 8 * unknowns
-    assert counts["integration"]["multiplications"] == 9 * unknowns
-    pairs = counts["pair forces"]
-    assert pairs["roots"] == pairs["divisions"] > 34
-    loop = limits.mix(pairs, pairs["roots"] // 8 * 8, 200, 100, 3)
-    loop(2)
-    assert limits.dense(2, 0, symmetric=False) == 3.0  # one quotient, one product, one difference
-    assert limits.dense(60, 0, symmetric=True) == pytest.approx(60**3 / 3, rel=0.03)
-
-
 def test_times_of_other_codes_come_from_their_log_and_their_stamps(script, tmp_path):
     peers = script("peers")
     log = "Loop time of 2 on 1 procs for 10 steps with 3 atoms\nLoop time of 8 on 1 procs for 20 steps with 3 atoms\n"

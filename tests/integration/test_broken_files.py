@@ -3,6 +3,7 @@
 import re
 from collections import Counter
 from dataclasses import replace
+from subprocess import CompletedProcess
 
 import broken_files
 import counts
@@ -23,23 +24,20 @@ def test_every_broken_file_is_refused_or_taken_for_what_it_says(tmp_path, seed):
     assert all(trial.said.startswith("granular-response: ") for trial in trials if trial.said)
 
 
-def test_a_command_that_ends_its_process_is_counted_and_the_others_go_on(tmp_path, monkeypatch):
-    whole = broken_files.attempt
-
-    def ends(generator, files, folder):
-        trial = whole(generator, files, folder)
-        if generator.random() < 0.3:
-            broken_files.os.kill(broken_files.os.getpid(), broken_files.signal.SIGKILL)
-        return trial
-
-    alone = broken_files.attempts(8, 3, tmp_path)
-    monkeypatch.setattr(broken_files, "attempt", ends)
-    trials = broken_files.attempts(8, 3, tmp_path)
-    killed = [trial.outcome == "killed" for trial in trials]
-    assert 0 < sum(killed) < 8
-    assert [t.what for t, k in zip(trials, killed, strict=True) if not k] == [
-        t.what for t, k in zip(alone, killed, strict=True) if not k
-    ]
+@pytest.mark.parametrize(
+    ("code", "said", "found"),
+    [
+        (0, "", "taken"),
+        (2, "granular-response: a.csv: is empty\n", "refused"),
+        (2, "one\ntwo\n", "several lines"),
+        (2, "granular-response: a.nc: not enough memory\n", "too much memory"),
+        (1, "Traceback (most recent call last):\n", "traceback"),
+        (-9, "", "killed"),
+        (3, "", "killed"),
+    ],
+)
+def test_how_a_command_ends_is_its_outcome(code, said, found):
+    assert broken_files.outcome(CompletedProcess([], code, "", said)) == found
 
 
 def test_what_a_reader_would_lose_is_a_quiet_change(tmp_path, monkeypatch):

@@ -53,14 +53,6 @@ def test_stored_states_give_the_stored_measurements(datasets) -> None:
         assert bool(region.any()) == (float(response["teardrop_depth"].sel(force=force)) > 0.0)
 
 
-def test_soft_slabs_open_later(datasets) -> None:
-    """Sec. IV.C: the region of opened contacts is smaller in softer slabs, its opening is at larger forces."""
-    stiffness = datasets["stiffness"]
-    opening = stiffness["first_opening_bracket"].mean("bracket").values
-    assert np.all(np.diff(opening) < 0.0)
-    assert np.all(np.diff(stiffness["teardrop_depth"].sel(force=1.0).values) >= -0.01)
-
-
 def test_new_neighbours_are_touching_pairs_that_were_apart() -> None:
     problem = Problem.from_scene(Slab(3, 7, 3000.0).scene(BASE))
     packing = problem.packing

@@ -14,14 +14,6 @@ def test_the_frictionless_pile_has_two_minima(datasets) -> None:
     assert float(piles["floor_asymmetry"][2]) < 1e-9
 
 
-def test_the_dip_goes_with_friction(datasets) -> None:
-    piles, stress = datasets["piles"], datasets["stress"]
-    assert np.all(stress["dip"][:2] > 0.05)
-    assert float(stress["dip"][2]) < 0.0
-    assert float(stress["dip_of_mean"]) > 0.05
-    assert np.all(piles["central_horizontal"] == piles["central_open_contacts"])
-
-
 def test_the_dip_goes_with_contacts_that_cannot_open(datasets) -> None:
     """The glued pile is symmetric and bears its weight on the floor, since its side walls are smooth."""
     glued, piles = datasets["glued"], datasets["piles"]

@@ -25,13 +25,6 @@ def test_stored_errors_are_those_of_the_stored_responses(datasets) -> None:
     np.testing.assert_allclose(stored["floor_error_largest"], np.abs(difference).max() / np.abs(both).max(), rtol=1e-12)
 
 
-def test_superposition_holds_for_small_loads_and_fails_for_large_ones(datasets) -> None:
-    errors = datasets["errors"]
-    for name in ("floor_error", "contact_error", "row_error"):
-        assert float(errors[name].isel(force=0).max()) < 1e-6
-        assert float(errors[name].isel(force=2).mean()) > 1e-2
-
-
 def test_the_end_of_the_linear_range_is_bracketed(datasets) -> None:
     linear = datasets["linear_range"]
     assert linear.sizes["realization"] == 3
