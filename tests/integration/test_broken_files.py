@@ -7,6 +7,7 @@ from subprocess import CompletedProcess
 
 import broken_files
 import counts
+import numpy as np
 import pytest
 import unlike_scenes
 from places import ROOT
@@ -38,6 +39,21 @@ def test_every_broken_file_is_refused_or_taken_for_what_it_says(tmp_path, seed):
 )
 def test_how_a_command_ends_is_its_outcome(code, said, found):
     assert broken_files.outcome(CompletedProcess([], code, "", said)) == found
+
+
+def test_packings_that_are_changed_are_refused_or_account_for_the_change(tmp_path):
+    """Readers alone, which take so little time that thousands of changes are tried."""
+    packings = [file for file in broken_files.originals(tmp_path) if not file.name.endswith((".nc", ".yaml"))]
+    refused = Counter()
+    for index in range(3000):
+        file, g = packings[index % len(packings)], np.random.default_rng([7, index])
+        _, content = broken_files.changed(g, file.content, not file.name.endswith(".gsd"))
+        try:
+            assert broken_files.quiet_change(file, content, tmp_path) == "", (index, file.name)
+        except (broken_files.formats.FormatError, UnicodeDecodeError) as error:
+            assert "\n" not in str(error)
+            refused[file.name] += 1
+    assert refused.keys() == {file.name for file in packings} and min(refused.values()) > 50
 
 
 def test_what_a_reader_would_lose_is_a_quiet_change(tmp_path, monkeypatch):

@@ -353,11 +353,6 @@ def test_another_function_or_item_finds_nothing(tmp_path):
 class TestDask:
     """A real cluster."""
 
-    def test_the_environment_names_the_scheduler(self, cluster, tmp_path, monkeypatch):
-        monkeypatch.setenv("DASK_SCHEDULER_ADDRESS", cluster.scheduler_address)
-        map_tasks(functools.partial(note, folder=tmp_path), range(3), workers=1)
-        assert str(os.getpid()) not in {pid for item in range(3) for pid in starts(tmp_path, item)}
-
     def test_a_killed_worker_loses_only_what_was_in_flight(self, cluster, tmp_path):
         marks = tmp_path / "marks"
         marks.mkdir()

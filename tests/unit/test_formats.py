@@ -614,46 +614,6 @@ def test_a_dump_without_masses_says_what_is_taken(tmp_path):
               .replace("3.0 2.0 1.0", "3.0 2.0 1.0 1.0").replace("3.5 3.0 5.0", "3.5 3.0 5.0 5.0"))  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ENDINGS)
-@pytest.mark.filterwarnings("ignore:.*read again")
-def test_a_file_that_was_cut_is_refused(result, tmp_path, name):
-    """Wherever it was cut: what is left must not be a smaller packing, or one with another last number."""
-    whole = export(result, tmp_path / f"whole{ENDINGS[name][0]}").read_bytes()
-    path = tmp_path / f"cut{ENDINGS[name][0]}"
-    expected = build(tmp_path / f"whole{ENDINGS[name][0]}")
-    refused = 0
-    for length in np.unique(np.linspace(0, len(whole) - 1, 150).astype(int)).tolist():
-        path.write_bytes(whole[:length])
-        try:
-            packing = build(path, width=6.3)
-        except SceneError as error:
-            assert "\n" not in str(error)
-            refused += 1
-        else:  # what was cut off says nothing of the disks
-            np.testing.assert_array_equal(packing.position, expected.position)
-            np.testing.assert_array_equal(packing.mass, expected.mass)
-    assert refused > 100
-
-
-@pytest.mark.filterwarnings("ignore:.*read again")
-def test_no_damage_at_one_place_takes_a_sphere_away(result, tmp_path):
-    """A mark that merges with the row after it was a comment like any other, and the sphere in it was gone."""
-    whole = export(result, tmp_path / "whole.txt").read_bytes()
-    expected, taken = formats.read(tmp_path / "whole.txt", "yade"), 0
-    path = tmp_path / "damaged.txt"
-    for start in range(0, len(whole), 3):
-        for size in (1, 7, 20, 45, 64, 90):
-            for end in (whole[start + size :], whole[start : start + size] + whole[start:]):
-                path.write_bytes(whole[:start] + end)
-                try:
-                    table = formats.read(path, "yade")
-                except formats.FormatError:
-                    continue
-                assert (len(table.radius), table.box) == (len(expected.radius), expected.box)
-                taken += 1
-    assert taken > 50
-
-
 def test_a_bond_to_nowhere_and_half_a_log_are_one_line(tmp_path):
     def logged(**log):
         frame = gsd_frame(box=20, **log)
@@ -713,24 +673,6 @@ def test_gsd_takes_from_the_first_frame_what_the_last_one_leaves_out(tmp_path):
     np.testing.assert_array_equal(table.radius, 0.5 * expected.diameter)
     np.testing.assert_array_equal(table.mass, expected.mass)
     np.testing.assert_array_equal(np.column_stack([table.x, table.z]), expected.position[:, :2])
-
-
-@pytest.mark.filterwarnings("ignore:.*no springs of friction")
-def test_every_damaged_byte_of_a_gsd_file_is_met(periodic, tmp_path):
-    """The library of the format ends the process at some of them."""
-    whole = export(periodic, tmp_path / "a.gsd").read_bytes()
-    refused = 0
-    for at in [*range(56), *range(56, len(whole), 97)]:
-        for bit in (0, 3, 7):
-            damaged = bytearray(whole)
-            damaged[at] ^= 1 << bit
-            (tmp_path / "b.gsd").write_bytes(bytes(damaged))
-            try:
-                build(tmp_path / "b.gsd", sides="periodic")
-            except SceneError as error:
-                assert "\n" not in str(error)
-                refused += 1
-    assert refused > 60
 
 
 @pytest.mark.filterwarnings("ignore:.*read again")

@@ -73,18 +73,14 @@ def test_floor_response_of_each_load(solution):
 
 
 def test_a_box_that_has_changed_since_is_noticed(tmp_path):
-    disks = [(x, 1.0) for x in (1.0, 3.0, 5.0, 7.0)] + [(x, 1.0 + 3**0.5) for x in (2.0, 4.0, 6.0)]
+    rows = "".join(f"{x},{z},1,1\n" for x, z in [(1, 1), (3, 1), (5, 1), (7, 1), (2, 2.75), (4, 2.75), (6, 2.75)])
 
     def write(width):
-        title = f"granular-response: {len(disks)} disks, width {width}, sides walls"  # by which the box is known
-        lines = [title, "", f"{len(disks)} atoms", "1 atom types", "", f"0.0 {width} xlo xhi", "0.0 10 ylo yhi"]
-        lines += ["-1 1 zlo zhi", "", "Atoms # sphere", ""]
-        lines += [f"{k} 1 2.0 1.0 {x} {z} 0.0" for k, (x, z) in enumerate(disks, 1)]
-        (tmp_path / "disks.data").write_text("\n".join(lines) + "\n")
+        title = f"# granular-response: 7 disks, width {width}, sides walls\n"  # by which the box is known
+        (tmp_path / "disks.csv").write_text(f"{title}x,z,radius,mass\n{rows}")
 
     write(12.0)
-    packing = {"kind": "file", "path": "disks.data"}
-    load = {"disk": 5, "force": [0.0, -1.0]}
+    packing, load = {"kind": "file", "path": "disks.csv"}, {"disk": 5, "force": [0.0, -1.0]}
     rough = {"contact": {"friction": 1.0}, "wall": {"friction": 1.0}}
     scene = Scene.from_dict({"packing": packing, "loads": [load], **rough}, folder=tmp_path)
     granular_response.solve(scene).save(tmp_path / "result.nc")
