@@ -41,11 +41,12 @@ def test_how_a_command_ends_is_its_outcome(code, said, found):
     assert broken_files.outcome(CompletedProcess([], code, "", said)) == found
 
 
+@pytest.mark.filterwarnings("ignore:overflow")
 def test_packings_that_are_changed_are_refused_or_account_for_the_change(tmp_path):
     """Readers alone, which take so little time that thousands of changes are tried."""
     packings = [file for file in broken_files.originals(tmp_path) if not file.name.endswith((".nc", ".yaml"))]
     refused = Counter()
-    for index in range(3000):
+    for index in range(1500):
         file, g = packings[index % len(packings)], np.random.default_rng([7, index])
         _, content = broken_files.changed(g, file.content, not file.name.endswith(".gsd"))
         try:
@@ -53,7 +54,7 @@ def test_packings_that_are_changed_are_refused_or_account_for_the_change(tmp_pat
         except (broken_files.formats.FormatError, UnicodeDecodeError) as error:
             assert "\n" not in str(error)
             refused[file.name] += 1
-    assert refused.keys() == {file.name for file in packings} and min(refused.values()) > 50
+    assert refused.keys() == {file.name for file in packings} and min(refused.values()) > 25
 
 
 def test_what_a_reader_would_lose_is_a_quiet_change(tmp_path, monkeypatch):

@@ -363,7 +363,6 @@ MISTAKES = [
 
 @pytest.mark.parametrize(("name", "text", "said"), MISTAKES)
 def test_files_that_cannot_be_read_are_refused(tmp_path, name, text, said):
-    """Nothing is lost, and nothing said twice is taken the one way or the other."""
     with pytest.raises(SceneError) as caught:
         build(tmp_path / name, text, **({"width": 9.0} if name not in ("a.data", "a.dump") else {}))
     assert said in str(caught.value) and "\n" not in str(caught.value)

@@ -34,7 +34,6 @@ def moved(result):
 
 
 def test_measured_disks_that_are_thrown_about_say_so(tmp_path):
-    """By five radii and more, without a word."""
     result, said = solved()
     far = moved(result)[0]
     given = Scene.from_dict({"packing": MEASURED, **STIFF}).packing.build().position

@@ -203,7 +203,6 @@ def of_table(folder, disks, *, width, loads, friction, **more) -> gr.Result:
     ],
 )
 def test_a_displaced_disk_pushes_what_is_on_its_way(other, way, friction, method, tmp_path):
-    """It passed through disks: contacts were listed once, and minimisation moved it in one jump."""
     result = of_table(
         tmp_path, [(2, 1, 1), (other, 1, 1)], width=20.0, friction=friction, protocol={"method": method},
         loads=[{"disk": 0, "displacement": [way, None]}],
@@ -216,7 +215,6 @@ def test_a_displaced_disk_pushes_what_is_on_its_way(other, way, friction, method
 @pytest.mark.parametrize("method", ["path", "dynamics"])
 @pytest.mark.parametrize("friction", [0.0, 0.5])
 def test_two_disks_may_meet_across_a_side_after_they_were_neighbours_within(friction, method, tmp_path):
-    """Statics kept to the side on which the pair was listed."""
     loads = [{"disk": 0, "displacement": [-0.9, None]}, {"disk": 1, "displacement": [0.0, None]}]
     result = of_table(
         tmp_path, [(0.01, 1, 1), (2.56, 1, 1)], width=5.3, sides="periodic", friction=friction, loads=loads,
@@ -227,7 +225,6 @@ def test_two_disks_may_meet_across_a_side_after_they_were_neighbours_within(fric
 
 
 def test_a_path_finds_contacts_that_the_list_of_the_fall_has_not(tmp_path):
-    """Two disks pressed into each other were certified as apart."""
     radius, off = 0.92, 0.22
     z = 1.0 + ((1.0 + radius) ** 2 - (1.0 - off) ** 2) ** 0.5
     disks = [(1, 1, 1), (3, 1, 1), (5, 1, 1), (2 - off, z, radius), (4 + off, z, radius)]

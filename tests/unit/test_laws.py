@@ -234,7 +234,6 @@ class Growing(Cohesive):
     ],
 )
 def test_a_law_that_contradicts_itself_is_refused(wrong, said):
-    """It was taken, and states were called stable by its stiffness."""
     with pytest.raises(gr.GranularError, match=said):
         gr.register_law("wrong", wrong)
     assert "wrong" not in KNOWN_LAWS

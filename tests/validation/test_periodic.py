@@ -108,7 +108,6 @@ def test_forces_across_a_line_and_their_stress_are_those_of_one_period():
 
 
 def test_what_is_measured_of_contacts_does_not_depend_on_where_the_side_is():
-    """Contacts across the side counted as half a box away."""
     found = []
     for offset in (0, -5, -10, 10):
         load = {"disk": {"row": "top", "offset": offset}, "force": [0.0, -40.0]}
