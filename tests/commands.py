@@ -68,6 +68,14 @@ def process(
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
 
 
+def python(*arguments: object, folder: str | Path | None = None, **environment: str) -> str:
+    """What ``python ARGUMENTS`` prints in a new process with these variables too. It must end well, and in time."""
+    command, variables = [sys.executable, *map(str, arguments)], {**os.environ, **environment}
+    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=variables, timeout=3.0 * LONGEST)
+    assert run.returncode == 0, run.stderr
+    return run.stdout
+
+
 def call(
     *arguments: object,
     folder: str | Path | None = None,

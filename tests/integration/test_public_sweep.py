@@ -1,12 +1,11 @@
 """Sweeps and events by the public namespace alone."""
 
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 import xarray as xr
+from commands import python
 from places import ROOT
 
 import granular_response as gr
@@ -205,9 +204,7 @@ def test_the_sweep_of_the_notes_runs_as_a_script_with_workers(tmp_path):
         assert code.count(old) == 1
         code = code.replace(old, new)
     (tmp_path / "script.py").write_text(code)
-    command = [sys.executable, "-W", "error::UserWarning:__main__", "script.py"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
+    python("-W", "error::UserWarning:__main__", "script.py", folder=tmp_path)
     assert any((tmp_path / "kept").iterdir())
 
 

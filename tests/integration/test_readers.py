@@ -2,11 +2,11 @@
 
 import shutil
 import subprocess
-import sys
 
 import numpy as np
 import pytest
 import xarray as xr
+from commands import python
 from places import ROOT
 from small_scenes import scene
 
@@ -76,14 +76,7 @@ def test_files_are_read_repeatedly(reader, files):
     imports, body = READERS[reader]
     given = [str(part) for pair in files.items() for part in pair]
     script = READ.format(imports=imports, read=body)
-    done = subprocess.run(
-        [sys.executable, "-c", script, str(TIMES.get(reader, FEW)), *given],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    assert done.returncode == 0 and done.stdout == "read to the end\n", (done.returncode, done.stderr[-2000:])
+    assert python("-c", script, TIMES.get(reader, FEW), *given) == "read to the end\n"
 
 
 def test_ncdump_shows_words(files):

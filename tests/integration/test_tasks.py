@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import python
 
 from granular_response.scene import Contact, Scene, Wall
 from granular_response.sweeps import executor, keys, processes
@@ -178,15 +179,13 @@ print([one.value for one in found])
 
 def test_a_function_of_a_notebook_runs_in_processes():
     """A program that no worker can import, as a cell of a notebook is none."""
-    run = subprocess.run([sys.executable, "-c", NOTEBOOK], capture_output=True, text=True, check=True)
-    assert run.stdout == "[1, 2, 3, 4]\n"
+    assert python("-c", NOTEBOOK) == "[1, 2, 3, 4]\n"
 
 
 def test_a_script_without_its_guard_is_told_what_is_missing(tmp_path):
     (tmp_path / "script.py").write_text(NOTEBOOK)
-    run = subprocess.run([sys.executable, tmp_path / "script.py"], capture_output=True, text=True)
-    assert run.returncode == 1
-    assert "SweepError: worker processes end before they begin: a script has its calls under" in run.stderr
+    with pytest.raises(AssertionError, match="SweepError: worker processes end before they begin: a script has its"):
+        python(tmp_path / "script.py")
 
 
 @pytest.mark.parametrize("workers", [0, -1, 1.5, "2"])

@@ -12,7 +12,6 @@ from granular_response.scene import Scene
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.equilibrium import certify
 from granular_response.solvers.solution import solve_scene
-from granular_response.solvers.timestep import resolve_time_step
 from granular_response.store import files as store
 from granular_response.store.result import solution_from, state_from, to_dataset
 
@@ -64,29 +63,6 @@ def test_a_ramp_that_is_cut_short_carries_the_load_it_has_reached():
     again = solution_from(data)
     assert again.unsettled == solution.unsettled
     assert solve_scene(scene(loads=LOAD)).unsettled == ""
-
-
-@pytest.mark.parametrize(
-    ("changes", "step", "reason"),
-    [
-        ({}, 5e-4, "the paper's"),
-        ({"contact__normal_stiffness": 1e5}, None, "auto: 0.6 of the stability limit, as"),
-        ({"protocol__time_step": 4e-4}, 4e-4, "protocol.time_step"),
-        ({"protocol__time_step": "auto"}, None, "auto: 0.6"),
-    ],
-    ids=["paper", "stiff", "given", "auto"],
-)
-def test_a_time_step_that_is_left_out_is_one_that_works_and_the_result_says_which(changes, step, reason):
-    stiff = scene(**changes)
-    solution = solve_scene(stiff)
-    taken = resolve_time_step(solution.problem)
-    assert taken == step if step else 0.0 < taken < 1e-3
-    data = to_dataset(solution)
-    assert data.attrs["time_step"].startswith(reason)
-    assert float(data["reached_time_step"][0]) == taken
-    if step is None and not stiff.protocol.time_step:
-        assert taken < 5e-4
-        assert np.isfinite(data["floor_force"].values).all()
 
 
 def test_a_path_from_a_start_that_is_not_in_balance_begins_with_an_equilibrium():
