@@ -59,12 +59,6 @@ def starts(folder, item):
 ITEMS = [(seed, 50 + seed) for seed in range(7)]
 
 
-def assert_same(one, other):
-    assert len(one) == len(other)
-    for a, b in zip(one, other, strict=True):
-        assert a.tobytes() == b.tobytes()
-
-
 def resources(place, request):
     """Where tasks run, as keyword arguments of ``map_tasks``."""
     if place != "cluster":
@@ -83,7 +77,8 @@ def elsewhere(request):
 
 
 def test_results_are_the_same_everywhere(everywhere):
-    assert_same(map_tasks(response, iter(ITEMS), **everywhere), [response(item) for item in ITEMS])
+    found = map_tasks(response, iter(ITEMS), **everywhere)
+    assert [one.tobytes() for one in found] == [response(item).tobytes() for item in ITEMS]
 
 
 @pytest.mark.parametrize("workers", [1, 2])

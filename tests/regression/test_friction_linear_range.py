@@ -5,13 +5,6 @@ import numpy as np
 from granular_response.state import SLIDING
 
 
-def bracket(datasets, name, friction):
-    table = datasets["events"]
-    here = (table["name"].values == name) & (table["friction"].values == friction)
-    (row,) = np.flatnonzero(here)
-    return float(table["low"][row]), float(table["high"][row])
-
-
 def test_every_state_is_an_equilibrium_that_carries_the_load(datasets):
     response = datasets["response"].stack(state=("friction", "force")).dropna("state", subset=["peak_count"])
     assert response.sizes["state"] == 7 + 8 + 6
@@ -21,7 +14,9 @@ def test_every_state_is_an_equilibrium_that_carries_the_load(datasets):
 
 def test_brackets_hold_the_event_that_the_axis_of_forces_shows(datasets):
     response = datasets["response"].sel(friction=0.2).dropna("force", subset=["peak_count"])
-    low, high = bracket(datasets, "reaches_floor", 0.2)
+    table = datasets["events"]
+    (row,) = np.flatnonzero((table["name"].values == "reaches_floor") & (table["friction"].values == 0.2))
+    low, high = float(table["low"][row]), float(table["high"][row])
     reached = response["reaches_floor"].values == 1.0
     assert response["force"].values[~reached].max() <= low < high <= response["force"].values[reached].min()
 

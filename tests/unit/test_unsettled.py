@@ -45,15 +45,10 @@ def test_a_part_of_the_packing_that_nothing_bears_is_in_flight():
 LOAD = [{"disk": "top-centre", "force": [0.0, -2.0]}]
 
 
-def cut_short(**changes):
-    return scene(
-        loads=LOAD, protocol__static_finish=False, protocol__method="dynamics", protocol__maximum_steps=1000, **changes
-    )
-
-
 def test_a_ramp_that_is_cut_short_carries_the_load_it_has_reached():
     """1,000 steps of 5e-4 are a fortieth of the ramp of 20; the result used to say load factor 1."""
-    solution = solve_scene(cut_short(protocol__time_step=5e-4))
+    protocol = {"method": "dynamics", "static_finish": False, "maximum_steps": 1000, "time_step": 5e-4}
+    solution = solve_scene(scene(loads=LOAD, protocol=protocol))
     assert solution.load_factors == (pytest.approx(0.025, abs=1e-6),)
     assert solution.loaded[0].reached.settled is False
     assert solution.unsettled == "not at rest within protocol.maximum_steps = 1000: gravity, load factor 0.025"
