@@ -2,8 +2,6 @@
 
 import numpy as np
 
-CHANGES = ("force_change", "stress_change", "antisymmetric_change")
-
 
 def test_loads_are_balanced(datasets) -> None:
     """The contacts of the loaded disk take up the applied force and the clockwise torque."""

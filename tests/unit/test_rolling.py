@@ -31,15 +31,6 @@ EVERYWHERE = {
     "wall__friction": 0.4,
     "wall__rolling_friction": 0.2,
 }
-SLAB = {
-    "contact__friction": 0.2,
-    "contact__rolling_friction": 0.1,
-    "contact__rolling_stiffness_ratio": 0.5,
-    "wall__friction": 0.2,
-    "wall__stiffness_ratio": 0.5,
-    "wall__rolling_friction": 0.1,
-    "wall__rolling_stiffness_ratio": 0.5,
-}
 FLOOR = {"wall__friction": 1.0, "wall__rolling_friction": 0.3, "wall__rolling_stiffness_ratio": 0.5}
 
 

@@ -4,7 +4,6 @@ import math
 import pickle
 
 import pytest
-from places import ROOT
 
 from granular_response.scene import (
     Contact,
@@ -18,8 +17,6 @@ from granular_response.scene import (
     Wall,
 )
 from granular_response.scene.protocol import PAPERS_TIME_STEP
-
-EXAMPLES = ROOT / "examples"
 
 
 def test_defaults_are_the_papers():
