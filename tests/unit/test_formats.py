@@ -674,6 +674,24 @@ def test_gsd_takes_from_the_first_frame_what_the_last_one_leaves_out(tmp_path):
     np.testing.assert_array_equal(np.column_stack([table.x, table.z]), expected.position[:, :2])
 
 
+@pytest.mark.filterwarnings("ignore:.*no springs of friction")
+def test_every_damaged_byte_of_a_gsd_file_is_met(periodic, tmp_path):
+    """The library of the format ends the process at some of them."""
+    whole = export(periodic, tmp_path / "a.gsd").read_bytes()
+    refused = 0
+    for at in [*range(56), *range(56, len(whole), 97)]:
+        for bit in (0, 3, 7):
+            damaged = bytearray(whole)
+            damaged[at] ^= 1 << bit
+            (tmp_path / "b.gsd").write_bytes(bytes(damaged))
+            try:
+                build(tmp_path / "b.gsd", sides="periodic")
+            except SceneError as error:
+                assert "\n" not in str(error)
+                refused += 1
+    assert refused > 60
+
+
 @pytest.mark.filterwarnings("ignore:.*read again")
 @pytest.mark.parametrize("damaged", [b"particles/masr", b"qarticles/mass"])
 def test_a_damaged_name_of_a_gsd_file_is_no_missing_chunk(result, tmp_path, damaged):
