@@ -243,6 +243,7 @@ def test_yade_in_either_plane(tmp_path):
 
 HEADER = "ITEM: ATOMS id xs yu z diameter mass"
 #: Files that cannot be read, with what is said of each.
+MARK = "# granular-response: 2 disks, width 9.0, sides walls\n"
 MISTAKES = [
     # rows that would be lost
     ("a.dump", DUMP + "3 0.6 0 3.0 2.0 1.0\n", "line 19: holds 3 of 2 atoms in its last frame"),
@@ -250,7 +251,7 @@ MISTAKES = [
     ("a.dump", DUMP.replace("ATOMS\n2", "ATOMS\n0_2"), "line 14: '0_2': must be the number of atoms"),
     ("a.dump", DUMP.replace("ATOMS\n2", "ATOMS\n2\n2"), "line 13: must be followed by one line, not 2"),
     ("a.dump", DUMP.replace("-1 1\n2 12", "-1 1\n2 12\n0 5"), "line 15: must be followed by three lines of bounds"),
-    ("a.dump", "a title\n" + DUMP, "is not a LAMMPS dump file of text, must begin with ITEM: TIMESTEP"),
+    ("a.dump", "\na title\n" + DUMP, "is not a LAMMPS dump file of text, must begin with ITEM: TIMESTEP"),
     ("a.dump", DUMP + "ITEM: CHARGES\n1\n", "line 22: ITEM: CHARGES: is no item of a dump of atoms"),
     ("a.data", DATA + "4 0 0 0 0 0 0\n", "section Velocities has 4 lines, must have 3, as the header atoms says"),
     ("a.data", DATA.replace("\nVelocities\n", ""), "as many atoms as it says (found 6)"),
@@ -312,12 +313,23 @@ MISTAKES = [
     # files that are not whole
     ("a.data", DATA.replace("3 atoms", "4 atoms"), "is not a whole LAMMPS data file"),
     ("a.data", "", "is not a whole LAMMPS data file"),
+    ("a.data", "none\n0 atoms\n0 9 xlo xhi\n", "has no atoms"),
+    ("a.data", DATA[:-1], "is cut: its last line has no end"),
+    ("a.data", DATA.replace("2.0 1.0 13.0", "2.0 13.0"), "line 17: has 9 values, must have id type diameter density x"),
+    ("a.data", DATA.replace("\n3 0 0 0", "\n3.0 0 0 0"),
+     "line 24: '3.0': a line of section Velocities must begin with a whole number"),
+    ("a.dump", "", "is not a LAMMPS dump file of text, must have ITEM: TIMESTEP"),
+    ("a.dump", DUMP[: DUMP.rindex("ITEM: BOX")], "the last frame lacks its number, box or atoms"),
+    ("a.dump", DUMP[:-1], "is cut: its last line has no end"),
     ("a.dump", DUMP[:-20], "holds 1 of 2 atoms in its last frame"),
     ("a.dump", LATE_BOX, "line 7: must be followed by three lines of bounds, and have flags of three axes or none"),
     ("a.dump", LATE_BOX + "0 10\n0\n-1 1\n", "line 9: has 1 values, must have lo hi"),
     ("a.txt", "", "has no spheres"),
     ("a.gsd", "not a gsd file", "is not a GSD file with particles"),
     ("a.csv", "x,z,radius\n", "has no disks, must have a header x,z,radius and a line for each disk"),
+    ("a.csv", MARK + "x,z,radius,mass\n1,1,1,1\n", "holds 1 of the 2 disks of its first line"),
+    ("a.csv", MARK + "x,z,radius,mass\n1,1,1,1\n3,1,1,1", "is cut: its last line has no end"),
+    ("a.txt", "#format x_y_r\n1 0 1\n", "line 1: format must have x, y, z and r"),
     ("a.csv", "x,z,radius\n1,1,1\n3,1\n", "line 3: has 2 values, must have 3 as the header"),
     # columns that are missing, unknown or a key's
     ("a.csv", "x,z\n1,1\n", "column radius is missing, header must name x, z and radius; there are x, z; packing.col"),
