@@ -6,7 +6,6 @@ import multiprocessing
 import os
 import random
 import signal
-import subprocess
 import sys
 import time
 import zipfile
@@ -14,7 +13,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from commands import PAPER, package_of
+from commands import PAPER, package_of, python
 from places import ROOT
 
 from granular_response.cli import main as cli
@@ -113,10 +112,7 @@ def test_a_run_that_is_told_to_end_leaves_the_old_result(tmp_path, processes, nu
 )
 def test_the_wheel_holds_every_module_of_its_package(tmp_path, project, package):
     pytest.importorskip("hatchling")
-    subprocess.run(
-        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)],
-        cwd=project, check=True, capture_output=True,
-    )  # fmt: skip
+    python("-m", "hatchling", "build", "-t", "wheel", "-d", tmp_path, folder=project)
     (wheel,) = tmp_path.glob("*.whl")
     names = set(zipfile.ZipFile(wheel).namelist())
     source = (ROOT / package).parent

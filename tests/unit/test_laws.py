@@ -3,12 +3,12 @@
 import math
 import os
 import pickle
-import subprocess
 import sys
 
 import numba as nb
 import numpy as np
 import pytest
+from commands import process
 from demonstration import Cohesion, Cohesive, Cubic
 from places import ROOT
 from pydantic import Field
@@ -263,9 +263,7 @@ def test_a_law_of_ones_own_on_the_command_line(tmp_path):
     (tmp_path / "scene.yaml").write_text(SCENE)
 
     def said(*arguments):
-        line = [sys.executable, "-m", "granular_response", *arguments]
-        paths = {**os.environ, "PYTHONPATH": PATHS}
-        done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, env=paths)
+        done = process(*arguments, folder=tmp_path, env={**os.environ, "PYTHONPATH": PATHS})
         return done.returncode, done.stderr
 
     code, line = said("run", "scene.yaml", "-o", "a.nc")
