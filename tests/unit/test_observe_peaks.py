@@ -175,5 +175,6 @@ test_bad_samples_are_refused = refusals(
     (lambda: find_peaks([0.0, 1.0, 1.0], [1.0, 2.0, 1.0]), "increasing"),
     (lambda: find_peaks([0.0, 1.0, 2.0], [1.0, np.nan, 1.0]), "finite"),
     (lambda: find_peaks([0.0, 1.0, 2.0], [1.0, 2.0]), "shape"),
+    (lambda: find_peaks(X, np.ones(X.size), relative_prominence=0.0), r"relative_prominence = 0\.0"),
     (lambda: asymmetry(X, -np.ones(X.size)), "positive"),
 )

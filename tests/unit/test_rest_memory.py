@@ -72,7 +72,6 @@ CHANGES = [
     ({"contact.friction": 0.5}, True),
     ({"wall.friction": 0.1}, True),
     ({"contact.rolling_friction": 0.1, "contact.rolling_stiffness_ratio": 0.5}, True),
-    ({"wall.friction": 0.1, "wall.rolling_friction": 0.1, "wall.rolling_stiffness_ratio": 0.5}, True),
     ({"preparation.gravity": "slow"}, True),
     ({"packing.disks_per_row": 8}, True),
     ({"protocol.friction_law": "literal"}, True),
@@ -84,6 +83,8 @@ CHANGES = [
     ({"protocol.ramp_time": 50.0}, False),
     ({"protocol.method": "path"}, False),
 ]
+ROLLING = SCENE.updated({"wall.friction": 0.1, "wall.rolling_friction": 0.1, "wall.rolling_stiffness_ratio": 0.5})
+DISORDERED = SCENE.updated({"packing.polydispersity": 0.1})
 FRICTIONLESS = SCENE.updated({"preparation.gravity": "frictionless"})
 
 
@@ -91,6 +92,8 @@ FRICTIONLESS = SCENE.updated({"preparation.gravity": "frictionless"})
     ("scene", "change", "other"),
     [
         *((SCENE, *row) for row in CHANGES),
+        (ROLLING, {"wall.rolling_friction": 0.2}, True),
+        (DISORDERED, {"protocol.static_finish": False}, True),
         *((FRICTIONLESS, {f"protocol.{key}": value}, True) for key, value in (
             ("static_finish", False), ("integrator", "verlet"), ("maximum_steps", 1000),
         )),

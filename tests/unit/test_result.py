@@ -72,19 +72,20 @@ def test_floor_response_of_each_load(solution):
     assert data.attrs["stable"] == "yes" and data.attrs["settled"] == "yes"
 
 
-def test_a_box_that_has_changed_since_is_noticed(tmp_path):
-    rows = "".join(f"{x},{z},1,1\n" for x, z in [(1, 1), (3, 1), (5, 1), (7, 1), (2, 2.75), (4, 2.75), (6, 2.75)])
+@pytest.mark.parametrize(("width", "last"), [(8.5, 1), (12.0, 2)], ids=["box", "mass"])
+def test_a_table_that_has_changed_since_is_noticed(tmp_path, width, last):
+    rows = "".join(f"{x},{z},1,1\n" for x, z in [(1, 1), (3, 1), (5, 1), (7, 1), (2, 2.75), (4, 2.75)])
 
-    def write(width):
+    def write(width, last=1):
         title = f"# granular-response: 7 disks, width {width}, sides walls\n"  # by which the box is known
-        (tmp_path / "disks.csv").write_text(f"{title}x,z,radius,mass\n{rows}")
+        (tmp_path / "disks.csv").write_text(f"{title}x,z,radius,mass\n{rows}6,2.75,1,{last}\n")
 
     write(12.0)
     packing, load = {"kind": "file", "path": "disks.csv"}, {"disk": 5, "force": [0.0, -1.0]}
     rough = {"contact": {"friction": 1.0}, "wall": {"friction": 1.0}}
     scene = Scene.from_dict({"packing": packing, "loads": [load], **rough}, folder=tmp_path)
     granular_response.solve(scene).save(tmp_path / "result.nc")
-    write(8.5)
+    write(width, last)
     with pytest.raises(ResultError, match="table of disks has changed"):
         granular_response.open_result(tmp_path / "result.nc", folder=tmp_path).continued([2.0])
 

@@ -96,6 +96,7 @@ test_bad_input_is_named = refusals(
     (lambda: Moduli(1.0, 1.0, 1.0, 1.0), r"modulus c = 1\.0"),
     (lambda: Moduli.isotropic(1.0), r"poisson_ratio = 1\.0"),
     (lambda: Springs(-1.0, 1.0), r"k1n = -1\.0"),
+    (lambda: Springs(1.0, 0.0), r"k2n = 0\.0: must be positive"),
     (lambda: lattice.moduli(Springs(0.0, 1.0)), r"modulus c"),
     (lambda: lattice.moduli(Springs(1.0, 1.0), "some"), r"rotations = 'some'"),
 )

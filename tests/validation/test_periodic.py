@@ -105,6 +105,7 @@ def test_forces_across_a_line_and_their_stress_are_those_of_one_period():
         area = coarse_grained_stress(forces, grid_points(x, np.array([4.0])), smooth)
         again = coarse_grained_stress(forces, grid_points(x - 3 * width, np.array([4.0])), smooth)
         np.testing.assert_allclose(area, again, atol=1e-10)
+        assert area == pytest.approx(np.roll(area, 20, axis=1), abs=1e-6)  # of a lattice: by one disk
 
 
 def test_what_is_measured_of_contacts_does_not_depend_on_where_the_side_is():
