@@ -152,7 +152,11 @@ test_bad_input_is_named = refusals(
     ValueError,
     (lambda: Slab(0.0, ISOTROPIC), r"height = 0\.0"),
     (lambda: Slab(1.0, ISOTROPIC, width=-2.0), r"width = -2\.0"),
-    (lambda: Slab(1.0, ISOTROPIC).stress(0.0, 1.5), r"z = 1\.5"),
+    (lambda: Slab(1.0, ISOTROPIC, width=2.0, load_position=1.5), r"load_position = 1\.5"),
+    (lambda: Slab(1.0, ISOTROPIC).transform(0.0, 1.5), r"z = 1\.5: must be between 0"),
+    (lambda: Slab(1.0, ISOTROPIC, width=2.0).stress(1.5, 0.0), "x: must be between the walls"),
+    (lambda: Slab(1.0, ISOTROPIC).transform(-1.0), "wave_number: must be"),
+    (lambda: response_of_layers([0.0], layers=0, moduli=ISOTROPIC), "layers = 0"),
     (lambda: Slab(1.0, ISOTROPIC).floor_force([1.0, 0.0]), r"edges"),
     (lambda: crossover.stiffness_ratio("disk"), "body = 'disk'"),
 )
