@@ -9,10 +9,12 @@ from __future__ import annotations
 import importlib
 import multiprocessing
 import os
+import resource
 import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from multiprocessing import forkserver
 from pathlib import Path
 
 LIBRARY, PAPER = "granular_response", "granular_response_paper"
@@ -27,6 +29,30 @@ loads: [{disk: top-centre, force: [0.0, -1.0]}]
 """
 #: Of a command, in seconds.
 LONGEST = 120.0
+#: What worker processes and commands of tests import, with what the test modules do whose functions they run.
+IMPORTED = [
+    "granular_response.api.sweep",
+    "granular_response.cli.main",
+    "granular_response.plot.pictures",
+    "granular_response.store.export",
+    "granular_response.store.result",
+    "granular_response.store.summary",
+    "granular_response_paper.archive.crate",
+    "granular_response_paper.claims.table",
+    "granular_response_paper.cli",
+    "granular_response_paper.pipeline.drawing",
+    "granular_response_paper.pipeline.simulation",
+    "granular_response_paper.report",
+    "hypothesis",
+    "pytest",
+    "xarray",
+]
+
+
+def preload() -> None:
+    """From here on processes are forked from one that has imported this much, which each would else import itself."""
+    multiprocessing.get_context("forkserver").set_forkserver_preload(IMPORTED)
+    forkserver.ensure_running()
 
 
 def package_of(*arguments: object) -> str:
@@ -42,20 +68,36 @@ def process(
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
 
 
+def python(*arguments: object, folder: str | Path | None = None, **environment: str) -> str:
+    """What ``python ARGUMENTS`` prints in a new process with these variables too. It must end well, and in time."""
+    command, variables = [sys.executable, *map(str, arguments)], {**os.environ, **environment}
+    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=variables, timeout=3.0 * LONGEST)
+    assert run.returncode == 0, run.stderr
+    return run.stdout
+
+
 def call(
-    *arguments: object, folder: str | Path | None = None, package: str | None = None
+    *arguments: object,
+    folder: str | Path | None = None,
+    package: str | None = None,
+    start: str = "forkserver",
+    memory: int | None = None,
 ) -> subprocess.CompletedProcess[str]:
-    """The same in a process forked from one that has imported everything (``conftest.py``)."""
+    """The same in a process forked from one that has imported everything, or (``start="fork"``) from this one.
+
+    It gets ``memory`` bytes more than it has at most.
+    """
     argv = [package or package_of(*arguments), *map(str, arguments)]
     with tempfile.TemporaryDirectory() as place:
         streams = [Path(place, name) for name in ("out", "err")]
-        asked = (argv, str(folder or Path.cwd()), dict(os.environ), *map(str, streams))
-        child = multiprocessing.get_context("forkserver").Process(target=_run, args=asked)
+        asked = (argv, str(folder or Path.cwd()), dict(os.environ), *map(str, streams), memory)
+        child = multiprocessing.get_context(start).Process(target=_run, args=asked)
         child.start()
         child.join(LONGEST)
         if child.is_alive():
             child.kill()
-        return subprocess.CompletedProcess(argv, child.exitcode, *(one.read_text(encoding="utf-8") for one in streams))
+        said = (one.read_text(encoding="utf-8", errors="replace") for one in streams)
+        return subprocess.CompletedProcess(argv, child.exitcode, *said)
 
 
 def succeeded(*arguments: object, folder: str | Path | None = None) -> str:
@@ -73,13 +115,17 @@ def refused(*arguments: object, folder: str | Path | None = None) -> str:
     return done.stderr
 
 
-def _run(argv: Sequence[str], folder: str, environment: dict[str, str], out: str, err: str) -> None:
+def _run(argv: Sequence[str], folder: str, environment: dict[str, str], out: str, err: str, memory: int | None) -> None:
     """The command, in this process; its end is that of the process."""
     for descriptor, name in enumerate((os.devnull, out, err)):
         mode = os.O_RDONLY if descriptor == 0 else os.O_WRONLY | os.O_CREAT
         os.dup2(os.open(name, mode), descriptor)
+    sys.stdout, sys.stderr = (open(descriptor, "w", encoding="utf-8", closefd=False) for descriptor in (1, 2))  # noqa: SIM115
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(environment)
+    if memory is not None:
+        used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (used + memory,) * 2)
     sys.argv = list(argv)
     importlib.import_module({LIBRARY: f"{LIBRARY}.cli.main", PAPER: f"{PAPER}.cli"}[argv[0]]).main()

@@ -26,15 +26,9 @@ class Cubic(NamedTuple):
     factor: float
 
     @classmethod
-    def of(
-        cls, normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force,
-        reduced_radius,
-    ):  # fmt: skip
-        # stiffness 3 c xi^2 where c xi^3 = 1
-        return cls(
-            normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force,
-            (normal_stiffness / 3.0) ** 3,
-        )  # fmt: skip
+    def of(cls, normal_stiffness, *constants):
+        # stiffness 3 c xi^2 where c xi^3 = 1; the last constant is the reduced radius
+        return cls(normal_stiffness, *constants[:-1], (normal_stiffness / 3.0) ** 3)
 
     def elastic_force(self, overlap, shape):
         return self.factor * overlap * overlap * overlap
@@ -80,14 +74,9 @@ class Cohesive(NamedTuple):
     only_motion = "a contact that pulls lets go at once, which statics does not follow"
 
     @classmethod
-    def of(
-        cls, normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force,
-        reduced_radius, strength,
-    ):  # fmt: skip
-        return cls(
-            normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction,
-            least_force - strength, strength,
-        )  # fmt: skip
+    def of(cls, *constants, strength):
+        *constants, least_force, _ = constants
+        return cls(*constants, least_force - strength, strength)
 
     def elastic_force(self, overlap, shape):
         return self.normal_stiffness * overlap - self.strength

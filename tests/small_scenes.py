@@ -18,13 +18,18 @@ def scene(layers=4, disks_per_row=7, **changes) -> Scene:
     return base.updated({key.replace("__", "."): value for key, value in changes.items()})
 
 
-def free_disks(position, radius=None, *, width=1000.0, velocity=None, spin=None, **changes) -> tuple[Problem, State]:
-    """Disks at given places far from side walls (unless ``width`` is small), with given motion."""
+def free_disks(
+    position, radius=None, *, width=1000.0, velocity=None, spin=None, described=None, **changes
+) -> tuple[Problem, State]:
+    """Disks at given places far from side walls (unless ``width`` is small), with given motion.
+
+    Laws, loads and protocol are those of ``described`` or of the small slab, with ``changes`` as in :func:`scene`.
+    """
     position = np.array(position, float)
     n = len(position)
     radius = np.ones(n) if radius is None else np.array(radius, float)
     packing = Packing(position, radius, np.full(n, -1, np.int32), width)
-    problem = Problem.from_scene(scene(**changes), packing)
+    problem = Problem.from_scene(scene(**changes) if described is None else described, packing)
     state = problem.bare_state()
     if velocity is not None:
         state = replace(state, velocity=np.array(velocity, float))

@@ -4,9 +4,6 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.observe.stress import contact_forces, line_forces
-from granular_response.state import FLOOR
-from granular_response.studies import LoadPath
 from granular_response_extensions.experiments import simulate
 from granular_response_extensions.experiments.parameters import Parameters
 
@@ -14,20 +11,6 @@ from granular_response_extensions.experiments.parameters import Parameters
 def test_lines_bear_the_load(datasets):
     packings = datasets["packings"]
     assert float(packings["imbalance"].max()) < 1e-7 and (packings["moved"] < 2.0).all()
-
-
-def test_a_line_with_side_walls_bears_load_and_weight():
-    """All forces of a loaded state, by hand: the line, the side walls above it, the weights and the load."""
-    asked = Parameters(**reduced.parameters("experiments"))
-    path = LoadPath.of(asked.scene_of(asked.cases[2], 0))
-    state, radius = path.at(3.0), path.problem.packing.radius
-    weight = radius**2 / np.mean(radius**2)
-    for height in (2.0, 5.0):
-        above = state.position[:, 1] > height
-        walls = (state.walls.second != FLOOR) & above[state.walls.first]
-        load = 3.0 * above[int(path.problem.load_disk[0])]
-        borne = line_forces(contact_forces(state), height)[1].sum() + state.wall_force()[walls, 1].sum()
-        assert borne == pytest.approx(weight[above].sum() + load, abs=1e-6)
 
 
 def test_statistics_of_known_profiles():

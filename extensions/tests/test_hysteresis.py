@@ -1,7 +1,6 @@
 """Loading and unloading a slab of 6 layers, through a file to the lines of the document."""
 
 import numpy as np
-import pytest
 import reduced
 from small_scenes import at_rest
 
@@ -49,16 +48,6 @@ def test_books_close_better_with_smaller_increments():
 
     coarse, fine = left_over(6), left_over(48)
     assert fine < 1e-4 and fine < 0.2 * coarse
-
-
-def test_sliding_stops_where_friction_is_high():
-    """A load too small to slide anything, on a slab pressed together: the same springs going and coming."""
-    scene = Parameters.model_validate(PARAMETERS).of(Parameters.model_validate(PARAMETERS).cases[ROUGH], 0)
-    scene = scene.updated({"contact.friction": 100.0})
-    problem, rest = at_rest(scene)
-    states = [rest, *loaded_states(problem, rest, [0.05, 0.1, 0.05, 0.0])[1]]
-    books = keep_books(problem, states)
-    assert books.slid == pytest.approx(0.0, abs=1e-12) and abs(books.work) < 1e-12
 
 
 def test_the_reversible_range_is_where_a_loop_begins_to_leave_something(datasets):

@@ -25,7 +25,6 @@ def test_every_slab_carries_every_force(datasets):
     total = response["floor_response"].sum("floor_disk").values
     np.testing.assert_allclose(total[:5][known[:5]], 1.0, atol=1e-8)
     assert (total[5] < 1.0 - 1e-4).all()  # rough side walls carry a part
-    assert float(np.nanmax(response["certificate_coulomb_excess"])) < 1e-9
 
 
 def test_an_event_is_between_the_forces_that_show_it(datasets):

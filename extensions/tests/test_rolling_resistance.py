@@ -8,15 +8,6 @@ from granular_response_extensions.rolling_resistance.simulate.balance import bal
 from granular_response_extensions.rolling_resistance.simulate.couples import decay
 
 
-def test_rolling_resistance_lowers_the_friction_that_holds_a_pile(datasets):
-    found = datasets["thresholds"].sel(layers=5)
-    assert ((found["high"] - found["low"]) <= 0.1).all() and (found["moved"] < 0.5).all()
-    assert (found["high"].sel(rolling_friction=0.1) < 0.5 * found["high"].sel(rolling_friction=0.0)).all()
-    assert (found["balance"] < found["high"]).all()  # no pile stands where no forces balance
-    weight = found["floor_force"].sum("floor_disk")
-    assert weight.values == pytest.approx(1 + 4 + 7 + 10 + 13, abs=1e-8)  # the floor bears the pile
-
-
 def test_balance_of_two_layers_in_closed_form():
     """One disk on four that touch in a row, without rolling resistance.
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene
 
-from granular_response.contact import LAWS
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.observe.floor import floor_force
 from granular_response.solvers.dynamics import Dynamics
@@ -81,22 +80,3 @@ def response(integrator: str, step: float):
 def test_response_does_not_depend_on_step_and_integrator(integrator, step):
     assert np.abs(response("beeman", 4e-4)).max() > 0.15
     assert response(integrator, step) == pytest.approx(response("beeman", 4e-4), abs=1e-4, rel=0)
-
-
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("wall", [False, True], ids=["pair", "floor"])
-@pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_an_undamped_collision_keeps_its_energy(integrator, wall, law):
-    """Head-on with a relative speed of 1, but for an error that falls with the time step."""
-    places, velocity = [[500.0, 50.0], [502.01, 50.0]], [(0.5, 0.0), (-0.5, 0.0)]
-    if wall:
-        places, velocity = [[500.0, 1.01]], [(0.0, -1.0)]
-    free = {"contact__damping_ratio": 0.0, "contact__friction": 0.0, "contact__law": law}
-    problem, state = free_disks(places, velocity=velocity, **free)
-    for step, error in ((4e-4, 2e-3), (1e-4, 2e-4)):
-        dynamics = Dynamics(problem, state, integrator, step)
-        dynamics.set_ramps(gravity=(0.0, 0.0, 0.0))
-        dynamics.advance(round(0.3 / step))
-        assert not dynamics.touching().any()
-        speed = dynamics.v[1] if wall else dynamics.v[1] - dynamics.v[0]
-        assert abs(speed**2 - 1.0) < error

@@ -6,30 +6,23 @@ still says is taken: never a traceback, a quiet change, or more time or memory t
 
 from __future__ import annotations
 
-import contextlib
 import importlib
-import json
-import os
-import pkgutil
-import resource
-import signal
 import struct
+import subprocess
 import sys
 import tempfile
 import time
-import traceback
 import warnings
 from collections import Counter
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
 import counts
 import numpy as np
 import xarray as xr
+from commands import IMPORTED, call
 
-import granular_response
-from granular_response.cli import main as cli
 from granular_response.scene import Scene, formats
 from granular_response.scene.formats.table import NO_MASSES
 from granular_response.solvers.solution import solve_scene
@@ -37,10 +30,8 @@ from granular_response.store import files as store
 from granular_response.store.export import export
 from granular_response.store.result import to_dataset
 
-#: Seconds of processor time and bytes of memory, beyond what the libraries take, of one command on one file.
+#: Seconds and bytes of memory, beyond what the libraries take, of one command on one file.
 MOST_SECONDS, MOST_MEMORY = 30, 2 * 2**30
-#: Commands that one process runs in turn, and the file of what it says on standard error.
-BATCH, STDERR = 50, "stderr"
 #: Outcomes that must not be.
 WRONG = ("traceback", "killed", "several lines", "quiet change", "too much memory")
 #: What stands in the place of a number or a word.
@@ -230,68 +221,17 @@ def quiet_change(file: File, content: bytes, folder: Path) -> str:
     return ""
 
 
-def run(arguments: list[str], folder: Path) -> tuple[int, str, float]:
-    """Exit code, standard error and seconds of a command in this process, one of :func:`worker`.
-
-    What takes too much time ends the process; what asks for too much memory gets none.
-    """
-    used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-    unlimited, hard = resource.getrlimit(resource.RLIMIT_AS)
-    resource.setrlimit(resource.RLIMIT_AS, (used + MOST_MEMORY, hard))
-    longest = int(time.process_time()) + MOST_SECONDS
-    resource.setrlimit(resource.RLIMIT_CPU, (longest, resource.getrlimit(resource.RLIMIT_CPU)[1]))
-    signal.alarm(4 * MOST_SECONDS)  # for what waits
-    os.ftruncate(2, 0)
-    sys.argv = ["granular-response", *arguments]
-    started, code = time.monotonic(), 0
-    try:
-        with contextlib.chdir(folder), warnings.catch_warnings():
-            cli.main()
-    except SystemExit as end:
-        code = end.code if isinstance(end.code, int) else int(end.code is not None)
-    except BaseException:
-        traceback.print_exc()
-        code = 1
-    sys.stderr.flush()
-    resource.setrlimit(resource.RLIMIT_AS, (unlimited, hard))
-    return code, (folder / STDERR).read_text(errors="replace"), time.monotonic() - started
-
-
-def worker(indices: range, seed: int, files: list[File], folder: Path) -> tuple[list[Trial], int]:
-    """Trials in a forked process, until one ends it; and how it ended, negative: by which signal."""
-    kept = folder / "trials"
-    child = os.fork()
-    if child == 0:
-        for stream, name in ((1, Path(os.devnull)), (2, folder / STDERR)):
-            os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND, 0o644), stream)
-        sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", closefd=False)  # noqa: SIM115
-        try:
-            with kept.open("w") as stream:
-                for index in indices:
-                    json.dump(astuple(attempt(np.random.default_rng([seed, index]), files, folder)), stream)
-                    print(file=stream, flush=True)
-            os._exit(0)
-        except BaseException:
-            traceback.print_exc()
-            os._exit(1)
-    _, status = os.waitpid(child, 0)
-    ended = os.waitstatus_to_exitcode(status)
-    if ended > 0:  # of the trials themselves
-        raise RuntimeError((folder / STDERR).read_text())
-    return [Trial(*json.loads(line)) for line in kept.read_text().splitlines()], ended
-
-
-def outcome(code: int, said: str) -> str:
+def outcome(ended: subprocess.CompletedProcess[str]) -> str:
     """What a command did, by how it ended."""
-    if code < 0:
+    if ended.returncode < 0:
         return "killed"
-    if "Traceback" in said:
+    if "Traceback" in ended.stderr:
         return "traceback"
-    if code == 2 and sum(NO_MASSES not in line for line in said.splitlines()) != 1:  # a remark may come before
-        return "several lines"
-    if "not enough memory" in said:
+    if ended.returncode == 2 and sum(NO_MASSES not in line for line in ended.stderr.splitlines()) != 1:
+        return "several lines"  # but for a remark that comes before
+    if "not enough memory" in ended.stderr:
         return "too much memory"
-    return {0: "taken", 1: "taken", 2: "refused"}.get(code, "killed")
+    return {0: "taken", 1: "taken", 2: "refused"}.get(ended.returncode, "killed")
 
 
 def attempt(g: np.random.Generator, files: list[File], folder: Path) -> Trial:
@@ -322,8 +262,10 @@ def attempt(g: np.random.Generator, files: list[File], folder: Path) -> Trial:
             scene = {"packing": {"kind": "file", "path": file.name, **file.given}, "loads": [], **SHORT}
             (folder / "of.yaml").write_text(Scene.from_dict(scene).to_yaml())
             arguments[1] = "of.yaml"
-    code, said, seconds = run(arguments, folder)
-    found = outcome(code, said)
+    started = time.monotonic()
+    ended = call(*arguments, folder=folder, start="fork", memory=MOST_MEMORY)
+    seconds, said = time.monotonic() - started, ended.stderr
+    found = outcome(ended) if seconds < MOST_SECONDS else "killed"
     if suffix == ".nc" and not done.startswith("sealed") and found == "taken" and path.read_bytes() != file.content:
         found = "quiet change"
     if suffix not in (".nc", ".yaml") and found == "taken" and (change := quiet_change(file, content, folder)):
@@ -333,20 +275,14 @@ def attempt(g: np.random.Generator, files: list[File], folder: Path) -> Trial:
 
 def attempts(count: int, seed: int, folder: Path, *, show: bool = False) -> list[Trial]:
     """That many trials, the same ones for the same seed; ``show`` prints those that are wrong as they come."""
-    for module in pkgutil.walk_packages(granular_response.__path__, "granular_response."):
-        if not module.name.endswith("__main__"):
-            importlib.import_module(module.name)  # once, and not in every process
-    files = originals(folder)
-    trials: list[Trial] = []
-    while len(trials) < count:
-        begin = len(trials)
-        made, ended = worker(range(begin, min(begin + BATCH, count)), seed, files, folder)
-        trials += made
-        if ended < 0:
-            trials.append(Trial("by signal: any", "killed", str(ended), 0.0))
-        for index, trial in enumerate(trials[begin:], start=begin):
-            if show and trial.outcome in WRONG:
-                print(f"{index}: {trial.what}: {trial.outcome}: {trial.said.strip().splitlines()[-1:]}", flush=True)
+    for module in IMPORTED:
+        importlib.import_module(module)  # once, and not in every process
+    files, trials = originals(folder), []
+    for index in range(count):
+        trial = attempt(np.random.default_rng([seed, index]), files, folder)
+        trials.append(trial)
+        if show and trial.outcome in WRONG:
+            print(f"{index}: {trial.what}: {trial.outcome}: {trial.said.strip().splitlines()[-1:]}", flush=True)
     return trials
 
 

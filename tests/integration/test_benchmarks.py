@@ -40,14 +40,6 @@ def test_what_skipping_forces_on_changes_no_result(script):
         assert np.array_equal(plain.position, forced.position)
 
 
-def test_factorisations_of_one_slab_agree(script):
-    linear = script("linear")
-    for friction in (0.2, 0.0):
-        rows = linear.measure(4, 17, friction, 1)
-        assert {"band, ours", "band, LAPACK", "fronts, ours", "SuperLU"} <= {row["method"] for row in rows}
-        assert all(row["relative_residual"] < 1e-10 for row in rows)
-
-
 @pytest.fixture
 def nothing_installed(script, monkeypatch):
     """No other code."""
@@ -80,40 +72,6 @@ def test_the_least_time_within_an_error_is_of_the_runs_within_it(script):
     ]
     (row,) = script("responses").reached(runs)
     assert (row["0.01"], row["0.001"], row["0.0001"], row["least_error"]) == (1.0, 3.0, None, 2e-4)
-
-
-def test_a_bounce_never_gains_energy_and_slides_as_the_closed_form_says(script):
-    bounce, bounces = script("bounce"), script("bounces")
-    after = bounce.our_bounce(bounce.DAMPING[0])
-    kept, slid = bounce.energy(after), bounce.sliding(after)
-    assert (kept < 1.0).all()
-    # from where no spring holds the rim: tan(angle) = friction (1 + e) (1 + 1 / inertia) = 3
-    steep = np.tan(np.radians(bounce.ANGLES)) > 3.0
-    assert steep.sum() >= 5
-    assert kept[steep] == pytest.approx(slid[steep], abs=bounces.SLID)
-    assert (np.abs(kept - slid)[bounce.ANGLES < 60.0] > 1e-2).all()
-    damped = bounce.our_bounce(bounce.DAMPING[1])
-    assert (bounce.energy(damped) < 1.0).all()
-    # a linear spring and dashpot along the normal, until their spring is at rest length
-    assert -damped.velocity[:, 1] / bounce.incoming()[:, 1] == pytest.approx(0.163, abs=1e-3)
-
-
-@pytest.mark.parametrize("friction", [0.2, 0.0])
-def test_kernels_say_what_they_do(script, monkeypatch, friction):
-    """What Beeman's formulas have for each unknown, and of each pair one root and one quotient."""
-    limits = script("limits")
-    monkeypatch.setattr(limits, "LAYERS", 4)
-    monkeypatch.setattr(limits, "PER_ROW", 9)
-    counts = limits.counted(friction)
-    unknowns = (3 if friction else 2) * 34
-    assert counts["integration"]["additions"] == 8 * unknowns
-    assert counts["integration"]["multiplications"] == 9 * unknowns
-    pairs = counts["pair forces"]
-    assert pairs["roots"] == pairs["divisions"] > 34
-    loop = limits.mix(pairs, pairs["roots"] // 8 * 8, 200, 100, 3)
-    loop(2)
-    assert limits.dense(2, 0, symmetric=False) == 3.0  # one quotient, one product, one difference
-    assert limits.dense(60, 0, symmetric=True) == pytest.approx(60**3 / 3, rel=0.03)
 
 
 def test_times_of_other_codes_come_from_their_log_and_their_stamps(script, tmp_path):

@@ -3,16 +3,17 @@
 import re
 from collections import Counter
 from dataclasses import replace
+from subprocess import CompletedProcess
 
 import broken_files
 import counts
+import numpy as np
 import pytest
 import unlike_scenes
 from places import ROOT
 from stress import random_scenes
 
 from granular_response.inputs import read_json
-from granular_response.sweeps.resources import using
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -24,23 +25,36 @@ def test_every_broken_file_is_refused_or_taken_for_what_it_says(tmp_path, seed):
     assert all(trial.said.startswith("granular-response: ") for trial in trials if trial.said)
 
 
-def test_a_command_that_ends_its_process_is_counted_and_the_others_go_on(tmp_path, monkeypatch):
-    whole = broken_files.attempt
+@pytest.mark.parametrize(
+    ("code", "said", "found"),
+    [
+        (0, "", "taken"),
+        (2, "granular-response: a.csv: is empty\n", "refused"),
+        (2, "one\ntwo\n", "several lines"),
+        (2, "granular-response: a.nc: not enough memory\n", "too much memory"),
+        (1, "Traceback (most recent call last):\n", "traceback"),
+        (-9, "", "killed"),
+        (3, "", "killed"),
+    ],
+)
+def test_how_a_command_ends_is_its_outcome(code, said, found):
+    assert broken_files.outcome(CompletedProcess([], code, "", said)) == found
 
-    def ends(generator, files, folder):
-        trial = whole(generator, files, folder)
-        if generator.random() < 0.3:
-            broken_files.os.kill(broken_files.os.getpid(), broken_files.signal.SIGKILL)
-        return trial
 
-    alone = broken_files.attempts(8, 3, tmp_path)
-    monkeypatch.setattr(broken_files, "attempt", ends)
-    trials = broken_files.attempts(8, 3, tmp_path)
-    killed = [trial.outcome == "killed" for trial in trials]
-    assert 0 < sum(killed) < 8
-    assert [t.what for t, k in zip(trials, killed, strict=True) if not k] == [
-        t.what for t, k in zip(alone, killed, strict=True) if not k
-    ]
+@pytest.mark.filterwarnings("ignore:overflow")
+def test_packings_that_are_changed_are_refused_or_account_for_the_change(tmp_path):
+    """Readers alone, which take so little time that thousands of changes are tried."""
+    packings = [file for file in broken_files.originals(tmp_path) if not file.name.endswith((".nc", ".yaml"))]
+    refused = Counter()
+    for index in range(1500):
+        file, g = packings[index % len(packings)], np.random.default_rng([7, index])
+        _, content = broken_files.changed(g, file.content, not file.name.endswith(".gsd"))
+        try:
+            assert broken_files.quiet_change(file, content, tmp_path) == "", (index, file.name)
+        except (broken_files.formats.FormatError, UnicodeDecodeError) as error:
+            assert "\n" not in str(error)
+            refused[file.name] += 1
+    assert refused.keys() == {file.name for file in packings} and min(refused.values()) > 25
 
 
 def test_what_a_reader_would_lose_is_a_quiet_change(tmp_path, monkeypatch):
@@ -88,31 +102,3 @@ def test_no_random_scene_was_solved_wrongly():
     resist = [sum(sum(one.values()) for one in rolls), sum(one["certified"] for one in rolls)]
     assert quoted("random_scenes.json")[:4] == [sum(found.values()), found["certified"], *resist]
     assert unlike_scenes.STEPS in quoted("random_scenes.json")
-
-
-def test_a_run_of_scenes_that_was_interrupted_goes_on_where_it_was(tmp_path, monkeypatch, capsys):
-    tried, seed, output = [], 20260101, tmp_path / "scenes.json"
-    whole = unlike_scenes.run
-
-    def run(maximum_steps, entropy, index, **more):
-        if len(tried) == 5:
-            raise KeyboardInterrupt
-        tried.append(index)
-        return whole(2_000, entropy, index, **more)
-
-    monkeypatch.setattr(unlike_scenes, "run", run)
-    with using(workers=1):
-        with pytest.raises(KeyboardInterrupt):
-            unlike_scenes.main(12, seed, output)
-        assert not output.exists()
-        monkeypatch.setattr(
-            unlike_scenes, "run", lambda _, *given, **more: tried.append(given[1]) or whole(2_000, *given, **more)
-        )
-        unlike_scenes.main(12, seed, output)
-        assert tried == list(range(12))
-        said = capsys.readouterr()
-        assert "scenes, 5 of 12 taken from the checkpoint: 5 of 12" in said.err and "scenes: 2 of 12" in said.err
-        unlike_scenes.main(12, seed, again := tmp_path / "again.json")
-    assert len(tried) == 24 and read_json(again) == read_json(output)
-    assert capsys.readouterr().out == said.out
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["again.json", "scenes.json"]

@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 from commands import refused, succeeded
 from small_scenes import scene
+from spoilt import spoil
 
 import granular_response as gr
 from granular_response.solvers.solution import solve_scene
@@ -118,12 +119,6 @@ def test_an_altered_result_is_shown_as_not_sealed(path, tmp_path):
     lines = {file: succeeded("show", file, folder=tmp_path).splitlines() for file in (path, "altered.nc")}
     assert [sum("not sealed" in line for line in shown) for shown in lines.values()] == [0, 1]
     refused("plot", "altered.nc", "-o", "a.png", folder=tmp_path)
-
-
-def spoil(data: xr.Dataset, name: str, value: float) -> xr.Dataset:
-    spoilt = data.copy(deep=True)
-    spoilt[name].values.flat[-1] = value
-    return spoilt
 
 
 DAMAGE = {

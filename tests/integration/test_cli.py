@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from claims_data import pile_study
-from commands import LIBRARY, PAPER, SCENE, call, process, refused, succeeded
+from commands import LIBRARY, PAPER, SCENE, call, process, python, refused, succeeded
 from places import DATA, ROOT
 
 from granular_response import __version__
@@ -293,9 +293,7 @@ def test_floating_point_choices_are_accepted_by_numpy_without_warning():
         "from numpy._core._multiarray_umath import __cpu_features__ as f;"
         "print(f.get('AVX512_SKX', False) and f.get('X86_V4', False))"
     )
-    run = subprocess.run([sys.executable, "-W", "error", "-c", script], capture_output=True, text=True)
-    assert run.returncode == 0, run.stderr
-    assert run.stdout.strip() == "False"
+    assert python("-W", "error", "-c", script) == "False\n"
 
 
 def test_what_the_user_sets_stays(monkeypatch):

@@ -26,10 +26,6 @@ def small(path: Path) -> Scene:
     return scene
 
 
-def solved(name: str, **changes):
-    return to_dataset(solve_scene(small(EXAMPLES / name).updated(changes)))
-
-
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
 def test_an_example_comes_to_a_certified_equilibrium(path):
     scene = Scene.from_yaml(path)

@@ -1,29 +1,18 @@
 """What an import loads, every form of an import statement, and the signatures of the public namespace."""
 
 import inspect
-import os
-import subprocess
-import sys
 from collections.abc import Mapping
 from operator import attrgetter
 from pathlib import Path
 from types import FunctionType, MethodType
 
 import pytest
+from commands import python
 from places import DATA
 
 import granular_response as gr
 
 HEAVY = {"numpy", "scipy", "numba", "xarray", "matplotlib", "pydantic", "yaml", "netCDF4"}
-
-
-def fresh(script: str, **environment: str) -> str:
-    """What a script prints in a new process."""
-    run = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, env={**os.environ, **environment}
-    )
-    assert run.returncode == 0, run.stderr
-    return run.stdout.strip()
 
 
 def test_importing_loads_nothing_heavy():
@@ -32,14 +21,15 @@ def test_importing_loads_nothing_heavy():
         "import sys, time; start = time.process_time(); import granular_response as gr; dir(gr);"
         f"spent = time.process_time() - start; print(spent, *sorted({HEAVY} & set(sys.modules)))"
     )
-    runs = [fresh(script).split() for _ in range(3)]
+    runs = [python("-c", script).split() for _ in range(3)]
     assert [run[1:] for run in runs] == [[]] * 3
     assert min(float(run[0]) for run in runs) < 0.15
 
 
 @pytest.mark.parametrize("module", ["granular_response.cli.main", "granular_response_paper.cli"])
 def test_a_command_line_loads_nothing_heavy(module):
-    assert fresh(f"import sys, {module}; print(sorted({HEAVY - {'pydantic'}} & set(sys.modules)))") == "[]"
+    script = f"import sys, {module}; print(sorted({HEAVY - {'pydantic'}} & set(sys.modules)))"
+    assert python("-c", script) == "[]\n"
 
 
 def parameters(function) -> str:
@@ -83,5 +73,5 @@ def test_a_law_from_elsewhere_does_not_trouble_other_processes(tmp_path):
     tests = str(Path(__file__).parents[1])
     with_it = f"import sys; sys.path.append({tests!r}); import demonstration; demonstration.problem(0.0).bare_state()"
     for script in (with_it, plain):
-        fresh(script, NUMBA_CACHE_DIR=str(tmp_path))
+        python("-c", script, NUMBA_CACHE_DIR=str(tmp_path))
     assert list(tmp_path.rglob("*.nbi"))

@@ -11,6 +11,7 @@ import llvmlite.binding as llvm
 import numba as nb
 import numpy as np
 import pytest
+from commands import python
 
 from granular_response.machine import machine_code
 
@@ -27,10 +28,7 @@ print(frictionless_pair(1.99, 0.0, 0.0, 0.0, 2.0, None, Linear(1000.0, 0.0, 0.0,
 
 
 def force(folder: Path, cache: Path) -> float:
-    environment = {**os.environ, "PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(cache)}
-    run = subprocess.run([sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True)
-    assert run.returncode == 0, run.stderr
-    return float(run.stdout)
+    return float(python("-c", SCRIPT, PYTHONPATH=str(folder), NUMBA_CACHE_DIR=str(cache)))
 
 
 def test_an_edit_of_one_file_reaches_the_kernels_of_another(tmp_path):
@@ -136,14 +134,9 @@ def test_sums_are_the_same_compiled_for_processors_with_wide_and_with_narrow_reg
     kinds = [kind for kind, needs in PROCESSORS.items() if all(features.get(one) for one in needs)]
     if len(kinds) < 2:
         pytest.skip("this processor runs no code for another one")
-    found = {}
-    for kind in kinds:
-        environment = {**os.environ, "NUMBA_CPU_NAME": kind, "NUMBA_CACHE_DIR": str(tmp_path)}
-        run = subprocess.run([sys.executable, "-c", SUMS], env=environment, capture_output=True, text=True)
-        assert run.returncode == 0, run.stderr
-        found[kind] = run.stdout
-    assert len(set(found.values())) == 1
-    values = np.array([float.fromhex(one) for one in found[kinds[0]].split()])
+    first, *others = (python("-c", SUMS, NUMBA_CPU_NAME=kind, NUMBA_CACHE_DIR=str(tmp_path)) for kind in kinds)
+    assert set(others) == {first}
+    values = np.array([float.fromhex(one) for one in first.split()])
     exact = []
     for b in range(8, 129, 8):
         n = 2 * b + 3

@@ -1,13 +1,10 @@
 """The same numbers from other processes: with compilation off, and to the last bit with it on."""
 
 import json
-import os
-import subprocess
-import sys
 from functools import cache
 
 import pytest
-from places import ROOT
+from commands import python
 
 #: Five disks: dynamics with two integrators, static finish, load path, minimisation.
 SCRIPT = """
@@ -43,15 +40,7 @@ print(json.dumps([float(v).hex() for v in np.concatenate(result)]))
 def numbers(steps: int, *, full: bool, attempt: int = 0, **environment: str) -> list[float]:
     """What the script prints in a process of its own."""
     script = SCRIPT.replace("STEPS", str(steps)).replace("FULL", str(full))
-    run = subprocess.run(
-        [sys.executable, "-c", script],
-        capture_output=True,
-        text=True,
-        check=False,
-        env={**os.environ, "PYTHONPATH": str(ROOT / "src"), **environment},
-    )
-    assert run.returncode == 0, run.stderr
-    return [float.fromhex(text) for text in json.loads(run.stdout)]
+    return [float.fromhex(text) for text in json.loads(python("-c", script, **environment))]
 
 
 def test_compilation_changes_nothing():

@@ -1,4 +1,4 @@
-"""Kills, and the wheel."""
+"""Kills, where only the order of writes keeps files whole, and the wheel."""
 
 import contextlib
 import io
@@ -6,7 +6,6 @@ import multiprocessing
 import os
 import random
 import signal
-import subprocess
 import sys
 import time
 import zipfile
@@ -14,7 +13,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from commands import PAPER, package_of
+from commands import PAPER, package_of, python
 from places import ROOT
 
 from granular_response.cli import main as cli
@@ -27,9 +26,6 @@ SCENE = {
     "contact": {"friction": 0.3},
     "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}],
 }
-
-
-# Kills. A process that is killed at once cannot tidy up: only the order of its writes keeps files whole.
 
 
 def command(folder: str, arguments: list[str]) -> None:
@@ -105,20 +101,6 @@ def test_a_run_that_is_told_to_end_leaves_the_old_result(tmp_path, processes, nu
     assert (tmp_path / "result.nc").read_bytes() == b"old"
 
 
-def test_killed_studies_leave_whole_datasets_or_none(tmp_path, processes):
-    parameters = yaml.safe_load((ROOT / "params.yaml").read_text())
-    parameters["theory"].update(points=11, half_width=1.0, depths=[10.0])
-    (tmp_path / "params.yaml").write_text(yaml.safe_dump(parameters))
-    arguments = ["simulate", "theory", "--workers", "1"]
-    killed_at_random(processes, tmp_path, arguments, tmp_path / "data" / "theory.nc", max(KILLS // 4, 2))
-
-
-# Damaged and foreign files
-
-
-# The wheel
-
-
 @pytest.mark.parametrize(
     ("project", "package"),
     [
@@ -130,10 +112,7 @@ def test_killed_studies_leave_whole_datasets_or_none(tmp_path, processes):
 )
 def test_the_wheel_holds_every_module_of_its_package(tmp_path, project, package):
     pytest.importorskip("hatchling")
-    subprocess.run(
-        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)],
-        cwd=project, check=True, capture_output=True,
-    )  # fmt: skip
+    python("-m", "hatchling", "build", "-t", "wheel", "-d", tmp_path, folder=project)
     (wheel,) = tmp_path.glob("*.whl")
     names = set(zipfile.ZipFile(wheel).namelist())
     source = (ROOT / package).parent

@@ -3,8 +3,6 @@
 import contextlib
 import os
 import resource
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -14,6 +12,7 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
+from commands import python
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
@@ -83,7 +82,7 @@ def test_bytes_depend_on_the_data_alone(path, tmp_path):
     )
     other = tmp_path / "other.nc"
     time.sleep(1.1)  # HDF5 counts time in whole seconds
-    subprocess.run([sys.executable, "-c", script, Path(__file__).parent, other], check=True)
+    python("-c", script, Path(__file__).parent, other)
     assert other.read_bytes() == path.read_bytes()
     store.write(other, {"a": dataset(1), "b": dataset(3)})
     assert other.read_bytes() != path.read_bytes()
@@ -242,9 +241,7 @@ print(seen == done, interrupted, sorted(entry.name for entry in path.parent.iter
 
 
 def test_killed_at_random_moments(path):
-    command = [sys.executable, "-c", KILL_LOOP, Path(__file__).parent, path, str(KILLS)]
-    output = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60 + KILLS).stdout
-    seen, interrupted, names = output.split(maxsplit=2)
+    seen, interrupted, names = python("-c", KILL_LOOP, Path(__file__).parent, path, KILLS).split(maxsplit=2)
     assert seen == "True"
     assert int(interrupted) > 0, "no kill fell into a write: the test proves nothing"
     assert names.strip() == "['result.nc']"

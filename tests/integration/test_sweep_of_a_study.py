@@ -1,13 +1,8 @@
-"""A study gives the same file wherever its sweeps run, and goes on where it was stopped.
-
-Everything through the command line's own path, on a reduced ensemble, with a real Dask cluster on this machine.
-"""
+"""A study gives the same file wherever its sweeps run: by its command, with a real Dask cluster on this machine."""
 
 import contextlib
 import io
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -41,7 +36,6 @@ SECTIONS = {
         "tolerance": 0.05,
     },
 }
-TASKS = 4 + 4 + 4 * 2  # rest states, single loads, pairs of loads
 
 
 @pytest.fixture
@@ -88,33 +82,3 @@ def test_a_named_cluster_writes_the_same_bytes(folder, expected, cluster, only_d
     if not named:
         monkeypatch.setenv(tasks.SCHEDULER_VARIABLE, cluster.scheduler_address)
     assert command(monkeypatch, *named) == expected
-
-
-def test_a_killed_run_continues_from_its_checkpoint(folder, expected) -> None:
-    """SIGKILL, as from a batch system out of patience: what is finished is on disk."""
-    kept = folder / ".here.checkpoint"
-    arguments = ["simulate", GROUP, "-o", "here.nc", "--workers", "1"]
-    (folder / ".rest_states").write_text("no folder, so that every rest state takes its time")
-    run = subprocess.Popen(
-        [sys.executable, "-m", "granular_response_paper", *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
-    )
-    deadline = time.monotonic() + 60
-    while len(list(kept.rglob("*.kept"))) < 6 and run.poll() is None:
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
-    run.kill()
-    said = run.communicate()[1].decode().splitlines()
-    assert len(said) == 1 and ".rest_states: nothing more is kept there" in said[0]
-    finished = len(list(kept.rglob("*.kept")))
-    assert 6 <= finished < TASKS
-    assert not (folder / "here.nc").exists()
-
-    (folder / ".rest_states").unlink()
-    calls = []
-    path = simulation.simulate(
-        GROUP, folder / "here.nc", workers=1, progress=lambda done, total, what="": calls.append((what, done))
-    )
-    assert path.read_bytes() == expected
-    assert not kept.exists()
-    at_start = dict(reversed(calls))  # the first call for each kind of task
-    assert sum(at_start.values()) == finished  # none of them ran again

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import python
 
 from granular_response.scene import Contact, Scene, Wall
 from granular_response.sweeps import executor, keys, processes
@@ -58,12 +59,6 @@ def starts(folder, item):
 ITEMS = [(seed, 50 + seed) for seed in range(7)]
 
 
-def assert_same(one, other):
-    assert len(one) == len(other)
-    for a, b in zip(one, other, strict=True):
-        assert a.tobytes() == b.tobytes()
-
-
 def resources(place, request):
     """Where tasks run, as keyword arguments of ``map_tasks``."""
     if place != "cluster":
@@ -82,7 +77,8 @@ def elsewhere(request):
 
 
 def test_results_are_the_same_everywhere(everywhere):
-    assert_same(map_tasks(response, iter(ITEMS), **everywhere), [response(item) for item in ITEMS])
+    found = map_tasks(response, iter(ITEMS), **everywhere)
+    assert [one.tobytes() for one in found] == [response(item).tobytes() for item in ITEMS]
 
 
 @pytest.mark.parametrize("workers", [1, 2])
@@ -178,15 +174,13 @@ print([one.value for one in found])
 
 def test_a_function_of_a_notebook_runs_in_processes():
     """A program that no worker can import, as a cell of a notebook is none."""
-    run = subprocess.run([sys.executable, "-c", NOTEBOOK], capture_output=True, text=True, check=True)
-    assert run.stdout == "[1, 2, 3, 4]\n"
+    assert python("-c", NOTEBOOK) == "[1, 2, 3, 4]\n"
 
 
 def test_a_script_without_its_guard_is_told_what_is_missing(tmp_path):
     (tmp_path / "script.py").write_text(NOTEBOOK)
-    run = subprocess.run([sys.executable, tmp_path / "script.py"], capture_output=True, text=True)
-    assert run.returncode == 1
-    assert "SweepError: worker processes end before they begin: a script has its calls under" in run.stderr
+    with pytest.raises(AssertionError, match="SweepError: worker processes end before they begin: a script has its"):
+        python(tmp_path / "script.py")
 
 
 @pytest.mark.parametrize("workers", [0, -1, 1.5, "2"])
@@ -352,11 +346,6 @@ def test_another_function_or_item_finds_nothing(tmp_path):
 
 class TestDask:
     """A real cluster."""
-
-    def test_the_environment_names_the_scheduler(self, cluster, tmp_path, monkeypatch):
-        monkeypatch.setenv("DASK_SCHEDULER_ADDRESS", cluster.scheduler_address)
-        map_tasks(functools.partial(note, folder=tmp_path), range(3), workers=1)
-        assert str(os.getpid()) not in {pid for item in range(3) for pid in starts(tmp_path, item)}
 
     def test_a_killed_worker_loses_only_what_was_in_flight(self, cluster, tmp_path):
         marks = tmp_path / "marks"

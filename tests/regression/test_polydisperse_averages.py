@@ -2,10 +2,7 @@
 
 import numpy as np
 import reduced
-import xarray as xr
 
-from granular_response.store import files as store
-from granular_response.sweeps.resources import using
 from granular_response_paper import ensembles
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED, realizations
 from granular_response_paper.groups.polydisperse_averages import simulate as study
@@ -41,16 +38,6 @@ def test_states_are_certified_and_balance_the_load(datasets) -> None:
     smooth = data["friction"].values == 0.0
     response = np.nansum(data["floor_response"].values, axis=-1)[smooth]
     np.testing.assert_allclose(response[at_rest[smooth]], 1.0, atol=1e-6)
-
-
-def test_two_workers_give_the_same_bits(datasets, tmp_path) -> None:
-    path = tmp_path / "again.nc"
-    with using(workers=2):
-        store.write(path, study.simulate(study.Parameters(**PARAMETERS)), {"group": "polydisperse_averages"})
-    again = store.read(path)
-    assert again.keys() == datasets.keys()
-    for name, dataset in datasets.items():
-        xr.testing.assert_identical(dataset, again[name])
 
 
 def test_collapse_and_failure_are_reported() -> None:

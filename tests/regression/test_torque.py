@@ -2,18 +2,6 @@
 
 import numpy as np
 
-CHANGES = ("force_change", "stress_change", "antisymmetric_change")
-
-
-def test_changes_grow_with_the_torque_and_fall_with_the_distance(datasets) -> None:
-    reach = datasets["reach"]
-    for name in CHANGES:
-        change = reach[name].values
-        assert np.all(change[0] == 0.0)
-        assert np.all(np.diff(change, axis=0) > 0.0)
-        assert np.all(change[1:, 0] > change[1:, 1])
-    assert np.all(reach["antisymmetric_change"][1:, 1] < 0.2 * reach["antisymmetric_change"][1:, 0])
-
 
 def test_loads_are_balanced(datasets) -> None:
     """The contacts of the loaded disk take up the applied force and the clockwise torque."""

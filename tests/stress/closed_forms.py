@@ -8,30 +8,20 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from small_scenes import free_disks
 
 from granular_response.kernels.statics import elastic_energy
-from granular_response.scene import Packing, Scene
+from granular_response.scene import Scene
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.timestep import stability_limit
-from granular_response.state import FloatArray, State
+from granular_response.state import FloatArray
 from granular_response_paper.groups.stability.simulate import time_steps
-from granular_response_paper.records import column, record
 
-#: Distance of the side walls from what happens.
+#: Where it happens, far from side walls.
 FAR = 500.0
 #: No collision takes longer, its short flight included; time steps between two looks at whether it is over.
 LONGEST_COLLISION, LOOK_EVERY = 4.0, 20
-
-
-def free_disks(scene: Scene, position: FloatArray, velocity: FloatArray, spin: FloatArray) -> tuple[Problem, State]:
-    """Equal disks at given places, far from side walls, with a given motion."""
-    position = np.asarray(position, float) + np.array([FAR, 0.0])
-    n = len(position)
-    packing = Packing(position, np.ones(n), np.full(n, -1, np.int32), 2.0 * FAR)
-    problem = Problem.from_scene(scene, packing)
-    state = problem.bare_state()
-    return problem, replace(state, velocity=np.array(velocity, float), angular_velocity=np.array(spin, float))
 
 
 def mechanical_energy(dynamics: Dynamics, gravity: float = 1.0) -> float:
@@ -54,10 +44,10 @@ def collision(scene: Scene, angle: float, spin: float, step: float, *, pair: boo
     gap = min(0.01, 0.1 * np.sin(a) ** 2)  # a grazing disk starts so near that it touches before it has passed
     flight = (np.cos(a), -np.sin(a))
     if pair:
-        position, velocity, spins = [(0.0, 4.0 + gap), (0.0, 2.0)], [flight, (0.0, 0.0)], [spin, 0.0]
+        position, velocity, spins = [(FAR, 4.0 + gap), (FAR, 2.0)], [flight, (0.0, 0.0)], [spin, 0.0]
     else:
-        position, velocity, spins = [(0.0, 1.0 + gap)], [flight], [spin]
-    problem, state = free_disks(scene, np.array(position), np.array(velocity), np.array(spins))
+        position, velocity, spins = [(FAR, 1.0 + gap)], [flight], [spin]
+    problem, state = free_disks(position, velocity=velocity, spin=spins, described=scene)
     dynamics = Dynamics(problem, state, scene.protocol.integrator, step)
     dynamics.set_ramps(gravity=(0.0, 0.0, 0.0))
     before = dynamics.kinetic_energy()
@@ -73,7 +63,7 @@ def collision(scene: Scene, angle: float, spin: float, step: float, *, pair: boo
 
 def sliding_to_rolling(scene: Scene, speed: float, spin: float, step: float, time: float) -> tuple[FloatArray, ...]:
     """Time, velocity and rim speed of a disk set on the floor with ``speed`` and ``spin``, with gravity."""
-    problem, state = free_disks(scene, np.array([(0.0, 1.0)]), np.array([(speed, 0.0)]), np.array([spin]))
+    problem, state = free_disks([(FAR, 1.0)], velocity=[(speed, 0.0)], spin=[spin], described=scene)
     down = state.position - [[0.0, 1.0 / problem.wall_law.normal_stiffness]]
     dynamics = Dynamics(problem, replace(state, position=down), scene.protocol.integrator, step)
     dynamics.set_ramps()
@@ -96,48 +86,25 @@ def rolling_speed(time: FloatArray, friction: float, speed: float, spin: float) 
     return speed - np.sign(slip) * friction * slid, rim + 2.0 * np.sign(slip) * friction * slid
 
 
-def kinetic_energy(state: State, problem: Problem) -> float:
-    """Of all disks together."""
-    turning = float(problem.packing.inertia @ state.angular_velocity**2)
-    return 0.5 * (float(problem.weight @ (state.velocity**2).sum(axis=1)) + turning)
+def drift(scene: Scene, system: str, integrator: str, part: float, time: float, kick: float, seed: int) -> FloatArray:
+    """Change (101,) of the total energy of an undamped system, per energy that it moves with.
 
-
-def energy_change(
-    problem: Problem, state: State, integrator: str, step: float, time: float
-) -> tuple[FloatArray, FloatArray]:
-    """101 times from 0 to about ``time``, and the total energy then minus the first one."""
-    dynamics = Dynamics(problem, state, integrator, step)
-    dynamics.set_ramps()
-    times, energy = [0.0], [mechanical_energy(dynamics)]
-    for _ in range(100):
-        dynamics.advance(max(1, round(0.01 * time / step)))
-        times.append(dynamics.time)
-        energy.append(mechanical_energy(dynamics))
-    return np.array(times), np.array(energy) - energy[0]
-
-
-@record
-class Drifted:
-    time: FloatArray = column("time in sqrt(radius/g)", "reading")
-    energy_change: FloatArray = column(
-        "change of the total energy of an undamped system, per energy that it moves with", "reading"
-    )
-
-
-def drift(scene: Scene, system: str, integrator: str, part: float, time: float, kick: float, seed: int) -> Drifted:
-    """An undamped system in motion: a disk that bounces on the floor, or a slab at rest that is kicked.
-
+    The system is a disk that bounces on the floor, or a slab at rest that is kicked.
     The kick is strong enough for contacts to open and slide. Springs are ahead of positions by half a time step, so
     in a feeble motion about large forces the total energy cannot be read off.
     """
     undamped = scene.updated({"contact.damping_ratio": 0.0, "wall.damping_ratio": 0.0})
     if system == "bouncing disk":
-        problem, state = free_disks(undamped, np.array([(0.0, 1.5)]), np.zeros((1, 2)), np.zeros(1))
-        energy = 0.5
+        problem, state = free_disks([(FAR, 1.5)], described=undamped)
     else:
         problem, state, _ = time_steps.prepared(Problem.from_scene(undamped))
         state = time_steps.kick(problem, state, seed, kick)
-        energy = kinetic_energy(state, problem)
     step = part * stability_limit(problem, "verlet")
-    times, change = energy_change(problem, state, integrator, step, time)
-    return Drifted(times, change / energy)
+    dynamics = Dynamics(problem, state, integrator, step)
+    dynamics.set_ramps()
+    moving = 0.5 if system == "bouncing disk" else dynamics.kinetic_energy() * problem.n
+    energy = [mechanical_energy(dynamics)]
+    for _ in range(100):
+        dynamics.advance(max(1, round(0.01 * time / step)))
+        energy.append(mechanical_energy(dynamics))
+    return (np.array(energy) - energy[0]) / moving

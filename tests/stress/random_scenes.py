@@ -10,6 +10,7 @@ from __future__ import annotations
 import csv
 import tempfile
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,6 @@ from granular_response.scene import Load, Scene, SceneError
 from granular_response.solvers.solution import Solution, solve_scene
 from granular_response.state import State
 from granular_response.studies import lost
-from granular_response_paper.records import column, record
 
 #: Certified: in balance and stable. Uncertified: the scene asked for no static finish, and the certificate says what
 #: is left. The others are errors of one line: which, is stored beside.
@@ -62,24 +62,16 @@ _ERRORS = {
 }
 
 
-@record
+@dataclass(frozen=True)
 class Trial:
-    """What became of one scene; the numbers are those of its worst state, NaN after an error."""
+    """What became of one scene."""
 
     outcome: str
     message: str  #: of the error, or what is wrong
-    kind: str  #: packing
-    method: str  #: asked for
-    integrator: str
     rolls: bool  #: whether contacts between disks or at walls resist rolling
-    friction: float = column("coefficient of friction between disks")
-    disks: int = column("number of disks, 0 after an error")
-    states: int = column("states that were checked")
-    force_residual: float = column("largest unbalanced force, summed anew from positions, in mean disk weights")
-    torque_residual: float = column("largest unbalanced torque")
-    coulomb_excess: float = column("largest friction force beyond Coulomb's limit")
-    rolling_excess: float = column("largest force along the rolling beyond its limit")
-    twin_difference: float = column("largest difference of floor responses to the mirrored twin, over the load")
+    states: int  #: that were checked
+    force_residual: float  #: largest unbalanced force of any state (mean disk weights), NaN after an error
+    twin_difference: float  #: largest difference of floor responses to the mirrored twin, over the load; or NaN
 
 
 def draw(
@@ -239,7 +231,7 @@ def write_table(path: Path, table: np.ndarray) -> None:
 def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> Trial:
     """Solve a scene and check what comes out; ``twin``: compare it with its twin too."""
     checks: list[Audit] = []
-    outcome, message, disks, difference = "certified", "", 0, float("nan")
+    outcome, message, difference = "certified", "", float("nan")
     try:
         scene = Scene.from_dict(description, folder=folder)
         solution = solve_scene(scene)
@@ -252,7 +244,6 @@ def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> 
     except Exception as error:  # whatever else comes out is a bug
         outcome, message = "wrong", f"{type(error).__name__}: {error}"
     else:
-        disks = solution.problem.n
         states = [solution.rest, *solution.loaded]
         checks = [check(solution, state) for state in states]
         asked = [0.0, *scene.protocol.load_factors]
@@ -268,17 +259,8 @@ def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> 
             outcome, message = "wrong", "a state that is not certified"
         if difference > TWINS:
             outcome, message = "wrong", f"the response of the twin differs by {difference:.3g} of the load"
-
-    def worst(name: str) -> float:
-        return max((float(getattr(found, name)) for found in checks), default=float("nan"))
-
-    return Trial(
-        outcome, message, description["packing"]["kind"], description["protocol"]["method"],
-        description["protocol"]["integrator"], rolls(description), description["contact"]["friction"], disks,
-        len(checks),
-        worst("force_residual"), worst("torque_residual"), worst("coulomb_excess"),
-        worst("rolling_excess"), difference,
-    )  # fmt: skip
+    residual = max((found.force_residual for found in checks), default=float("nan"))
+    return Trial(outcome, message, rolls(description), len(checks), residual, difference)
 
 
 def check(solution: Solution, state: State) -> Audit:

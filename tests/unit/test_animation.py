@@ -35,12 +35,9 @@ def test_a_file_has_a_frame_for_each_load(result, ending: str, tmp_path) -> None
             frames.append(np.asarray(image.convert("RGB"), dtype=int))
     assert all(np.abs(one - frames[0]).max() > 50 for one in frames[2:])  # contacts have opened
     assert [entry.name for entry in tmp_path.iterdir()] == [path.name]
-    assert path.read_bytes() == animation.rendered(gr.plot.animate(result, figure=Figure()), f".{ending}", dpi=40)
-
-
-def test_html_steps_through_the_frames(result, tmp_path) -> None:
     gr.plot.animate(result, output=tmp_path / "growing.html", dpi=30, figure=Figure())
     assert (tmp_path / "growing.html").read_text().count("data:image/png;base64") == len(FORCES)
+    assert path.read_bytes() == animation.rendered(gr.plot.animate(result, figure=Figure()), f".{ending}", dpi=40)
 
 
 def test_scales_and_places_are_those_of_all_frames(result) -> None:

@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
+from refusals import refusals
 
 from granular_response.scene import PilePacking, Scene
 from granular_response.store import files as store
@@ -21,29 +22,28 @@ def test_parameters_end_the_caption_in_the_papers_symbols():
     )
 
 
-def test_equal_frictions_are_said_once_and_no_friction_has_no_tangential_spring():
-    scene = Scene().updated({"contact.friction": 0.5, "wall.friction": 0.5})
-    assert "µ = µ_wall = 0.5, k_T/k_N" in Caption("", "", of_scene(scene)).whole
-    smooth = of_scene(Scene().updated({"contact.friction": 0.0}))
-    assert "stiffness_ratio" not in smooth and "µ = µ_wall = 0, k_N" in Caption("", "", smooth).whole
-    assert "stiffness_ratio" in of_scene(scene, friction=[0.0, 0.5])
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (of_scene(Scene().updated({"contact.friction": 0.5, "wall.friction": 0.5})), "µ = µ_wall = 0.5, k_T/k_N"),
+        (of_scene(Scene().updated({"contact.friction": 0.0})), "µ = µ_wall = 0, k_N"),  # without tangential springs
+        (of_scene(Scene(), friction=[0.0, 0.5]), "k_T/k_N"),
+        (of_scene(Scene(packing=PilePacking(layers=11), loads=())), "pile of 11 layers, 31 disks in the lowest"),
+        (of_scene(Scene().updated({"packing.sides": "periodic"})), "15 layers of 61 disks"),
+    ],
+)
+def test_a_scene_is_said_in_the_words_of_its_kind(given, said):
+    assert said in Caption("", "", given).whole
 
 
-def test_other_packings_have_their_own_words():
-    pile = Scene(packing=PilePacking(layers=11), loads=())
-    assert "pile of 11 layers, 31 disks in the lowest" in Caption("", "", of_scene(pile)).whole
-    periodic = Scene().updated({"packing.sides": "periodic", "packing.disks_per_row": 60})
-    assert of_scene(periodic)["packing"] == "15 layers of 60 disks"
-
-
-def test_an_unknown_parameter_is_refused():
-    with pytest.raises(ValueError, match="parameters: unknown frction, must be among force"):
-        Caption("", "", {"frction": 0.2})
-
-
-def test_a_picture_without_caption_is_refused():
-    with pytest.raises(ValueError, match="no caption for other"):
-        captions.document({"fig06_one": Caption("a", "b")}, {"fig06_one": [], "other": []})
+test_what_a_caption_lacks_is_named = refusals(
+    ValueError,
+    (lambda: Caption("", "", {"frction": 0.2}), "parameters: unknown frction, must be among force"),
+    (
+        lambda: captions.document({"fig06_one": Caption("a", "b")}, {"fig06_one": [], "other": []}),
+        "no caption for other",
+    ),
+)
 
 
 @pytest.mark.parametrize(

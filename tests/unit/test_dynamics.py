@@ -1,19 +1,17 @@
 """Dynamics: histories survive a new list, looking changes nothing, bad runs end with a message."""
 
-import io
 import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from rich.console import Console
+from printed import shown
 from small_scenes import at_rest, free_disks, scene
 
 import granular_response as gr
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop, relax
 from granular_response.solvers.problem import Problem
-from granular_response.store.summary import summarise
 
 
 def falling(integrator="beeman", *, steps=3000, **changes) -> Dynamics:
@@ -135,9 +133,7 @@ def test_a_result_says_that_rolling_toes_were_stopped_by_hand(tmp_path):
     assert "2 rolling rattlers stopped by hand" in repr(result)
     result.save(tmp_path / "pile.nc")
     assert gr.open_result(tmp_path / "pile.nc").rest.reached.stopped_rattlers == 2
-    console = Console(file=io.StringIO(), width=100)
-    console.print(*summarise(tmp_path / "pile.nc"))
-    assert re.search(r"rattlers stopped by hand +2\n", console.file.getvalue())
+    assert re.search(r"rattlers stopped by hand +2\n", shown(tmp_path / "pile.nc"))
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])

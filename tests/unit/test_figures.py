@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 from matplotlib.colors import to_hex, to_rgb
 from PIL import Image
+from refusals import refusals
 
 from granular_response.plot import network as nd
 from granular_response.plot import style
@@ -83,13 +84,19 @@ def test_ordered_colours_darken_to_one_side_and_are_seen_on_white(of: str) -> No
     assert 1.05 / (luminance[-1] + 0.05) > 2.9
 
 
-def test_settings_that_are_none_are_named() -> None:
-    with pytest.raises(ValueError, match="width = 'triple'"):
-        style.figure(width="triple")
-    with pytest.raises(ValueError, match="count = 0"):
-        style.ordered_colours(0)
-    with pytest.raises(ValueError, match="file_format = 'bmp'"):
-        style.render(_drawn(), "bmp")
+test_settings_and_arrays_that_do_not_fit_are_named = refusals(
+    ValueError,
+    (lambda: style.figure(width="triple"), "width = 'triple'"),
+    (lambda: style.ordered_colours(0), "count = 0"),
+    (lambda: style.render(_drawn(), "bmp"), "file_format = 'bmp'"),
+    (lambda: nd.draw_disks(style.figure()[1][0, 0], [1.0, 2.0], 1.0), r"position: must have shape \(n, 2\)"),
+    (
+        lambda: nd.draw_force_chains(
+            style.figure()[1][0, 0], np.ones((2, 2)), np.ones((1, 2)), length_per_force=1.0, width_per_force=1.0
+        ),
+        "force: 1 given for 2",
+    ),
+)
 
 
 def test_names_beside_curves_do_not_cover_each_other():
@@ -179,10 +186,3 @@ def test_rotation_marks_start_vertical_and_turn_counter_clockwise(axes) -> None:
     direction = marks[:, 1] - marks[:, 0]
     np.testing.assert_allclose(direction / np.linalg.norm(direction, axis=1)[:, None], [[0, 1], [-1, 0]], atol=1e-15)
     np.testing.assert_allclose(marks.mean(axis=1), POSITION[:2])
-
-
-def test_arrays_that_do_not_fit_are_named(axes) -> None:
-    with pytest.raises(ValueError, match=r"position: must have shape \(n, 2\)"):
-        nd.draw_disks(axes, [1.0, 2.0], 1.0)
-    with pytest.raises(ValueError, match="force: 1 given for 2"):
-        nd.draw_forces(axes, POSITION[:2], POSITION[:1], POSITION[:1], length_per_force=1.0, width_per_force=1.0)

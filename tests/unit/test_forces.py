@@ -80,11 +80,6 @@ def test_dashpot_pulls_or_not(least, expected):
     assert force == pytest.approx([expected, 0.0])
 
 
-def test_open_contact_forgets_its_spring():
-    force, torque, spring = pair(overlap=-1e-9, spring=0.01, velocity=[(-1.0, 1.0), (0.0, 0.0)])
-    assert not force.any() and not torque.any() and spring == 0
-
-
 def lattice(rng, disks_per_row=61, layers=3):
     packing = SlabPacking(kind="slab", layers=layers, disks_per_row=disks_per_row).build()
     pairs = packing.neighbour_pairs()

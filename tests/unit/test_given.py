@@ -82,7 +82,6 @@ def test_arrays_of_any_kind_are_their_numbers(entry, kind):
 @pytest.mark.parametrize("entry", ENTRIES)
 @pytest.mark.parametrize("kind", MISSING)
 def test_what_is_missing_is_no_number(entry, kind):
-    """Masks were dropped, and what stands under them was taken."""
     if entry == "axis" or (entry == "displacement" and kind == "none"):
         known = plain(MISSING[kind])[1]  # null is a value of some keys, and says that a direction is free
         assert known is None if kind == "none" else pd.isna(known)
@@ -95,7 +94,6 @@ def test_what_is_missing_is_no_number(entry, kind):
 @pytest.mark.parametrize("entry", ENTRIES)
 @pytest.mark.parametrize("kind", UNORDERED)
 def test_what_has_no_order_is_no_list(entry, kind):
-    """Sets were taken in the order of their hashes."""
     with pytest.raises(ValueError, match=r"must be|no item"):
         ENTRIES[entry](UNORDERED[kind])
 
@@ -120,7 +118,6 @@ def test_tasks_have_an_order():
 
 
 def test_arrays_in_laboratory_units_are_reduced():
-    """They came back as they were, in newtons."""
     expected = reduced([0.0, -0.05])
     assert expected[1] < -10
     for values in (np.array([0.0, -0.05]), xr.DataArray([0.0, -0.05]), np.array([0.0, -0.05], np.longdouble)):

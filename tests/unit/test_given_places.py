@@ -34,7 +34,6 @@ def moved(result):
 
 
 def test_measured_disks_that_are_thrown_about_say_so(tmp_path):
-    """By five radii and more, without a word."""
     result, said = solved()
     far = moved(result)[0]
     given = Scene.from_dict({"packing": MEASURED, **STIFF}).packing.build().position
@@ -96,8 +95,3 @@ def test_deep_overlaps_are_refused_or_taken_out():
     assert Problem.from_scene(Scene.from_arrays(**deep, overlaps="removed")).packing.moved is not None
     with pytest.raises(SceneError, match=r"must be at most 1, the smaller radius; are radii diameters"):
         Problem.from_scene(Scene.from_arrays(**{**deep, "x": [1, 3, 1.3], "z": [1, 1, 1.1]}, overlaps="removed"))
-
-
-def test_packings_that_are_made_have_no_given_places():
-    result = gr.solve({"packing": {"kind": "slab", "layers": 2, "disks_per_row": 5}, "loads": []}, progress=False)
-    assert "distance_from_given" not in result.to_dataset() and "given" not in repr(result)

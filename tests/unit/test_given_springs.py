@@ -55,12 +55,7 @@ def check_at_rest(again: gr.Result, state: gr.State, *, within: float) -> None:
     assert np.abs(again.rest.position - state.position).max() <= within
     for mine, theirs in ((again.rest.pairs, state.pairs), (again.rest.walls, state.walls)):
         found, wanted = (
-            {
-                pair: f
-                for *pair, f in zip(c.first, c.second, c.tangential_force, strict=True)
-                if f
-                for pair in [tuple(pair)]
-            }
+            {(i, j): f for i, j, f in zip(c.first, c.second, c.tangential_force, strict=True) if f}
             for c in (mine, theirs)
         )
         assert found.keys() == wanted.keys()
@@ -214,14 +209,8 @@ def test_contacts_that_are_not_those_of_the_packing_are_refused(tables, tmp_path
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        (
-            {"contact.friction": 0.0},
-            r"packing.springs: line \d+: disks .* bear a tangential force, contact.friction must",
-        ),
-        (
-            {"wall.friction": 0.0},
-            r"packing.springs: line \d+: disk \d+ and the .*, wall.friction must be greater than 0",
-        ),
+        ({"contact.friction": 0.0}, r"packing.springs: line \d+: disks .* bear a tangential force, contact.friction"),
+        ({"wall.friction": 0.0}, r"packing.springs: line \d+: disk \d+ and the .*, wall.friction must be greater"),
         ({"preparation.gravity": "slow"}, "preparation.gravity = 'slow': must be at-once with packing.springs"),
         ({"packing.overlaps": "removed"}, "packing.overlaps = 'removed': must be kept with springs"),
         ({"packing.springs": 3}, "packing.springs = 3: must be the path of a file"),
@@ -234,9 +223,7 @@ def test_springs_that_the_scene_cannot_have_are_refused(tables, changes, said):
 
 
 def test_contacts_beyond_the_limit_are_named(tables):
-    with pytest.warns(
-        UserWarning, match=r"^packing.springs: \d+ contacts bear up to 0.2 of the normal force, .* is 0.1;"
-    ):
+    with pytest.warns(UserWarning, match=r"^packing.springs: \d+ contacts bear up to 0.2 of the normal .* is 0.1;"):
         Problem.from_scene(given(folder=tables, **{"contact.friction": 0.1})).bare_state()
 
 
@@ -252,17 +239,13 @@ def test_dumps_that_say_too_little_are_refused(tmp_path):
     with pytest.raises(gr.SceneError, match=r"line 9: holds 19 of 20 entries in its last frame$"):
         gr.solve(given(DUMP, "a.dump", tmp_path))
     (tmp_path / "b.dump").write_text(DUMP.read_text().replace("f_floor", "f_bottom"))
-    with pytest.raises(
-        gr.SceneError, match=r"^packing.springs: disk 0 and the floor overlap by .*, must be among them$"
-    ):
+    with pytest.raises(gr.SceneError, match=r"^packing.springs: disk 0 and the floor overlap by .* be among them$"):
         gr.solve(given("b.dump", ENTRIES, tmp_path))
     (tmp_path / "b.dump").write_text(DUMP.read_text().replace("ATOMS id", "ATOMS number"))
     with pytest.raises(gr.SceneError, match=r"calls disks by their ids, so the file of the disks must have ids$"):
         gr.solve(given("b.dump", ENTRIES, tmp_path))
     rolling = {"contact.rolling_friction": 0.1, "contact.rolling_stiffness_ratio": 0.1}
-    with pytest.raises(
-        gr.SceneError, match=r"line 10: disks 2 and 7 have no rolling force there, unlike contact.rolling"
-    ):
+    with pytest.raises(gr.SceneError, match=r"line 10: disks 2 and 7 have no rolling force there, unlike contact"):
         gr.solve(given(DUMP, ENTRIES).updated(rolling))
 
 
@@ -297,9 +280,7 @@ def test_velocities_go_to_lammps_and_come_back(tmp_path):
     with pytest.raises(gr.ExportError, match=r"a.xyz: a motion has no contacts, must be .csv or .data or"):
         gr.export(moved, tmp_path / "a.xyz")
     for wrong in (moved.isel(time=0), BALLS, moved["energy"]):
-        with pytest.raises(
-            gr.ExportError, match=r"a.data: must be written of a result, its file or dataset, or of what"
-        ):
+        with pytest.raises(gr.ExportError, match="must be written of a result, its file or dataset, or of what"):
             gr.export(wrong, tmp_path / "a.data")
 
 
@@ -309,8 +290,6 @@ def test_velocities_go_to_lammps_and_come_back(tmp_path):
         ("1 0.5 0.25 0.0 0.0 0.0 2.0", "1 fast 0.25 0.0 0.0 0.0 2.0", "line 17: vx = 'fast': must be a finite number"),
         ("1 0.5 0.25 0.0 0.0 0.0 2.0", "1 0.5 0.25 0.0 0.0 0.0 nan", "line 17: wz = 'nan': must be a finite number"),
         ("1 0.5 0.25 0.0 0.0 0.0 2.0", "1 0.5 0.25 0.0", "line 17: has 4 values, must have id vx vy vz wx wy wz"),
-        ("\n1 0.5 0.25", "\n2 0.5 0.25", "line 18: 2 in section Velocities: is given twice, in line 17 and here"),
-        ("\n1 0.5 0.25", "\n7 0.5 0.25", "line 17: id = '7': must be that of an atom, section Velocities has it"),
     ],
 )
 def test_velocities_that_are_none_are_refused(tmp_path, old, new, said):

@@ -27,7 +27,6 @@ KINDS = ("pipe", "folder", "/dev/zero", "/nowhere")
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_no_file_is_refused_at_once(tmp_path, kind):
-    """A pipe in a folder of checkpoints was waited for without end."""
     memory = Memory(tmp_path / "kept")
     memory.shelf.mkdir(parents=True)
     name = "0" * 32

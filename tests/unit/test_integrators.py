@@ -88,11 +88,3 @@ def test_agrees_with_the_plain_law(overlap, normal, slip, spring, dt):
     for name, rule in RULES.items():
         expected = contact_force(material, overlap, normal, slip, spring, dt, name)
         assert (fn, *tangential(spring, slip, fn, LAW, rule, dt)) == pytest.approx(expected, rel=1e-12, abs=1e-13)
-
-
-@given(slip=finite, spring=st.floats(-0.02, 0.02), fn=st.floats(-20.0, 100.0), dt=st.floats(0.0, 1e-2))
-def test_cut_never_exceeds_the_limit_and_is_odd(slip, spring, fn, dt):
-    force, new = tangential_cut(spring, slip, fn, LAW, dt)
-    assert abs(force) <= 0.5 * abs(fn)
-    assert -800.0 * new - 5.0 * slip == pytest.approx(force, abs=1e-9)
-    assert tangential_cut(-spring, -slip, fn, LAW, dt) == (-force, -new)

@@ -3,14 +3,12 @@
 import dataclasses
 import enum
 import functools
-import os
-import subprocess
-import sys
 import threading
 from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import python
 
 from granular_response.scene import Scene
 from granular_response.sweeps.keys import Indistinct, key
@@ -46,14 +44,8 @@ def test_equal_for_equal_values_only():
 def test_equal_in_every_process():
     script = "import sys; sys.path.insert(0, sys.argv[1]); from test_keys import *; print(key((Task, {'b', 'a'})))"
     for seed in ("1", "2"):
-        name = subprocess.run(
-            [sys.executable, "-c", script, Path(__file__).parent],
-            env={**os.environ, "PYTHONHASHSEED": seed},
-            check=True,
-            capture_output=True,
-            text=True,
-        ).stdout.strip()
-        assert name == key((Task, {"a", "b"}))
+        name = python("-c", script, Path(__file__).parent, PYTHONHASHSEED=seed)
+        assert name.strip() == key((Task, {"a", "b"}))
 
 
 def table(folder, radius):
@@ -115,10 +107,8 @@ def test_functions_of_a_script_count_by_its_file_and_those_of_a_notebook_not_at_
     lines = "from granular_response.sweeps.keys import key\ndef measure(x):\n    return x\nprint(key(measure))\n"
     (tmp_path / "script.py").write_text(lines)
 
-    def run(*arguments):
-        return subprocess.run([sys.executable, *arguments], capture_output=True, text=True)
-
-    first, again = (run(tmp_path / "script.py").stdout for _ in range(2))
+    first, again = (python(tmp_path / "script.py") for _ in range(2))
     (tmp_path / "script.py").write_text(lines.replace("return x", "return 2 * x"))
-    assert first == again != run(tmp_path / "script.py").stdout
-    assert "Indistinct: function measure stands in no module that can be imported" in run("-c", lines).stderr
+    assert first == again != python(tmp_path / "script.py")
+    with pytest.raises(AssertionError, match="Indistinct: function measure stands in no module that can be imported"):
+        python("-c", lines)

@@ -23,18 +23,6 @@ from granular_response.solvers.system import StaticSystem
 DOWN = [{"disk": "top-centre", "force": [0.0, -1.0]}]
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.2])
-@pytest.mark.parametrize("force", [[0.0, -1.0], [0.0, -15.0], [0.3, -1.0]])
-def test_a_single_disk(friction, force):
-    loads = [{"disk": 0, "force": force}]
-    pile = {"kind": "pile", "layers": 1}
-    one = scene(packing=pile, contact__friction=friction, wall__friction=friction, loads=loads)
-    solution = solve_scene(one)
-    for state, weight in zip((solution.rest, *solution.loaded), (1.0, 1.0 - force[1]), strict=True):
-        assert state.wall_force()[:, 1].sum() == pytest.approx(weight, abs=1e-9)
-        assert state.certificate.stable and state.certificate.force_residual < 1e-9
-
-
 def test_a_disk_that_slides_alone_has_no_unstable_direction():
     """Nothing changes as it moves along the floor or turns: both are left out, or its symmetric part is indefinite."""
     problem, state = free_disks([[10.0, 1.0 - 1e-3]], contact__friction=0.2, wall__friction=0.2)

@@ -240,7 +240,6 @@ def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
 
 
 def test_no_other_factorisation_is_in_memory_when_eigenvalues_are_looked_for(monkeypatch):
-    """A million disks with friction had two: 17 GiB."""
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
     monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
     loads = [{"disk": "top-centre", "force": [0.0, -28.0]}]

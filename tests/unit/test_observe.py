@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from observe_states import ROW, contacts, opened, pair_index, slab, state, with_pairs
+from refusals import refusals
 
 from granular_response.observe.difference import (
     force_misalignment,
@@ -60,21 +61,20 @@ def test_interior_leaves_out_ten_radii_at_both_walls():
     assert interior_mask(np.array([9.9, 10.0, 90.0, 90.1]), 100.0).tolist() == [False, True, True, False]
 
 
-@pytest.mark.parametrize(
-    ("call", "named"),
-    [
-        (lambda: floor_disks([]), "states"),
-        *(
-            (lambda force=force: floor_response(three_disks(), three_disks(), np.array([0]), force), "total_force")
-            for force in (0.0, -1.0, np.nan, np.inf)
-        ),
-        (lambda: smoothed_response([0.0], [0.0], [1.0], 0.0), "width"),
-        (lambda: interior_mask(np.array([5.0]), 20.0, 10.0), "margin"),
-    ],
+PLACES = np.array([[1.0, 1.0], [3.0, 1.0]])
+GOOD, TWICE = state(PLACES, contacts([(0, 1)])), state(PLACES, contacts([(0, 1), (1, 0)]))
+test_what_cannot_be_is_named = refusals(
+    ValueError,
+    (lambda: floor_disks([]), "states"),
+    *(
+        (lambda force=force: floor_response(three_disks(), three_disks(), np.array([0]), force), "total_force")
+        for force in (0.0, -1.0, np.nan, np.inf)
+    ),
+    (lambda: smoothed_response([0.0], [0.0], [1.0], 0.0), "width"),
+    (lambda: interior_mask(np.array([5.0]), 20.0, 10.0), "margin"),
+    (lambda: match_candidates(GOOD, TWICE, np.ones(2)), "twice"),
+    (lambda: match_candidates(GOOD, GOOD, np.ones(3)), "radius"),
 )
-def test_what_cannot_be_is_named(call, named):
-    with pytest.raises(ValueError, match=named):
-        call()
 
 
 REST = slab(3, 5)  # 5 + 4 + 5 disks; the middle disk of the top row is 11
@@ -164,11 +164,8 @@ def test_matching_gives_one_list_and_keeps_the_forces():
             np.testing.assert_allclose(total(after, disk), total(before, disk), atol=1e-15)
     # Overlaps of contacts that were not listed come from the geometry.
     assert b.pairs.overlap[0] == pytest.approx(1.8 - np.hypot(2.0, 0.1))
-    assert list(zip(a.walls.first, a.walls.second, strict=True)) == [
-        (0, FLOOR),
-        (0, LEFT_WALL),
-        (2, RIGHT_WALL),
-    ]
+    walls = [(0, FLOOR), (0, LEFT_WALL), (2, RIGHT_WALL)]
+    assert list(zip(a.walls.first, a.walls.second, strict=True)) == walls
     assert a.walls.status.tolist() == [STICKING, OPEN, STICKING]
     assert a.walls.overlap[1] == pytest.approx(0.0)
     assert b.walls.overlap[2] == pytest.approx(1.2 - (6.0 - 5.0))
@@ -182,12 +179,3 @@ def total(s, disk):
         - force[pairs.second == disk].sum(axis=0)
         + wall[s.walls.first == disk].sum(axis=0)
     )
-
-
-def test_matching_refuses_doubles_and_other_packings():
-    position = np.array([[1.0, 1.0], [3.0, 1.0]])
-    good, bad = state(position, contacts([(0, 1)])), state(position, contacts([(0, 1), (1, 0)]))
-    with pytest.raises(ValueError, match="twice"):
-        match_candidates(good, bad, np.ones(2))
-    with pytest.raises(ValueError, match="radius"):
-        match_candidates(good, good, np.ones(3))

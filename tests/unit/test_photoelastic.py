@@ -14,11 +14,6 @@ SCENE = {
 }
 
 
-def mirrored(scene):
-    load = {"disk": {"row": "top", "offset": -1}, "force": [-0.5, -4.0]}
-    return {**scene, "loads": [load]}
-
-
 @pytest.fixture(scope="module")
 def result() -> gr.Result:
     return gr.solve(SCENE)
@@ -81,7 +76,8 @@ def test_the_stress_balances_what_is_spread_over_the_disk(seed: int) -> None:
 @pytest.mark.parametrize("added", [True, False])
 def test_mirrored_states_give_mirrored_pictures(result, added: bool) -> None:
     options = {"added": added, "pixels": 300, "fringe": 20.0}  # wide fringes: no pixel decides by a last digit
-    picture, other = drawn(result, **options), drawn(gr.solve(mirrored(SCENE)), **options)
+    load = {"disk": {"row": "top", "offset": -1}, "force": [-0.5, -4.0]}
+    picture, other = drawn(result, **options), drawn(gr.solve({**SCENE, "loads": [load]}), **options)
     assert picture.max() > 0.5
     assert np.abs(picture - other[:, ::-1]).max() < 1e-6 < np.abs(picture - other).max()
 

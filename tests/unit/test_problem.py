@@ -68,7 +68,6 @@ def test_slots_of_no_listed_pair_have_no_reach():
 
 
 def test_a_wall_that_is_met_and_not_listed_is_noticed():
-    """A path looked at pairs alone, so soft disks could pass a wall."""
     problem, state = free_disks([[10.0, 1.0]], width=20.0)
     system = StaticSystem(problem, state)
     assert system.wall.tolist() == [FLOOR]
@@ -80,14 +79,12 @@ def test_a_wall_that_is_met_and_not_listed_is_noticed():
 
 @pytest.mark.parametrize("smooth", [{"contact.friction": 0.0}, {"contact.stiffness_ratio": 0.0}])
 def test_a_torque_that_nothing_can_balance_is_refused(smooth):
-    """Without tangential springs there are no rotations, and the torque was dropped."""
     loads = [{"disk": 3, "force": [0.0, -1.0], "torque": 0.5}]
     with pytest.raises(SceneError, match=r"loads\[0\]\.torque = 0\.5: must be 0 without friction and tangential"):
         scene(loads=loads).updated(smooth)
 
 
 def test_a_period_in_which_disks_may_meet_on_both_sides_is_refused(tmp_path):
-    """Such pairs were one contact on the nearer side, and a contact could jump from one side to the other."""
     (tmp_path / "two.csv").write_text("x,z,radius\n1,1,1\n3.1,1,1\n")
 
     def problem(width):
@@ -104,7 +101,6 @@ def test_a_period_in_which_disks_may_meet_on_both_sides_is_refused(tmp_path):
 @pytest.mark.parametrize("width", [2.0, 2.2, 2.5, 2.59, 2.7, 5.0])
 @pytest.mark.parametrize("friction", [0.0, 0.5])
 def test_one_disk_between_periodic_sides_does_not_meet_itself(tmp_path, width, friction):
-    """Its own copy was listed as its neighbour at no distance, and the motion blew up."""
     (tmp_path / "one.csv").write_text("x,z,radius\n1,1,1\n")
     packing = {"kind": "file", "path": "one.csv", "width": width, "sides": "periodic"}
     smooth = {"contact": {"friction": friction}, "wall": {"friction": friction}}

@@ -63,38 +63,42 @@ def test_a_kept_state_is_the_computed_one(folder, computed):
     np.testing.assert_array_equal(again.pairs.spring, first.pairs.spring)
 
 
+#: A change, and whether it changes the rest state of the scene, and of one that is prepared without friction: that may
+#: turn away once it has friction, and dynamics takes it to rest.
+CHANGES = [
+    ({"contact.friction": 0.5}, True),
+    ({"wall.friction": 0.1}, True),
+    ({"contact.rolling_friction": 0.1, "contact.rolling_stiffness_ratio": 0.5}, True),
+    ({"preparation.gravity": "slow"}, True),
+    ({"packing.disks_per_row": 8}, True),
+    ({"protocol.friction_law": "literal"}, True),
+    ({"protocol.integrator": "verlet"}, True),
+    ({"protocol.time_step": 4e-4}, True),
+    ({"protocol.stop_kinetic_energy": 1e-10}, True),
+    ({"protocol.static_finish": False}, True),
+    ({"loads.0.torque": 3.0}, False),
+    ({"protocol.ramp_time": 50.0}, False),
+    ({"protocol.method": "path"}, False),
+]
+ROLLING = SCENE.updated({"wall.friction": 0.1, "wall.rolling_friction": 0.1, "wall.rolling_stiffness_ratio": 0.5})
+DISORDERED = SCENE.updated({"packing.polydispersity": 0.1})
+FRICTIONLESS = SCENE.updated({"preparation.gravity": "frictionless"})
+
+
 @pytest.mark.parametrize(
-    "change",
+    ("scene", "change", "other"),
     [
-        {"contact.friction": 0.5},
-        {"wall.friction": 0.1},
-        {"contact.rolling_friction": 0.1, "contact.rolling_stiffness_ratio": 0.5},
-        {"wall.friction": 0.1, "wall.rolling_friction": 0.1, "wall.rolling_stiffness_ratio": 0.5},
-        {"preparation.gravity": "slow"},
-        {"packing.disks_per_row": 8},
-        {"protocol.friction_law": "literal"},
-        {"protocol.integrator": "verlet"},
-        {"protocol.time_step": 4e-4},
-        {"protocol.stop_kinetic_energy": 1e-10},
-        {"protocol.static_finish": False},
+        *((SCENE, *row) for row in CHANGES),
+        (ROLLING, {"wall.rolling_friction": 0.2}, True),
+        (DISORDERED, {"protocol.static_finish": False}, True),
+        *((FRICTIONLESS, {f"protocol.{key}": value}, True) for key, value in (
+            ("static_finish", False), ("integrator", "verlet"), ("maximum_steps", 1000),
+        )),
     ],
-)
-def test_what_changes_the_rest_state_changes_its_name(change):
-    assert settled.name(Problem.from_scene(SCENE.updated(change))) != settled.name(Problem.from_scene(SCENE))
-
-
-@pytest.mark.parametrize(
-    "change", [{"protocol.static_finish": False}, {"protocol.integrator": "verlet"}, {"protocol.maximum_steps": 1000}]
-)
-def test_so_does_what_settles_a_packing_that_was_prepared_without_friction(change):
-    """It may turn away once it has friction, and dynamics takes it to rest."""
-    scene = SCENE.updated({"preparation.gravity": "frictionless"})
-    assert settled.name(Problem.from_scene(scene.updated(change))) != settled.name(Problem.from_scene(scene))
-
-
-@pytest.mark.parametrize("change", [{"loads.0.torque": 3.0}, {"protocol.ramp_time": 50.0}, {"protocol.method": "path"}])
-def test_what_comes_after_rest_does_not(change):
-    assert settled.name(Problem.from_scene(SCENE.updated(change))) == settled.name(Problem.from_scene(SCENE))
+)  # fmt: skip
+def test_what_changes_the_rest_state_changes_its_name_and_nothing_else_does(scene, change, other):
+    names = [settled.name(Problem.from_scene(one)) for one in (scene, scene.updated(change))]
+    assert (names[0] != names[1]) is other
 
 
 def test_a_damaged_state_is_computed_again(folder, computed):

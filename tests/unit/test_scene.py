@@ -4,7 +4,6 @@ import math
 import pickle
 
 import pytest
-from places import ROOT
 
 from granular_response.scene import (
     Contact,
@@ -18,8 +17,6 @@ from granular_response.scene import (
     Wall,
 )
 from granular_response.scene.protocol import PAPERS_TIME_STEP
-
-EXAMPLES = ROOT / "examples"
 
 
 def test_defaults_are_the_papers():
@@ -88,6 +85,9 @@ def test_updated_never_resets_what_it_does_not_name(changes):
     scene = Scene(contact={"normal_stiffness": 1e4, "stiffness_ratio": 0.3}, packing=SlabPacking(layers=7))
     assert scene.updated(changes).contact == Contact(normal_stiffness=1e4, stiffness_ratio=0.5, friction=1.0)
     assert scene.updated({"packing": {"disks_per_row": 9}}).packing == SlabPacking(layers=7, disks_per_row=9)
+    assert scene.updated({"wall": {"friction": 0.5}}).wall == Wall(friction=0.5)
+    torque = scene.updated({"loads.0.force": [0.0, -4.0], "loads[0].torque": 2.0})
+    assert torque.loads == (Load(disk="top-centre", force=(0.0, -4.0), torque=2.0),)
     torque = scene.updated({"loads.0": {"torque": 1.0}})
     assert torque.loads == (Load(disk="top-centre", force=(0.0, -15.0), torque=1.0),)
     row = scene.updated({"loads.0.disk": {"row": "top"}}).updated({"loads.0.disk.offset": 2})
@@ -100,29 +100,11 @@ def test_a_packing_of_another_kind_and_a_description_replace_what_is_there():
     assert scene.updated({"packing.layers": 5, "packing.kind": "pile"}).packing == PilePacking(layers=5)
     assert scene.updated({"packing.layers": 5, "packing": PilePacking()}).packing == PilePacking(layers=5)
     assert scene.updated({"contact": Contact(stiffness_ratio=0.5)}).contact == Contact(stiffness_ratio=0.5)
-
-
-def test_updated_replaces_values_and_sections():
-    scene = Scene()
-    other = scene.updated(
-        {
-            "contact.friction": 1.0,
-            "loads.0.force": [0.0, -4.0],
-            "loads[0].torque": 2.0,
-            "packing": PilePacking(),
-            "packing.layers": 5,
-            "wall": {"friction": 0.5},
-        }
-    )
-    assert other.contact.friction == 1.0 and other.contact.normal_stiffness == 3000.0
-    assert other.loads == (Load(disk="top-centre", force=(0.0, -4.0), torque=2.0),)
-    assert other.packing == PilePacking(layers=5)
-    assert other.wall == Wall(friction=0.5)
-    assert scene == Scene()
-    # A wall that was left open follows the new contacts.
-    assert scene.updated({"contact.normal_stiffness": 1e4}).resolved_wall.normal_stiffness == 2e4
     assert scene.updated({"loads": []}).loads == ()
     assert scene.updated({"loads": scene.loads * 2}).loads == scene.loads * 2
+    # a wall that was left open follows the new contacts
+    assert scene.updated({"contact.normal_stiffness": 1e4}).resolved_wall.normal_stiffness == 2e4
+    assert scene == Scene(packing=SlabPacking(layers=7, polydispersity=0.1), contact=Contact(friction=1.0))
 
 
 def test_file_packing_belongs_to_the_folder_of_its_scene(tmp_path):

@@ -8,8 +8,6 @@ from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response.studies import LoadPath, Measures, happenings
 from granular_response_paper.groups.symmetry_breaking.simulate import copies
 from granular_response_paper.slab_response import (
-    Event,
-    events_dataset,
     locate,
     measured,
     measured_dataset,
@@ -29,17 +27,6 @@ def test_events_are_located_with_their_friction_and_definition(path):
     assert [event.name for event in found] == list(asked) and {event.friction for event in found} == {0.0}
     assert [event.definition for event in found] == [what.definition for what in asked.values()]
     assert found[0].low < found[0].high <= 4.0
-
-
-def test_events_become_a_table():
-    found = events_dataset([Event("a", 0.2, 1.0, float("nan"), "never"), Event("b", 0.5, 1, 2, "x")])
-    assert found["name"].values.tolist() == ["a", "b"]
-    assert found["definition"].values.tolist() == ["never", "x"]
-    assert np.isnan(found["high"].values[0])
-    assert found["low"].values.tolist() == [1.0, 1.0]
-    for name in found.variables:
-        assert found[name].attrs["long_name"]
-        assert found[name].attrs["units"] == "1"
 
 
 def test_measurements_are_spread_over_a_grid(path):

@@ -11,7 +11,6 @@ from granular_response.observe.floor import floor_disks, floor_response
 from granular_response.scene import Scene
 from granular_response.solvers.small_loads import added_forces, force_on, influence, sticking
 from granular_response.solvers.solution import solve_scene
-from granular_response.state import FLOOR
 
 SMALL = np.array([3e-5, -1e-4, 2e-5])
 CASES = {
@@ -116,23 +115,6 @@ def test_every_contact_answers_as_to_a_small_load(changes):
     assert pairs[1] == pytest.approx(pair_force_difference(rest, loaded) / 1e-4, abs=1e-4)
     assert walls[1] == pytest.approx(wall_force_difference(rest, loaded) / 1e-4, abs=1e-4)
     assert np.abs(pairs[1]).max() > 0.1
-
-
-@pytest.mark.parametrize("changes", CASES.values(), ids=CASES)
-def test_what_contacts_with_the_floor_answer_is_the_influence(changes):
-    """One solution for each load against one with the transposed tangent for each floor disk."""
-    solution = solve_scene(described(changes, 80, [0.0, -1e-4, 0.0]))
-    rest = solution.rest
-    loads, disks = np.array([40, 83]), floor_disks([rest])
-    _, walls = contact_answers(solution.problem, rest, loads, sliding="stick")
-    floor = rest.walls.second == FLOOR
-    found = np.zeros((2, solution.problem.n))
-    for row in range(2):
-        np.add.at(found[row], rest.walls.first[floor], walls[row, floor, 1])
-    expected = -influence(solution.problem, rest, disks, sliding="stick")[:, loads, 1].T
-    assert found[:, disks] == pytest.approx(expected, abs=1e-9)
-    with pytest.raises(ValueError, match="sliding = 'slip': must be refuse or stick"):
-        contact_answers(solution.problem, rest, loads, sliding="slip")
 
 
 def test_a_displacement_holds_a_periodic_packing_along_x():

@@ -143,7 +143,6 @@ def test_disks_that_pass_through_each_other_are_refused():
 
 
 def test_steps_that_run_out_without_friction_are_what_is_said():
-    """It was said that there is no static equilibrium near the state, as if one had been asked for."""
     smooth = {"preparation__gravity": "frictionless", "packing__polydispersity": 0.1, "loads": []}
     moving = scene(contact__friction=0.3, protocol__maximum_steps=333, protocol__static_finish=False, **smooth)
     with pytest.raises(NotSettled, match=r"under gravity without friction within protocol.maximum_steps = 333 "):

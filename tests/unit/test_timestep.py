@@ -19,6 +19,7 @@ from granular_response.solvers.timestep import (
     stability_limit,
     time_step_reason,
 )
+from granular_response.store.result import to_dataset
 
 
 def test_unstable_time_step_is_one_clear_line():
@@ -92,4 +93,16 @@ def test_a_light_disk_on_a_stiff_floor_shortens_the_step():
     described = {"packing": {**own, "width": 6.5}, "contact": {"friction": 0.0, "normal_stiffness": 300.0}, "loads": []}
     soft, stiff = (Scene.from_dict({**described, "wall": {"normal_stiffness": k}}) for k in (600.0, 6e4))
     assert stability_limit(Problem.from_scene(stiff)) < 0.5 * stability_limit(Problem.from_scene(soft))
-    assert solve_scene(stiff).rest.certificate.stable
+    solution = solve_scene(stiff)
+    data = to_dataset(solution)
+    assert solution.rest.certificate.stable
+    assert data.attrs["time_step"].startswith("auto: 0.6 of the stability limit, as")
+    assert float(data["reached_time_step"][0]) == resolve_time_step(solution.problem) < PAPERS_TIME_STEP
+
+
+@pytest.mark.parametrize(("given", "reason"), [(4e-4, "protocol.time_step"), ("auto", "auto: 0.6")])
+def test_a_result_says_which_time_step_was_taken(given, reason):
+    solution = solve_scene(scene(protocol__time_step=given))
+    data = to_dataset(solution)
+    assert data.attrs["time_step"].startswith(reason) and 0.0 < float(data["reached_time_step"][0]) < 1e-3
+    assert given == "auto" or float(data["reached_time_step"][0]) == given

@@ -4,16 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from printed import shown
 from small_scenes import free_disks, scene
-from test_events import shown
 
 import granular_response as gr
 from granular_response.scene import Scene
-from granular_response.solvers.dynamics import Dynamics, Relaxation, Stop
+from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.equilibrium import certify
-from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import solve_scene
-from granular_response.solvers.timestep import resolve_time_step
 from granular_response.store import files as store
 from granular_response.store.result import solution_from, state_from, to_dataset
 
@@ -26,28 +24,6 @@ def test_a_disk_that_falls_from_high_is_not_at_rest_before_it_has_landed(tmp_pat
     assert rest.reached.settled
     assert rest.reached.time > np.sqrt(2.0 * 9.0)
     assert rest.position[0, 1] == pytest.approx(1.0 - 1.0 / 6000.0, abs=1e-7)
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"protocol__time_step": 4e-4},
-        {"contact__normal_stiffness": 1e6, "protocol__time_step": "auto"},
-        {"contact__friction": 0.2, "contact__normal_stiffness": 3e7, "protocol__time_step": "auto"},
-    ],
-    ids=["small step", "stiff", "stiff, with friction"],
-)
-def test_a_packing_in_free_fall_is_not_at_rest(changes):
-    """Nearly all disks start without a contact: in their first steps they are slow, and used to count as settled."""
-    gaps = {"packing__polydispersity": 0.1, "packing__lattice_constant": "touching-largest", "contact__friction": 0.0}
-    problem = Problem.from_scene(scene(3, 5, **(gaps | changes)))
-    dynamics = Dynamics(problem, problem.bare_state(), time_step=resolve_time_step(problem))
-    run = Relaxation(dynamics, Stop(problem.plan.stop_energy))
-    while dynamics.in_flight(dynamics.touching()):
-        assert not run.ended
-        dynamics.advance(100)
-        run.look()
-    assert run.dynamics.time > 0.1
 
 
 def test_a_packing_pressed_together_is_not_at_rest_before_it_has_moved():
@@ -69,15 +45,10 @@ def test_a_part_of_the_packing_that_nothing_bears_is_in_flight():
 LOAD = [{"disk": "top-centre", "force": [0.0, -2.0]}]
 
 
-def cut_short(**changes):
-    return scene(
-        loads=LOAD, protocol__static_finish=False, protocol__method="dynamics", protocol__maximum_steps=1000, **changes
-    )
-
-
 def test_a_ramp_that_is_cut_short_carries_the_load_it_has_reached():
     """1,000 steps of 5e-4 are a fortieth of the ramp of 20; the result used to say load factor 1."""
-    solution = solve_scene(cut_short(protocol__time_step=5e-4))
+    protocol = {"method": "dynamics", "static_finish": False, "maximum_steps": 1000, "time_step": 5e-4}
+    solution = solve_scene(scene(loads=LOAD, protocol=protocol))
     assert solution.load_factors == (pytest.approx(0.025, abs=1e-6),)
     assert solution.loaded[0].reached.settled is False
     assert solution.unsettled == "not at rest within protocol.maximum_steps = 1000: gravity, load factor 0.025"
@@ -87,29 +58,6 @@ def test_a_ramp_that_is_cut_short_carries_the_load_it_has_reached():
     again = solution_from(data)
     assert again.unsettled == solution.unsettled
     assert solve_scene(scene(loads=LOAD)).unsettled == ""
-
-
-@pytest.mark.parametrize(
-    ("changes", "step", "reason"),
-    [
-        ({}, 5e-4, "the paper's"),
-        ({"contact__normal_stiffness": 1e5}, None, "auto: 0.6 of the stability limit, as"),
-        ({"protocol__time_step": 4e-4}, 4e-4, "protocol.time_step"),
-        ({"protocol__time_step": "auto"}, None, "auto: 0.6"),
-    ],
-    ids=["paper", "stiff", "given", "auto"],
-)
-def test_a_time_step_that_is_left_out_is_one_that_works_and_the_result_says_which(changes, step, reason):
-    stiff = scene(**changes)
-    solution = solve_scene(stiff)
-    taken = resolve_time_step(solution.problem)
-    assert taken == step if step else 0.0 < taken < 1e-3
-    data = to_dataset(solution)
-    assert data.attrs["time_step"].startswith(reason)
-    assert float(data["reached_time_step"][0]) == taken
-    if step is None and not stiff.protocol.time_step:
-        assert taken < 5e-4
-        assert np.isfinite(data["floor_force"].values).all()
 
 
 def test_a_path_from_a_start_that_is_not_in_balance_begins_with_an_equilibrium():
