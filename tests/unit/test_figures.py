@@ -91,8 +91,8 @@ test_settings_and_arrays_that_do_not_fit_are_named = refusals(
     (lambda: style.render(_drawn(), "bmp"), "file_format = 'bmp'"),
     (lambda: nd.draw_disks(style.figure()[1][0, 0], [1.0, 2.0], 1.0), r"position: must have shape \(n, 2\)"),
     (
-        lambda: nd.draw_force_chains(
-            style.figure()[1][0, 0], np.ones((2, 2)), np.ones((1, 2)), length_per_force=1.0, width_per_force=1.0
+        lambda: nd.draw_forces(
+            style.figure()[1][0, 0], POSITION[:2], POSITION[:1], POSITION[:1], length_per_force=1.0, width_per_force=1.0
         ),
         "force: 1 given for 2",
     ),

@@ -13,6 +13,7 @@ import re
 import struct
 import zlib
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Literal
@@ -305,15 +306,17 @@ def _smaller(png: io.BytesIO, dpi: float) -> bytes:
     with Image.open(png) as image:
         plain = image.convert("RGB")
     filtered, unfiltered = io.BytesIO(), io.BytesIO()
-    plain.save(filtered, "png", optimize=True, dpi=(dpi, dpi))
     pixels = np.asarray(plain).reshape(plain.height, -1)
     rows = np.pad(pixels, ((0, 0), (1, 0)))  # the kind of filter stands before each row: none
+    with ThreadPoolExecutor(1) as beside:  # compression takes a third of the time of a picture
+        compressed = beside.submit(zlib.compress, rows.tobytes(), 9)
+        plain.save(filtered, "png", optimize=True, dpi=(dpi, dpi))
     per_metre = round(dpi / 0.0254)
     unfiltered.write(b"\x89PNG\r\n\x1a\n")
     for name, content in (
         (b"IHDR", struct.pack(">2I5B", plain.width, plain.height, 8, 2, 0, 0, 0)),
         (b"pHYs", struct.pack(">2IB", per_metre, per_metre, 1)),
-        (b"IDAT", zlib.compress(rows.tobytes(), 9)),
+        (b"IDAT", compressed.result()),
         (b"IEND", b""),
     ):
         putchunk(unfiltered, name, content)

@@ -117,8 +117,13 @@ def new_neighbours(position: FloatArray, rest: State) -> int:
 def pictures(path: LoadPath, states: Sequence[State], measures: Measures) -> dict[str, xr.Dataset]:
     """``rest``, and ``states`` along ``force`` with the region of opened contacts in each."""
     rest, *loaded = common_candidates([path.rest, *states], path.problem.packing.radius)
-    regions = np.stack([measures.region(state).contacts for state in states]).astype(np.int8)
+    regions = np.stack([measures.region(state).contacts for state in states])
+    count, horizontal = regions.sum(axis=1), network.lattice_direction(rest) == network.HORIZONTAL
+    share = np.where(count > 0, (regions & horizontal).sum(axis=1) / np.maximum(count, 1), np.nan)
     inside = "1 for contacts of the connected region of opened contacts below the load"
-    along = slab_response.states_picture(loaded, path.problem, "force")
-    along = along.assign(variables(teardrop=("force contact", regions, inside)))
+    part = "fraction of the region's contacts that are horizontal at rest; nan without a region"
+    further = variables(
+        teardrop=("force contact", regions.astype(np.int8), inside), teardrop_horizontal=("force", share, part)
+    )
+    along = slab_response.states_picture(loaded, path.problem, "force").assign(further)
     return {"rest": slab_response.states_picture([rest], path.problem), "states": along}
