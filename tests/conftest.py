@@ -1,6 +1,7 @@
 """Settings that every test shares."""
 
 import os
+from pathlib import Path
 
 import xdist
 from commands import preload
@@ -10,6 +11,9 @@ from granular_response.machine import floating_point
 
 floating_point.pin()  # before anything loads numpy, as the command line does
 os.environ.setdefault("MPLBACKEND", "Agg")
+# modules that new processes import find the helpers of tests, as here
+_paths = str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, _paths))
 os.environ.pop("DASK_SCHEDULER_ADDRESS", None)  # a sweep in a test runs where the test says
 
 
