@@ -48,8 +48,8 @@ from .store.export import ExportError as ExportError
 from .store.export import export as export
 from .store.files import StoreError as StoreError
 from .store.result import ResultError as ResultError
-from .studies.search import Bracket as Bracket
-from .studies.search import EventNotBracketed as EventNotBracketed
+from .studies.brackets import Bracket as Bracket
+from .studies.brackets import EventNotBracketed as EventNotBracketed
 from .sweeps.errors import SweepError as SweepError
 from .sweeps.tasks import map_tasks as map_tasks
 

@@ -11,8 +11,9 @@ from typing import Any
 from ..observe.positive import check_positive
 from ..scene import Scene, SceneError
 from ..state import Event
+from ..studies.brackets import Bracket, EventNotBracketed
 from ..studies.path import Happening, LoadPath
-from ..studies.search import Bracket, EventNotBracketed, bisect_event, unchanged
+from ..studies.search import bisect_event, unchanged
 from ..sweeps.tasks import Progress
 from .event_table import check_kind
 from .result import Result, described, solve, vouched

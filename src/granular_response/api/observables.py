@@ -194,6 +194,8 @@ def elastic_moduli(
     margin : part of the rows that is left out at either end, below 1/2.
     prestress : whether the turn of contacts under the forces that they bear counts.
 
+    Returns
+    -------
     Dimensions ``stress`` and ``strain``: "xx", "zz", "xz".
 
     Raises ValueError for a packing that is no slab of three rows or more between periodic sides,
