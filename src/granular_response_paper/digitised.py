@@ -17,7 +17,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 
-from granular_response.inputs import read_text
+from granular_response.inputs import read_text, unreadable
 from granular_response.plot import style
 from granular_response.scene.errors import describe, suggestion
 from granular_response.scene.formats.table import FormatError, number, numbers
@@ -85,8 +85,8 @@ def read(path: Path) -> Curve:
                 raise FormatError(describe((key,), error, "must be 0 or greater"))
     except FormatError as wrong:
         raise GroupError(": ".join(filter(None, (str(path), wrong.place, str(wrong))))) from None
-    except UnicodeDecodeError:
-        raise GroupError(f"{path}: is not a text file in UTF-8") from None
+    except UnicodeDecodeError as error:
+        raise GroupError(f"{path}: {unreadable(error)}") from None
     source = said["source"]
     return Curve(path, points, source, errors, said.get("panel"), said.get("label", source))
 

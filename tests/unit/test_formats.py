@@ -344,7 +344,8 @@ MISTAKES = [
     ("a.csv", f"x,z,radius,weight\n{TWO}", "column weight: unknown, did you mean mass? (mass or density, or neither)"),
     ("a.csv", f"x,z,radius,masses\n{TWO}", "column masses: unknown, did you mean mass? (mass or density, or neither)"),
     ("a.csv", f"x,z,radius,Rho\n{TWO}", "column rho: unknown, did you mean density? (mass or density, or neither)"),
-    ("a.csv", f"x [mm],z [mm],radius [cm],mass\n{TWO}", "unit of length, not mm, mm, cm; convert them in the table"),
+    ("a.csv", f"x [mm],z [mm],radius [cm],mass\n{TWO}", "columns x, z and radius: must have the same unit of length, "
+     "not mm, mm, cm; convert them in the table"),
     ("a.csv", f"X,x,z,radius\n{TWO}", "column x is given 2 times, header must name x, z and radius"),
     ("a.dump", DUMP.replace("diameter", "size"), "line 19: column radius or diameter is missing"),
     ("a.dump", DUMP.replace("yu", "vy"), "line 19: column y is missing"),

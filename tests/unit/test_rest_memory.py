@@ -1,5 +1,8 @@
 """A packing of one material is settled once, and a kept rest state is exactly the computed one."""
 
+import os
+import time
+
 import numpy as np
 import pytest
 
@@ -119,6 +122,18 @@ def test_a_state_under_the_name_of_another_is_not_taken(folder, computed):
     kept.with_name(f"{settled.name(other)}.kept").write_bytes(kept.read_bytes())
     settled.rest_state(other)
     assert len(computed) == 2
+
+
+def test_states_of_other_sources_go_after_a_week(folder, computed):
+    new, old, thesis, odd = (folder / name for name in ("0" * 32, "1" * 32, "thesis", "2" * 32))
+    for shelf, file in ((new, "a.kept"), (old, "b.kept"), (thesis, "chapter1.kept"), (odd, "chapter2.tex")):
+        shelf.mkdir(parents=True)
+        (shelf / file).write_text("kept")
+    long_ago = time.time() - 8 * 24 * 3600
+    for shelf in (old, thesis, odd):
+        os.utime(shelf, (long_ago, long_ago))
+    settled.rest_state(Problem.from_scene(SCENE))
+    assert not old.exists() and new.exists() and thesis.exists() and odd.exists()
 
 
 def test_a_full_disk_costs_a_warning(folder, computed, monkeypatch):

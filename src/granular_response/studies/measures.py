@@ -111,8 +111,8 @@ class Measures:
     def region(self, state: State) -> OpenRegion:
         """The opened contacts below the load."""
         rest, state, near = self._matched(state)
-        opened, loaded_disk = network.opened(rest.pairs, state.pairs), rest.position[self.loaded_disk]
-        return open_region(rest, opened, loaded_disk, start=near, lattice_constant=self.lattice_constant)
+        opened, origin = network.opened(rest.pairs, state.pairs), rest.position[self.loaded_disk]
+        return open_region(rest, opened, origin, start=near, lattice_constant=self.lattice_constant)
 
     def _matched(self, state: State) -> tuple[State, State, NDArray[np.bool_]]:
         """The rest state and this one on one list of candidates, which dynamics may have made anew, and those near."""

@@ -6,14 +6,18 @@ are sealed pickles: what is damaged or stands under another name counts as absen
 is one that nobody else can write to.
 
 A memory is optional. What cannot be written or is of a kind that is not kept costs one warning, never the result.
-Nothing is ever deleted here: a folder is the caller's to remove.
+A folder is the caller's to remove; rest states of other sources alone go by themselves (:meth:`Memory.clear`).
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import pickle
+import re
+import shutil
+import time
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -27,6 +31,10 @@ Value = TypeVar("Value")
 
 #: Stands for a value that is not there.
 MISSING: Any = object()
+
+_SHELF = re.compile("[0-9a-f]{32}")
+#: Seconds after which values of other sources go.
+_OLD = 7 * 24 * 3600.0
 
 
 class MemoryWarning(UserWarning):
@@ -90,6 +98,14 @@ class Memory:
         """Keep ``function(value)`` under its name, unless the value, a table of disks, has changed meanwhile."""
         if name is not None and self.name(function, value) == name:
             self.save(name, result)
+
+    def clear(self) -> None:
+        """Remove what other sources have left and nobody has added to for a week."""
+        with contextlib.suppress(OSError):
+            for shelf in self.folder.iterdir():
+                ours = _SHELF.fullmatch(shelf.name) and all(file.suffix == ".kept" for file in shelf.iterdir())
+                if ours and time.time() - shelf.stat().st_mtime > _OLD:
+                    shutil.rmtree(shelf, ignore_errors=True)
 
     def _path(self, name: str) -> Path:
         return self.shelf / f"{name}.kept"

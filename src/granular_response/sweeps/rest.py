@@ -33,6 +33,8 @@ def rest_state(problem: Problem) -> State:
     state = memory.load(kept)
     if not isinstance(state, State):
         state = solvers.rest_state(problem)
+        if not memory.shelf.is_dir():  # the first one of these sources
+            memory.clear()
         memory.save(kept, state)
     return state
 

@@ -30,6 +30,6 @@ def stiffness_ratio(body: Body = "half plane", rotations: Rotations = "suppresse
         moduli = lattice.moduli(Springs(0.0, 1.0, 0.0, beta), rotations)
         return Slab(1.0, moduli, "smooth" if body == "smooth floor" else "rough").curvature_below_force()
 
-    from scipy.optimize import brentq  # a fifth of a second at the start of every process
+    from scipy.optimize import brentq  # a tenth of a second at the start of every process
 
     return float(brentq(curvature, 0.1, 0.8, xtol=1e-12))

@@ -103,7 +103,7 @@ def peak_criterion_root(rotations: Rotations = "suppressed") -> float:
     Found numerically to rounding; in closed form ``2 sqrt(7) - 5 = 0.2915`` with suppressed rotations
     (the paper's number) and ``3 / 11 = 0.2727`` with free ones.
     """
-    from scipy.optimize import brentq  # a fifth of a second at the start of every process
+    from scipy.optimize import brentq  # a tenth of a second at the start of every process
 
     return float(brentq(peak_criterion, 0.0, 1.0, args=(rotations,), xtol=1e-15, rtol=1e-15))
 

@@ -12,7 +12,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from granular_response.inputs import read_text
+from granular_response.inputs import read_text, unreadable
 from granular_response.scene import SceneError, text
 from granular_response.scene.base import Description
 from granular_response.store import files as store
@@ -48,8 +48,8 @@ def parameters(group: str, path: Path = PARAMETERS) -> tuple[dict[str, Any], Des
         return taken | own, _describe(kind, taken | own, group)
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from None
-    except UnicodeDecodeError:
-        raise GroupError(f"{path}: is not a text file in UTF-8") from None
+    except UnicodeDecodeError as error:
+        raise GroupError(f"{path}: {unreadable(error)}") from None
     except OSError as error:
         raise GroupError(f"{path}: cannot be read: {error.strerror}") from None
 

@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 
 from ...observe.stress import coarse_grained_stress, load_forces
+from ...state import State
 from ..result import CONTACTS, events_from, state_from
 from ..variables import EVENTS
 from .frames import contact_force_sums, in_plane
@@ -25,22 +26,22 @@ from .frames import contact_force_sums, in_plane
 def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
     """The files as bytes, the series last."""
     if path.suffix == ".vtu":
-        return {path: _mesh(dataset, -1)}
-    made, entries = {}, []
+        return {path: _mesh(dataset, state_from(dataset, 0), -1)}
+    made, entries, rest = {}, [], state_from(dataset, 0)
     factors = dataset["state_load_factor"].values.tolist()
     grows = all(later > before for before, later in pairwise(factors))
     for index, time in enumerate(factors if grows else range(len(factors))):
         name = f"{path.stem}-{index}.vtu"
-        made[path.with_name(name)] = _mesh(dataset, index)
+        made[path.with_name(name)] = _mesh(dataset, rest, index)
         entries.append(f'<DataSet timestep="{time}" part="0" file={quoteattr(name)}/>')
     lines = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">']
     lines += ["<Collection>", *entries, "</Collection>", "</VTKFile>", ""]
     return {**made, path: "\n".join(lines).encode()}
 
 
-def _mesh(dataset: xr.Dataset, index: int) -> bytes:
+def _mesh(dataset: xr.Dataset, rest: State, index: int) -> bytes:
     """One state, with what its load adds: displacements, and the stress at the centres of the disks (Sec. V.C)."""
-    rest, state = state_from(dataset, 0), state_from(dataset, index)
+    state = state_from(dataset, index)
     position, box, n = state.position, state.box, len(state.position)
     moved = position - rest.position
     points, moves, ends, values = [position], [moved], [], []

@@ -131,7 +131,7 @@ class Disordered:
 def disordered(scene: Scene, x: Sequence[float], width: float) -> Disordered:
     """Without and with a static finish.
 
-    Runs that stop at 1e-13 before the finish give the same response but for a thousandth of it, in twice the time.
+    Runs that stop at 1e-13 before the finish give the same response but for a thousandth of it, in 1.7 times the time.
     """
 
     def response(scene: Scene) -> FloatArray:
