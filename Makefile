@@ -11,7 +11,8 @@ SCENES ?= 5000
 
 VENV := $(CURDIR)/.venv
 BIN := $(VENV)/bin
-STAMP := $(VENV)/.installed
+PAPER := $(VENV)/.paper
+TOOLS := $(VENV)/.tools
 
 # The same order and width of floating-point operations on every x86 machine
 # (src/granular_response/machine/floating_point.py, which the command line applies by itself).
@@ -36,16 +37,24 @@ help: ## Show this list
 
 ## For readers of the paper
 
-setup: $(STAMP) ## Create .venv with the pinned versions and the three packages (PYTHON=python3.12 picks another one)
+setup: $(PAPER) ## Create .venv with the three packages and what they need, in the pinned versions (PYTHON=python3.12 picks another one)
 
-$(STAMP): requirements.lock pyproject.toml src/granular_response_paper/pyproject.toml extensions/pyproject.toml
+INSTALL = "$(BIN)/python" -m pip install -qq --disable-pip-version-check --constraint requirements.lock
+
+$(PAPER): requirements.lock pyproject.toml src/granular_response_paper/pyproject.toml extensions/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 	  || { echo "$(PYTHON) is older than Python 3.11: make setup PYTHON=python3.12" >&2; exit 1; }
-	@echo "Installing the pinned versions into .venv (some minutes the first time)"
+	@echo "Installing the pinned versions into .venv (a minute or two the first time)"
 	@test -x "$(BIN)/python" || $(PYTHON) -m venv "$(VENV)"
-	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check -r requirements.lock
-	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check --no-deps --no-build-isolation \
-	  -e . -e src/granular_response_paper -e extensions
+	@$(INSTALL) hatchling editables
+	@$(INSTALL) --no-build-isolation -e ".[export,pipeline]" -e "src/granular_response_paper[archive]" -e extensions
+	@touch "$@"
+
+# Tests, documentation and Dask: a third of the time of installing, and xarray imports Dask wherever it is installed,
+# for a quarter of a second in every process.
+$(TOOLS): $(PAPER)
+	@echo "Installing the tools of development into .venv"
+	@$(INSTALL) -r requirements.lock
 	@touch "$@"
 
 reproduce: setup ## Rebuild what is out of date of the paper: simulations, figures, claims, page (REPRO=--force: everything)
@@ -68,32 +77,32 @@ survey: setup ## Run the large ensembles of disordered slabs and larger packings
 	"$(BIN)/dvc" repro survey/dvc.yaml
 	"$(BIN)/python" survey/document.py
 
-test: setup ## Run all tests and the linters (JOBS=2 for two processes)
+test: $(TOOLS) ## Run all tests and the linters (JOBS=2 for two processes)
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/python" -m pytest -n $(JOBS) --dist worksteal
 
-fuzz: setup ## Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
+fuzz: $(TOOLS) ## Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
 	GRANULAR_RESPONSE_FUZZ=$(EXAMPLES) "$(BIN)/python" -m pytest -m hypothesis -n $(JOBS)
 
-broken: setup ## Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (ten minutes)
+broken: $(TOOLS) ## Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (ten minutes)
 	PYTHONPATH=tests "$(BIN)/python" tests/integration/broken_files.py $(BROKEN) --output tests/data/broken_files.json
 
-scenes: setup ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (half an hour; goes on where it was interrupted)
+scenes: $(TOOLS) ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (half an hour; goes on where it was interrupted)
 	"$(BIN)/python" -W ignore tests/unlike_scenes.py $(SCENES) --output tests/data/random_scenes.json
 
-coverage: setup ## What the unit tests reach but for compiled kernels; fails below the floor in pyproject.toml
+coverage: $(TOOLS) ## What the unit tests reach but for compiled kernels; fails below the floor in pyproject.toml
 	"$(BIN)/coverage" run -m pytest tests/unit
 	"$(BIN)/coverage" report --show-missing --skip-covered
 
-lint: setup ## Run the linters and the type checker alone
+lint: $(TOOLS) ## Run the linters and the type checker alone
 	"$(BIN)/ruff" check
 	"$(BIN)/mypy"
 	"$(BIN)/lint-imports"
 
-notebooks: setup ## Execute the notebooks of examples/notebooks anew, and store them with their outputs
+notebooks: $(TOOLS) ## Execute the notebooks of examples/notebooks anew, and store them with their outputs
 	"$(BIN)/python" tests/notebooks.py
 
-docs: setup ## Build the documentation site into docs/_build/html, running every example of the gallery
+docs: $(TOOLS) ## Build the documentation site into docs/_build/html, running every example of the gallery
 	"$(BIN)/python" -m sphinx -W --keep-going -q -b html docs docs/_build/html
 	"$(BIN)/python" .ci/links docs/_build/html
 
@@ -106,16 +115,16 @@ restore: setup ## Take the datasets from an archive in place of computing them: 
 	"$(BIN)/granular-response-paper" restore "$(ARCHIVE)"
 	"$(BIN)/dvc" commit simulate < /dev/null
 
-package: setup ## Build sdist and wheel, and try the wheel in a fresh environment
+package: $(TOOLS) ## Build sdist and wheel, and try the wheel in a fresh environment
 	.ci/package "$(BIN)/python" "$(PYTHON)"
 
-matrix: setup ## The same for each of Python 3.11 to 3.13 that there is
+matrix: $(TOOLS) ## The same for each of Python 3.11 to 3.13 that there is
 	.ci/package "$(BIN)/python" python3.11 python3.12 python3.13
 
-benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
+benchmark: $(TOOLS) ## Time everything on this machine (benchmarks/dvc.yaml)
 	"$(BIN)/dvc" repro benchmarks/dvc.yaml
 
-arena: setup ## Steps, responses and bounces beside other codes that are installed; says how to install those that are not
+arena: $(TOOLS) ## Steps, responses and bounces beside other codes that are installed; says how to install those that are not
 	"$(BIN)/python" benchmarks/bounces.py benchmarks/bounces.json
 	"$(BIN)/python" benchmarks/arena.py benchmarks/arena.json
 	"$(BIN)/python" benchmarks/responses.py benchmarks/responses.json
