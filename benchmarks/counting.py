@@ -78,14 +78,13 @@ def main(layers: str, per_row: str, friction: str) -> None:
     found = {}
     TALLY.clear()
     pairs = model.pairs
-    forces.add_pair_forces(
-        dynamics.q, dynamics.v, model.rim, memory.force, model.n, pairs.spring, pairs.shape, pairs, model.rule, 0.0
-    )
+    q, v, force = dynamics.q, dynamics.v, memory.force
+    forces.add_pair_forces(q, v, model.rim, force, model.n, pairs.spring, pairs.shape, pairs, None, model.rule, 0.0)
     found["pair forces"] = dict(TALLY)
     TALLY.clear()
     a, b, c, force, seen = memory
     scheme = dynamics.integrator.scheme
-    stepping.end_and_begin(scheme, dynamics.q, dynamics.v, a, b, c, force, model.inverse_mass, seen, 0.0)
+    stepping.end_and_begin(scheme, q, v, a, b, c, force, model.inverse_mass, seen, 0.0)
     found["integration"] = dict(TALLY)
     kinds = ("additions", "multiplications", "divisions", "roots", "selections", "loads", "stores")
     print(json.dumps({part: {kind: tally.get(kind, 0) for kind in kinds} for part, tally in found.items()}))

@@ -60,7 +60,7 @@ def measure(layers: int, per_row: int, friction: float, settle: int, steps: int)
 @nb.njit(error_model="numpy", _nrt=False)
 def _repeat_pairs(times, q, v, rim, f, n, spring, shape, pairs, rule):
     for _ in range(times):
-        forces.add_pair_forces(q, v, rim, f, n, spring, shape, pairs, rule, 0.0)
+        forces.add_pair_forces(q, v, rim, f, n, spring, shape, pairs, None, rule, 0.0)
 
 
 @nb.njit(error_model="numpy", _nrt=False)

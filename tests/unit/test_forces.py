@@ -7,10 +7,13 @@ import pytest
 from reference_loop import Material, forces
 
 from granular_response.contact import CUT, LITERAL, RULES, UNLOADING
+from granular_response.contact.coulomb import cut
+from granular_response.contact.law import normal_force
 from granular_response.contact.pair import frictional_pair, frictionless_pair
+from granular_response.contact.rolling import Rolling
 from granular_response.kernels import neighbours
 from granular_response.kernels.forces import SCRATCH, add_pair_forces, add_wall_forces
-from granular_response.kernels.model import Pairs, Walls
+from granular_response.kernels.model import Pairs, Rolls, Walls
 from granular_response.scene import SlabPacking
 from granular_response.solvers.close_pairs import close_pairs
 
@@ -36,7 +39,7 @@ def run_kernel(position, velocity, spin, radius, first, second, springs, materia
         spring if friction else None, np.zeros(SCRATCH), material.law,
     )  # fmt: skip
     rim = radius * spin if friction else None
-    add_pair_forces(q[:size], v[:size], rim, out, n, pairs.spring, pairs.shape, pairs, rule, dt)
+    add_pair_forces(q[:size], v[:size], rim, out, n, pairs.spring, pairs.shape, pairs, None, rule, dt)
     force = out[: 2 * n].reshape(2, n).T
     torque = -radius * out[2 * n :] if friction else np.zeros(n)
     return force, torque, spring[slot], spring, slot
@@ -133,28 +136,34 @@ def test_loops_agree_with_plain_python(packing, runs, friction, rule):
     assert force.sum(axis=0) == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
-@pytest.mark.parametrize(("friction", "rule"), [(0.0, CUT), (0.3, CUT), (0.3, LITERAL), (0.3, UNLOADING)])
+ROUGHNESS = pytest.mark.parametrize(
+    ("friction", "rule", "rolls"),
+    [(0.0, CUT, False), (0.3, CUT, False), (0.3, CUT, True), (0.3, LITERAL, False), (0.3, UNLOADING, False)],
+)
+
+
+@ROUGHNESS
 @pytest.mark.parametrize("shifts", [(1,), (3,), (7, 8), (9, 40), (1, 40, 2)])
 @pytest.mark.parametrize("count", [5, 8, 64, 65, 151])
-def test_runs_add_to_each_disk_as_first_and_then_as_second(count, shifts, friction, rule):
+def test_runs_add_to_each_disk_as_first_and_then_as_second(count, shifts, friction, rule, rolls):
     """From the end of each run, however many are taken at once."""
     start = 1
     runs = np.array([[start, start + shift, count, count * r] for r, shift in enumerate(shifts)])
     order = [(i + k, j + k, s + k) for i, j, _, s in runs for k in reversed(range(count))]
-    agrees_to_the_bit(runs, order, start + count + max(shifts) + 1, friction, rule)
+    agrees_to_the_bit(runs, order, start + count + max(shifts) + 1, friction, rule, rolls)
 
 
-@pytest.mark.parametrize(("friction", "rule"), [(0.0, CUT), (0.3, CUT), (0.3, LITERAL), (0.3, UNLOADING)])
+@ROUGHNESS
 @pytest.mark.parametrize("count", [3, 8, 29])
-def test_single_pairs_add_in_their_order(count, friction, rule):
+def test_single_pairs_add_in_their_order(count, friction, rule, rolls):
     rng = np.random.default_rng(count)
     pairs = sorted({tuple(sorted(rng.choice(9, 2, replace=False).tolist())) for _ in range(4 * count)})[:count]
     order = [(i, j, s) for s, (i, j) in enumerate(pairs)]
     runs = np.array([[i, j, 1, s] for i, j, s in order])
-    agrees_to_the_bit(runs, order, 9, friction, rule)
+    agrees_to_the_bit(runs, order, 9, friction, rule, rolls)
 
 
-def agrees_to_the_bit(runs, order, n, friction, rule):
+def agrees_to_the_bit(runs, order, n, friction, rule, rolls):
     """The kernel against one pair after the other, ``order`` of first disk, second disk and slot."""
     slots = len(order)
     rng = np.random.default_rng(slots + n)
@@ -163,6 +172,8 @@ def agrees_to_the_bit(runs, order, n, friction, rule):
     rim, reach = rng.normal(0, 0.1, n), rng.uniform(1.5, 2.5, slots)
     dx, dz, spring = rng.normal(0, 2, slots), rng.normal(0, 2, slots), rng.normal(0, 1e-3, slots)
     expected, springs = f.copy(), spring.copy()
+    rolling = Rolls(rng.uniform(0.4, 0.6, slots), rng.normal(0, 1e-3, slots), Rolling(500.0, 10.0, 0.05), np.zeros(n))
+    couple, turned = np.zeros(n), rolling.spring.copy()
     for i, j, s in order:
         moved = dx[s] + (q[i] - q[j]), dz[s] + (q[n + i] - q[n + j]), v[i] - v[j], v[n + i] - v[n + j]
         if rough:
@@ -173,14 +184,26 @@ def agrees_to_the_bit(runs, order, n, friction, rule):
             expected[2 * n + j] += pt
         else:
             px, pz = frictionless_pair(*moved, reach[s], None, material.law)
+        if rolls:
+            dx_, dz_, du, dw = moved
+            distance = np.sqrt(dx_ * dx_ + dz_ * dz_)
+            overlap, inverse = reach[s] - distance, 1.0 / distance
+            fn = normal_force(overlap, None, du * (dx_ * inverse) + dw * (dz_ * inverse), material.law)
+            spin, (stiffness, damping, limit) = v[2 * n + i] - v[2 * n + j], rolling.rolling
+            force, new = cut(turned[s], rolling.arm[s] * spin, fn, stiffness, damping, limit, dt)
+            turned[s] = new if overlap > 0.0 else 0.0
+            couple[i] += rolling.arm[s] * force if overlap > 0.0 else 0.0
+            couple[j] -= rolling.arm[s] * force if overlap > 0.0 else 0.0
         expected[i] += px
         expected[j] -= px
         expected[n + i] += pz
         expected[n + j] -= pz
     pairs = Pairs(runs, dx, dz, reach, None, spring if rough else None, np.zeros(SCRATCH), material.law)
-    add_pair_forces(q, v, rim if rough else None, f, n, pairs.spring, None, pairs, rule, dt)
+    add_pair_forces(q, v, rim if rough else None, f, n, pairs.spring, None, pairs, rolling if rolls else None, rule, dt)
     assert np.array_equal(f, expected)
     assert np.array_equal(spring, springs)
+    assert np.array_equal(rolling.couple, couple)
+    assert np.array_equal(rolling.spring, turned) and (not rolls or 0 < (turned == 0.0).sum() < slots)
 
 
 WALLS = {"floor": (0.0, 1.0), "left": (1.0, 0.0), "right": (-1.0, 0.0)}

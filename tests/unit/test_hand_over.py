@@ -43,10 +43,15 @@ def test_statics_finds_the_equilibrium_that_the_motion_ends_in(integrator, monke
     assert uncorrected == error if integrator == "leapfrog" else uncorrected > 10.0 * error
 
 
-@pytest.mark.parametrize("walls", [0.0, 0.2])
-@pytest.mark.parametrize("friction", [0.05, 0.5])
-def test_a_vibration_that_changes_no_contact_ends_in_the_same_equilibrium_sooner(friction, walls):
-    described = {"contact__friction": friction, "wall__friction": walls}
+ROLLS = {"contact__rolling_friction": 0.1, "contact__rolling_stiffness_ratio": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("friction", "walls", "rolling"),
+    [(0.05, 0.0, {}), (0.5, 0.0, {}), (0.05, 0.2, {}), (0.5, 0.2, {}), (0.5, 0.2, ROLLS)],
+)
+def test_a_vibration_that_changes_no_contact_ends_in_the_same_equilibrium_sooner(friction, walls, rolling):
+    described = {"contact__friction": friction, "wall__friction": walls, **rolling}
     quick, paper = rest_state(rough(**described)), rough(**described, protocol__stop_kinetic_energy=1e-21)
     assert paper.plan.quiet_energy < 1e-16
     slow = rest_state(paper)
@@ -82,6 +87,19 @@ def test_a_disk_that_slides_is_seen_and_nothing_changes_by_it(friction, slides):
     assert motion.slides() is slides
     for name, value in kept.items():
         assert np.array_equal(getattr(motion, name), value), name
+
+
+@pytest.mark.parametrize(("limit", "slides"), [(0.001, True), (0.5, False)])
+def test_a_disk_that_rolls_against_its_limit_is_seen(limit, slides):
+    problem, state = free_disks(
+        [[500.0, 1.0 - 1 / 6000]], velocity=[(0.01, 0.0)], contact__friction=0.5, wall__friction=0.9,
+        wall__rolling_friction=limit, wall__rolling_stiffness_ratio=0.1,
+    )  # fmt: skip
+    motion = Dynamics(problem, replace(state, angular_velocity=np.array([-0.01])))
+    motion.advance(50)
+    spring = motion.wall_rolls.spring.copy()
+    assert spring.all() and motion.slides() is slides
+    assert np.array_equal(motion.wall_rolls.spring, spring)
 
 
 def test_where_it_does_not_count():

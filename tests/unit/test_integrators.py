@@ -12,8 +12,8 @@ from small_scenes import free_disks
 from granular_response.contact import Linear
 from granular_response.contact.coulomb import (
     RULES,
+    cut,
     tangential,
-    tangential_cut,
     tangential_literal,
     tangential_unloading,
 )
@@ -62,10 +62,10 @@ LAW = Linear(1000.0, 10.0, 800.0, 5.0, 0.5, -math.inf)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_sliding_is_cut_with_the_dashpot_and_the_spring_follows(sign):
     """The limit is 0.5 * 4 = 2; the spring that gives it beside the dashpot's 1 is (2 - 1) / 800."""
-    force, spring = tangential_cut(sign * 3e-3, sign * 0.2, 4.0, LAW, 5e-3)
+    force, spring = cut(sign * 3e-3, sign * 0.2, 4.0, 800.0, 5.0, 0.5, 5e-3)
     assert force == pytest.approx(-sign * 2.0)
     assert spring == pytest.approx(sign * 1.0 / 800.0)
-    again, kept = tangential_cut(spring, sign * 0.2, 4.0, LAW, 0.0)
+    again, kept = cut(spring, sign * 0.2, 4.0, 800.0, 5.0, 0.5, 0.0)
     assert (again, kept) == (pytest.approx(force), pytest.approx(spring))
 
 

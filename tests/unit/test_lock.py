@@ -56,5 +56,7 @@ def test_every_package_declares_what_it_imports():
         needed |= {Requirement(one).name.lower().replace("_", "-") for one in chain.from_iterable(lists)}
         found = set(_imported(folder)) - {*sys.stdlib_module_names, folder.rpartition("/")[2]}
         assert "numpy" in found
-        missing = {name for name in found if not {one.lower().replace("_", "-") for one in of.get(name, [name])} & needed}
+        missing = {
+            name for name in found if not {one.lower().replace("_", "-") for one in of.get(name, [name])} & needed
+        }
         assert not missing, f"{file} does not declare {', '.join(sorted(missing))}"

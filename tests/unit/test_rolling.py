@@ -9,8 +9,8 @@ from small_scenes import free_disks, scene, shaken, started
 from test_next_changes import added_to_tangent
 from test_statics import dense_tangent, numerical_tangent
 
-from granular_response.contact.coulomb import return_map
-from granular_response.contact.rolling import Rolling, rolling_force
+from granular_response.contact.coulomb import cut, return_map
+from granular_response.contact.rolling import Rolling
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.path import PathRecord, follow
@@ -36,9 +36,10 @@ FLOOR = {"wall__friction": 1.0, "wall__rolling_friction": 0.3, "wall__rolling_st
 
 def test_the_rolling_force_by_hand():
     """Within the limit spring and dashpot; beyond it the cut force, and the spring that it leaves after the dashpot."""
-    assert rolling_force(1e-3, 0.01, 10.0, LAW, 0.01) == pytest.approx((-0.65, 1.1e-3))
-    assert rolling_force(3e-3, 0.01, 10.0, LAW, 0.0) == pytest.approx((-1.0, 0.9 / 500.0))
-    assert rolling_force(-3e-3, 0.0, -10.0, LAW, 0.0) == pytest.approx((1.0, -1.0 / 500.0))
+    constants = LAW.stiffness, LAW.damping, LAW.friction
+    assert cut(1e-3, 0.01, 10.0, *constants, 0.01) == pytest.approx((-0.65, 1.1e-3))
+    assert cut(3e-3, 0.01, 10.0, *constants, 0.0) == pytest.approx((-1.0, 0.9 / 500.0))
+    assert cut(-3e-3, 0.0, -10.0, *constants, 0.0) == pytest.approx((1.0, -1.0 / 500.0))
     assert return_map(3e-3, 1.0, LAW.stiffness) == pytest.approx((-1.0, 2e-3, -1.0))
     assert return_map(1e-3, 1.0, LAW.stiffness) == pytest.approx((-0.5, 1e-3, 0.0))
 

@@ -14,19 +14,19 @@ RULES = {"cut": CUT, "literal": LITERAL, "unloading": UNLOADING}
 
 
 @kernel
-def tangential_cut(spring, slip_velocity, force_normal, law, time_step):
-    """Spring plus dashpot cut to the Coulomb limit; returns force and new spring.
+def cut(spring, slip_velocity, force_normal, stiffness, damping, friction, time_step):
+    """Spring plus dashpot cut to a Coulomb limit; returns force and new spring.
 
     The limit is ``friction * |force_normal|`` with the dashpot's part included. Where it acts, the stored
-    spring becomes the one that gives the cut force, so that the contact sticks again from there.
+    spring becomes the one that gives the cut force, so that the contact sticks again from there. Along the rolling too.
     """
     trial = spring + slip_velocity * time_step
-    damping = law.tangential_damping * slip_velocity
-    force = -law.tangential_stiffness * trial - damping
-    limit = law.friction * magnitude(force_normal)
-    cut = select(force > limit, limit, force)
-    cut = select(cut < -limit, -limit, cut)
-    return cut, quotient_where(cut != force, -(cut + damping), law.tangential_stiffness, trial)
+    damped = damping * slip_velocity
+    force = -stiffness * trial - damped
+    limit = friction * magnitude(force_normal)
+    kept = select(force > limit, limit, force)
+    kept = select(kept < -limit, -limit, kept)
+    return kept, quotient_where(kept != force, -(kept + damped), stiffness, trial)
 
 
 @kernel
@@ -61,7 +61,9 @@ def tangential(spring, slip_velocity, force_normal, law, rule, time_step):
         if rule == LITERAL:
             return tangential_literal(spring, slip_velocity, force_normal, law, time_step)
         return tangential_unloading(spring, slip_velocity, force_normal, law, time_step)
-    return tangential_cut(spring, slip_velocity, force_normal, law, time_step)
+    return cut(
+        spring, slip_velocity, force_normal, law.tangential_stiffness, law.tangential_damping, law.friction, time_step
+    )
 
 
 @kernel

@@ -13,19 +13,17 @@ the force of the pair it is first in before that of the pair it is second in, al
 
 from __future__ import annotations
 
-import math
-
+from ..contact.coulomb import cut
 from ..contact.law import normal_force
 from ..contact.pair import frictional, frictional_pair, frictionless, frictionless_pair
-from ..contact.rolling import rolling_force
-from ..machine.lanes import WIDTH, gather, put, spread, take
+from ..machine.lanes import WIDTH, gather, put, root, select, spread, take
 from ..machine.machine_code import kernel
 
 #: Pairs of a run of close indices whose forces are held back before they are added to their second disks: memory
 #: that one vector has just written at another offset cannot be read again at once.
 _BLOCK = 64
 #: Length of the scratch that this takes.
-SCRATCH = 3 * _BLOCK
+SCRATCH = 4 * _BLOCK
 
 
 @kernel(forceinline=True)
@@ -37,8 +35,25 @@ def _shape_at(shape, k, like):
 
 
 @kernel(forceinline=True)
-def _forces_at(like, i, j, s, n, q, v, rim, spring, shape, pairs, rule, dt):
-    """Force on the first disk, and its tangential part, of the pair of disks ``i`` and ``j`` in slot ``s``.
+def _couple(dx, dz, du, dw, reach, form, law, spin, s, rolls, dt):
+    """Couple on the first disk of the pair in slot ``s`` that rolls with a relative ``spin``, or of several pairs.
+
+    Springs advance; what is open forgets its own.
+    """
+    distance = root(dx * dx + dz * dz)
+    inverse = 1.0 / distance
+    overlap = reach - distance
+    normal = normal_force(overlap, form, du * (dx * inverse) + dw * (dz * inverse), law)
+    arm, rolling = take(rolls.arm, s, distance), rolls.rolling
+    spring = take(rolls.spring, s, distance)
+    force, new = cut(spring, arm * spin, normal, rolling.stiffness, rolling.damping, rolling.friction, dt)
+    put(rolls.spring, s, select(overlap > 0.0, new, 0.0))
+    return select(overlap > 0.0, arm * force, 0.0)
+
+
+@kernel(forceinline=True)
+def _forces_at(like, i, j, s, n, q, v, rim, spring, shape, pairs, rolls, rule, dt):
+    """Force on the first disk, its tangential part, and couple, of the pair of disks ``i`` and ``j`` in slot ``s``.
 
     Or of as many pairs from there on as ``like`` has lanes. Springs advance.
     """
@@ -50,26 +65,31 @@ def _forces_at(like, i, j, s, n, q, v, rim, spring, shape, pairs, rule, dt):
     form = _shape_at(shape, s, like)
     if spring is None:
         px, pz = frictionless_pair(dx, dz, du, dw, reach, form, pairs.law)
-        return px, pz, like
+        return px, pz, like, like
     rims = take(rim, i, like) + take(rim, j, like)
     px, pz, pt, new = frictional_pair(
         dx, dz, du, dw, rims, reach, form, take(spring, s, like), pairs.law, rule, dt
     )  # fmt: skip
     put(spring, s, new)
-    return px, pz, pt
+    if rolls is None:
+        return px, pz, pt, like
+    spin = take(v, 2 * n + i, like) - take(v, 2 * n + j, like)
+    return px, pz, pt, _couple(dx, dz, du, dw, reach, form, pairs.law, spin, s, rolls, dt)
 
 
 @kernel(forceinline=True)
-def _add(f, n, i, px, pz, pt, spring):
+def _add(f, n, i, px, pz, pt, pc, spring, rolls):
     """Add to the forces on disk ``i``, and the disks after it with lanes."""
     put(f, i, take(f, i, px) + px)
     put(f, n + i, take(f, n + i, pz) + pz)
     if spring is not None:
         put(f, 2 * n + i, take(f, 2 * n + i, pt) + pt)
+    if rolls is not None:
+        put(rolls.couple, i, take(rolls.couple, i, pc) + pc)
 
 
 @kernel
-def _add_run(r, n, q, v, rim, f, spring, shape, pairs, rule, dt):
+def _add_run(r, n, q, v, rim, f, spring, shape, pairs, rolls, rule, dt):
     """Add the forces of run ``r``."""
     i = pairs.runs[r, 0]
     j = pairs.runs[r, 1]
@@ -78,38 +98,41 @@ def _add_run(r, n, q, v, rim, f, spring, shape, pairs, rule, dt):
     scratch = pairs.scratch
     while k % WIDTH:
         k -= 1
-        px, pz, pt = _forces_at(0.0, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rule, dt)
-        _add(f, n, i + k, px, pz, pt, spring)
-        _add(f, n, j + k, -px, -pz, pt, spring)
+        px, pz, pt, pc = _forces_at(0.0, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rolls, rule, dt)
+        _add(f, n, i + k, px, pz, pt, pc, spring, rolls)
+        _add(f, n, j + k, -px, -pz, pt, -pc, spring, rolls)
     like = spread(0.0)
     if j - i >= WIDTH:
         while k:
             k -= WIDTH
-            px, pz, pt = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rule, dt)
-            _add(f, n, i + k, px, pz, pt, spring)
-            _add(f, n, j + k, -px, -pz, pt, spring)
+            px, pz, pt, pc = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rolls, rule, dt)
+            _add(f, n, i + k, px, pz, pt, pc, spring, rolls)
+            _add(f, n, j + k, -px, -pz, pt, -pc, spring, rolls)
         return
     while k:
         end = k
         start = max(k - _BLOCK, 0)
         while k > start:
             k -= WIDTH
-            px, pz, pt = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rule, dt)
-            _add(f, n, i + k, px, pz, pt, spring)
+            px, pz, pt, pc = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rolls, rule, dt)
+            _add(f, n, i + k, px, pz, pt, pc, spring, rolls)
             put(scratch, k - start, px)
             put(scratch, _BLOCK + k - start, pz)
             if spring is not None:
                 put(scratch, 2 * _BLOCK + k - start, pt)
+            if rolls is not None:
+                put(scratch, 3 * _BLOCK + k - start, pc)
         while end > start:
             end -= WIDTH
             px = take(scratch, end - start, like)
             pz = take(scratch, _BLOCK + end - start, like)
             pt = take(scratch, 2 * _BLOCK + end - start, like)
-            _add(f, n, j + end, -px, -pz, pt, spring)
+            pc = take(scratch, 3 * _BLOCK + end - start, like)
+            _add(f, n, j + end, -px, -pz, pt, -pc, spring, rolls)
 
 
 @kernel
-def _add_single_pairs(start, n, q, v, rim, f, spring, shape, pairs, rule, dt):
+def _add_single_pairs(start, n, q, v, rim, f, spring, shape, pairs, rolls, rule, dt):
     """Add the forces of the runs of count one, from ``start`` on, several at once; their slots follow one another."""
     runs = pairs.runs
     scratch = pairs.scratch
@@ -133,6 +156,9 @@ def _add_single_pairs(start, n, q, v, rim, f, spring, shape, pairs, rule, dt):
             )  # fmt: skip
             put(spring, s, new)
             put(scratch, 2 * WIDTH, pt)
+        if rolls is not None:
+            spin = gather(v, 2 * n, runs, r, 0) - gather(v, 2 * n, runs, r, 1)
+            put(scratch, 3 * WIDTH, _couple(dx, dz, du, dw, reach, form, pairs.law, spin, s, rolls, dt))
         put(scratch, 0, px)
         put(scratch, WIDTH, pz)
         for lane in range(WIDTH):
@@ -145,18 +171,21 @@ def _add_single_pairs(start, n, q, v, rim, f, spring, shape, pairs, rule, dt):
             if spring is not None:
                 f[2 * n + i] += scratch[2 * WIDTH + lane]
                 f[2 * n + j] += scratch[2 * WIDTH + lane]
+            if rolls is not None:
+                rolls.couple[i] += scratch[3 * WIDTH + lane]
+                rolls.couple[j] -= scratch[3 * WIDTH + lane]
     for r in range(whole, end):
         i = runs[r, 0]
         j = runs[r, 1]
-        px, pz, pt = _forces_at(0.0, i, j, runs[r, 3], n, q, v, rim, spring, shape, pairs, rule, dt)
-        _add(f, n, i, px, pz, pt, spring)
-        _add(f, n, j, -px, -pz, pt, spring)
+        px, pz, pt, pc = _forces_at(0.0, i, j, runs[r, 3], n, q, v, rim, spring, shape, pairs, rolls, rule, dt)
+        _add(f, n, i, px, pz, pt, pc, spring, rolls)
+        _add(f, n, j, -px, -pz, pt, -pc, spring, rolls)
 
 
-# Springs and shapes are arguments of their own, beside the pairs that hold them: only of an argument does the compiler
+# Springs, shapes and rolling are arguments of their own, beside what holds them: only of an argument does the compiler
 # know that it is None.
 @kernel
-def add_pair_forces(q, v, rim, f, n, spring, shape, pairs, rule, dt):
+def add_pair_forces(q, v, rim, f, n, spring, shape, pairs, rolls, rule, dt):
     """Add the forces of all disk-disk candidates to ``f``.
 
     Parameters
@@ -166,12 +195,13 @@ def add_pair_forces(q, v, rim, f, n, spring, shape, pairs, rule, dt):
     rim : (n,) radius times angular velocity, or None without friction.
     pairs : ``model.Pairs``, and its ``spring`` and ``shape``; ``rule`` : of ``contact.RULES``; ``dt`` : time step of
         the spring update.
+    rolls : ``model.Rolls``, to whose couples is added; None without rolling resistance.
     """
     for r in range(pairs.runs.shape[0]):
         if pairs.runs[r, 2] == 1:
-            _add_single_pairs(r, n, q, v, rim, f, spring, shape, pairs, rule, dt)
+            _add_single_pairs(r, n, q, v, rim, f, spring, shape, pairs, rolls, rule, dt)
             break
-        _add_run(r, n, q, v, rim, f, spring, shape, pairs, rule, dt)
+        _add_run(r, n, q, v, rim, f, spring, shape, pairs, rolls, rule, dt)
 
 
 @kernel
@@ -198,59 +228,32 @@ def add_wall_forces(q, v, rim, f, n, spring, shape, walls, rule, dt):
 
 
 @kernel
-def _add_couple(c, overlap, fn, v, f, n, rolls, dt):
-    """Add the couple of listed contact ``c`` with the normal force ``fn``; one that is open forgets its spring."""
-    if not overlap > 0.0:
-        rolls.spring[c] = 0.0
-        return
-    i, j, arm = 2 * n + rolls.first[c], 2 * n + rolls.second[c], rolls.arm[c]
-    spin = v[i] - v[j] if i != j else v[i]
-    force, rolls.spring[c] = rolling_force(rolls.spring[c], arm * spin, fn, rolls.rolling, dt)
-    f[i] += arm * force
-    if i != j:
-        f[j] -= arm * force
-
-
-@kernel
-def add_pair_couples(q, v, f, n, shape, rolls, pairs, dt):
-    """Add the couples of disks that roll on one another to ``f``; ``rolls`` : ``model.Rolls``."""
-    for c in range(rolls.first.size):
-        i, j, s = rolls.first[c], rolls.second[c], rolls.slot[c]
-        dx = pairs.dx[s] + (q[i] - q[j])
-        dz = pairs.dz[s] + (q[n + i] - q[n + j])
-        distance = math.sqrt(dx * dx + dz * dz)
-        apart = ((v[i] - v[j]) * dx + (v[n + i] - v[n + j]) * dz) / distance
-        overlap = pairs.reach[s] - distance
-        _add_couple(c, overlap, normal_force(overlap, _shape_at(shape, s, 0.0), apart, pairs.law), v, f, n, rolls, dt)
-
-
-@kernel
 def add_wall_couples(q, v, f, n, shape, rolls, walls, dt):
-    """As :func:`add_pair_couples` for disks that roll on walls."""
-    for c in range(rolls.first.size):
-        i, nx, nz = rolls.first[c], walls.normal[c, 0], walls.normal[c, 1]
+    """Add the couples of disks that roll on walls to ``f``; ``rolls`` : ``model.Rolls``."""
+    rolling = rolls.rolling
+    for c in range(walls.disk.size):
+        i, nx, nz, arm = walls.disk[c], walls.normal[c, 0], walls.normal[c, 1], rolls.arm[c]
         overlap = -(walls.gap[c] + q[i] * nx + q[n + i] * nz)
-        fn = normal_force(overlap, _shape_at(shape, c, 0.0), v[i] * nx + v[n + i] * nz, walls.law)
-        _add_couple(c, overlap, fn, v, f, n, rolls, dt)
+        if not overlap > 0.0:
+            rolls.spring[c] = 0.0
+            continue
+        normal = normal_force(overlap, _shape_at(shape, c, 0.0), v[i] * nx + v[n + i] * nz, walls.law)
+        spin = v[2 * n + i]
+        force, rolls.spring[c] = cut(
+            rolls.spring[c], arm * spin, normal, rolling.stiffness, rolling.damping, rolling.friction, dt
+        )  # fmt: skip
+        f[2 * n + i] += arm * force
 
 
 @kernel
 def forces(q, v, f, gravity, load_factor, dt, model):
     """Fill ``f`` with all forces and torques at ``(q, v)``; springs advance by ``dt``."""
-    _fill(q, v, f, gravity, load_factor, dt, model.rim, model.pairs, model.walls, model)
-    _add_couples(q, v, f, dt, model.pair_rolls, model.wall_rolls, model)
+    pairs, walls, pair_rolls, wall_rolls = model.pairs, model.walls, model.pair_rolls, model.wall_rolls
+    _fill(q, v, f, gravity, load_factor, dt, model.rim, pairs, walls, pair_rolls, wall_rolls, model)
 
 
 @kernel
-def _add_couples(q, v, f, dt, pair_rolls, wall_rolls, model):
-    if pair_rolls is not None:
-        add_pair_couples(q, v, f, model.n, model.pairs.shape, pair_rolls, model.pairs, dt)
-    if wall_rolls is not None:
-        add_wall_couples(q, v, f, model.n, model.walls.shape, wall_rolls, model.walls, dt)
-
-
-@kernel
-def _fill(q, v, f, gravity, load_factor, dt, rim, pairs, walls, model):
+def _fill(q, v, f, gravity, load_factor, dt, rim, pairs, walls, pair_rolls, wall_rolls, model):
     n = model.n
     weight = model.weight
     radius = model.radius
@@ -262,11 +265,18 @@ def _fill(q, v, f, gravity, load_factor, dt, rim, pairs, walls, model):
         for i in range(n):
             rim[i] = radius[i] * v[2 * n + i]
             f[2 * n + i] = 0.0
-    add_pair_forces(q, v, rim, f, n, pairs.spring, pairs.shape, pairs, model.rule, dt)
+    if pair_rolls is not None:
+        pair_rolls.couple[:] = 0.0
+    add_pair_forces(q, v, rim, f, n, pairs.spring, pairs.shape, pairs, pair_rolls, model.rule, dt)
     add_wall_forces(q, v, rim, f, n, walls.spring, walls.shape, walls, model.rule, dt)
     if rim is not None:
         for i in range(n):
             f[2 * n + i] *= -radius[i]
+    if pair_rolls is not None:
+        for i in range(n):
+            f[2 * n + i] += pair_rolls.couple[i]
+    if wall_rolls is not None:
+        add_wall_couples(q, v, f, n, walls.shape, wall_rolls, walls, dt)
     load = model.load
     for c in range(model.load_disk.size):
         i = model.load_disk[c]

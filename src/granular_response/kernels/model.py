@@ -14,14 +14,12 @@ Floats = NDArray[Any]
 
 
 class Rolls(NamedTuple):
-    """What rolling resistance needs of listed contacts of one kind, in their order."""
+    """Rolling resistance of contacts of one kind, in the places of their other arrays."""
 
-    first: NDArray[Any]  #: (m,) disks
-    second: NDArray[Any]  #: (m,) other disks; the same at walls
-    slot: NDArray[Any]  #: (m,) where the other arrays have them
-    arm: Floats  #: (m,) reduced radii
-    spring: Floats  #: (m,) updated in place
+    arm: Floats  #: (slots,) or (w,) reduced radii
+    spring: Floats  #: the same; updated in place
     rolling: Any  #: contact.rolling.Rolling
+    couple: Floats  #: (n,) scratch for the couples of pairs
 
 
 class Pairs(NamedTuple):

@@ -102,8 +102,7 @@ def _stop_energies(scene: Scene, packing: Packing, rotations: bool, static: bool
     if protocol.method == "dynamics" or not static:
         return stop, 0.0
     if rotations and packing.ordered:
-        at_once = protocol.stop_rule == "instantaneous" and not (scene.contact.rolls or scene.resolved_wall.rolls)
-        return stop, min(QUIET * stop, LARGEST_QUIET) if at_once else 0.0
+        return stop, min(QUIET * stop, LARGEST_QUIET) if protocol.stop_rule == "instantaneous" else 0.0
     return max(stop, 1e-9 if rotations else 1e-6), 0.0
 
 

@@ -18,6 +18,7 @@ import math
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,6 +94,14 @@ class Stop:
     quiet_energy: float = 0.0
 
 
+def _slippery(contacts: Any, law: str) -> Any:
+    """Contacts of one kind, if there are any, whose friction by their ``law`` is a little less."""
+    if contacts is None:
+        return None
+    known = getattr(contacts, law)
+    return contacts._replace(**{law: known._replace(friction=OPTIONS.sliding * known.friction)})
+
+
 class Dynamics:
     """One packing in motion.
 
@@ -140,14 +149,13 @@ class Dynamics:
         if problem.wall_friction:
             self.wall_spring, wall_roll = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
         self.pair_rolls = self.wall_rolls = None
+        couple = aligned_zeros(problem.n)
         if problem.pair_rolling is not None:
-            first, second = c.first.astype(np.int64), c.second.astype(np.int64)
-            self.pair_rolls = Rolls(first, second, c.slot, problem.pair_arms(first, second), roll, problem.pair_rolling)
+            arm, springs = aligned_zeros(len(c.reach)), aligned_zeros(len(c.reach))
+            arm[c.slot], springs[c.slot] = problem.pair_arms(c.first, c.second), roll
+            self.pair_rolls = Rolls(arm, springs, problem.pair_rolling, couple)
         if problem.wall_rolling is not None:
-            disk = c.wall_disk
-            self.wall_rolls = Rolls(
-                disk, disk, np.arange(len(disk)), problem.wall_arms(disk), wall_roll, problem.wall_rolling
-            )
+            self.wall_rolls = Rolls(problem.wall_arms(c.wall_disk), wall_roll, problem.wall_rolling, couple)
         #: which listed contacts (pairs, then walls) have friction, and so remember
         self.rubs = np.repeat([problem.pair_friction, problem.wall_friction], [len(c.first), len(c.wall)])
         self.wall_normal = wall_normals(c.wall)
@@ -161,11 +169,9 @@ class Dynamics:
             Walls(c.wall_disk, self.wall_normal, c.wall_gap, c.wall_shape, self.wall_spring, problem.wall_law),
             problem.rule, self.pair_rolls, self.wall_rolls,
         )  # fmt: skip
-        pairs, walls = self.model.pairs, self.model.walls
         self.slippery = self.model._replace(
-            pairs=pairs._replace(law=pairs.law._replace(friction=OPTIONS.sliding * pairs.law.friction)),
-            walls=walls._replace(law=walls.law._replace(friction=OPTIONS.sliding * walls.law.friction)),
-            pair_rolls=None, wall_rolls=None,
+            pairs=_slippery(self.model.pairs, "law"), walls=_slippery(self.model.walls, "law"),
+            pair_rolls=_slippery(self.pair_rolls, "rolling"), wall_rolls=_slippery(self.wall_rolls, "rolling"),
         )  # fmt: skip
 
     def _fill_history(self) -> None:
@@ -274,9 +280,8 @@ class Dynamics:
         problem, c, n = self.problem, self.candidates, self.problem.n
         spring = None if self.spring is None else self.spring[c.slot]
         wall_spring = None if self.wall_spring is None else self.wall_spring.copy()
-        roll, wall_roll = (
-            None if rolls is None else rolls.spring.copy() for rolls in (self.pair_rolls, self.wall_rolls)
-        )
+        roll = None if self.pair_rolls is None else self.pair_rolls.spring[c.slot]
+        wall_roll = None if self.wall_rolls is None else self.wall_rolls.spring.copy()
         bare = State(
             position=self.position,
             angle=self.angle.copy(),
@@ -303,8 +308,10 @@ class Dynamics:
         return closed
 
     def slides(self) -> bool:
-        """Whether a contact was at Coulomb's limit in the last step: the limit a little lower, it is cut again."""
-        kept = [(spring, spring.copy()) for spring in (self.spring, self.wall_spring) if spring is not None]
+        """Whether a contact was at a limit of friction in the last step: the limit a little lower, it is cut again."""
+        rolling = [rolls.spring for rolls in (self.pair_rolls, self.wall_rolls) if rolls is not None]
+        springs = [spring for spring in (self.spring, self.wall_spring, *rolling) if spring is not None]
+        kept = [(spring, spring.copy()) for spring in springs]
         accelerations(self.q, self.rows.seen, self.rows.force[: self.q.size], 1.0, 0.0, 0.0, self.slippery)
         slid = any((spring != before).any() for spring, before in kept)
         for spring, before in kept:
