@@ -121,10 +121,10 @@ package: $(TOOLS) ## Build sdist and wheel, and try the wheel in a fresh environ
 matrix: $(TOOLS) ## The same for each of Python 3.11 to 3.13 that there is
 	.ci/package "$(BIN)/python" python3.11 python3.12 python3.13
 
-benchmark: $(TOOLS) ## Time everything on this machine (benchmarks/dvc.yaml)
+benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
 	"$(BIN)/dvc" repro benchmarks/dvc.yaml
 
-arena: $(TOOLS) ## Steps, responses and bounces beside other codes that are installed; says how to install those that are not
+arena: setup ## Steps, responses and bounces beside other codes that are installed; says how to install those that are not
 	"$(BIN)/python" benchmarks/bounces.py benchmarks/bounces.json
 	"$(BIN)/python" benchmarks/arena.py benchmarks/arena.json
 	"$(BIN)/python" benchmarks/responses.py benchmarks/responses.json
