@@ -10,7 +10,7 @@ import xarray as xr
 from ..scene.laboratory import FORCE, LENGTH
 from ..state import FloatArray, State
 from ..state.box import WALL_MEANINGS
-from ..state.status import MEANINGS
+from ..state.state import MEANINGS
 
 #: Units of the columns that have one.
 UNITS = {"x": LENGTH, "z": LENGTH, "normal_force": FORCE, "tangential_force": FORCE}

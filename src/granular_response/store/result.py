@@ -27,7 +27,7 @@ from ..solvers.problem import Problem
 from ..solvers.solution import Solution
 from ..solvers.timestep import time_step_reason
 from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Box, Certificate, Contacts, Event, Reached, State
-from ..state.status import MEANINGS
+from ..state.state import MEANINGS
 from .variables import (
     CERTIFICATE,
     CONTACT,

@@ -20,7 +20,7 @@ import xarray as xr
 from ..inputs import read_text
 from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS
 from ..state.box import WALL_MEANINGS
-from ..state.status import MEANINGS
+from ..state.state import MEANINGS
 from .files import CHARACTERS, TEXT
 
 RADII, WEIGHTS = "in mean disk radii", "in mean disk weights"
