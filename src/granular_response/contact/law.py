@@ -15,9 +15,8 @@ from typing import Protocol, Self
 
 from numpy.typing import NDArray
 
-from ..machine.by_type import by_type
 from ..machine.lanes import select
-from ..machine.machine_code import kernel
+from ..machine.machine_code import by_type, kernel
 
 
 class Law(Protocol):
@@ -41,7 +40,7 @@ class Law(Protocol):
     @classmethod
     def of(
         cls, normal_stiffness: float, normal_damping: float, tangential_stiffness: float, tangential_damping: float,
-        friction: float, least_force: float, reduced_radius: float,
+        friction: float, least_force: float, reduced_radius: float, /,
     ) -> Self:  # fmt: skip
         """The law from its constants; ``reduced_radius`` is that of the contacts that have the stiffness.
 
