@@ -6,17 +6,13 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from .base import Count, Description, Flag, NonNegative, Positive, Sparse, allowed
+from .base import Count, Description, Finite, Flag, NonNegative, Positive, Sparse, allowed
 
-TimeStep = Annotated[
-    Annotated[float, Field(strict=True, gt=0)] | Literal["auto"], allowed("must be a number greater than 0, or auto")
-]
+TimeStep = Annotated[Positive | Literal["auto"], allowed("must be a number greater than 0, or auto")]
 #: The time step of Sec. III.
 PAPERS_TIME_STEP = 5e-4
 LoadFactors = Annotated[
-    tuple[Annotated[float, Field(strict=True, allow_inf_nan=False)], ...],
-    Field(min_length=1),
-    allowed("must be a list of one or more finite numbers"),
+    tuple[Finite, ...], Field(min_length=1), allowed("must be a list of one or more finite numbers")
 ]
 Method = Literal["auto", "dynamics", "path", "minimise"]
 Integrator = Literal["beeman", "verlet", "leapfrog", "gear"]
