@@ -15,8 +15,8 @@ from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, Valida
 
 from ..inputs import unreadable
 from . import formats
+from .arrays import ROUNDING, packed
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
-from .disks import ROUNDING, packed
 from .errors import Problem, SceneError, describe, show
 from .formats import csv_table
 from .packing import Packing, exact_mean
