@@ -17,9 +17,9 @@ from .load import TopSelector as TopSelector
 from .load import resolve_disk as resolve_disk
 from .material import Contact as Contact
 from .material import Wall as Wall
-from .motion import Motion as Motion
 from .packing import Packing as Packing
 from .poured import PouredPacking as PouredPacking
+from .protocol import Motion as Motion
 from .protocol import Preparation as Preparation
 from .protocol import Protocol as Protocol
 from .protocol import Taps as Taps

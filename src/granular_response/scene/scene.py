@@ -22,9 +22,8 @@ from .formats.csv_table import MOTION
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
 from .material import Contact, Wall
-from .motion import COLUMN, Motion
 from .poured import PouredPacking
-from .protocol import Preparation, Protocol, Taps
+from .protocol import COLUMN, Motion, Preparation, Protocol, Taps
 from .table import FilePacking
 
 #: The rule for what only friction can do.
