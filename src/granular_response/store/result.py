@@ -267,14 +267,10 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     change = forces - at_rest
     applied = np.array([solution.applied_force(state) for state in solution.loaded], float)
     of_states = dict(states_dataset(states).variables)
-    data: dict[Any, xr.Variable] = {
-        "state_load_factor": of_states.pop("load_factor"),
-        **of_states,
-        "contact_force": described("contact_force", [state.pair_force() for state in states]),
-        "wall_force": described("wall_force", [state.wall_force() for state in states]),
-        **load_coordinates(solution.load_factors),
-    }
-    numbers = {
+    data: dict[Any, xr.Variable] = {"state_load_factor": of_states.pop("load_factor"), **of_states}
+    values: dict[str, Any] = {
+        "contact_force": [state.pair_force() for state in states],
+        "wall_force": [state.wall_force() for state in states],
         "floor_force_rest": at_rest,
         "floor_force": forces,
         "floor_force_change": change,
@@ -285,16 +281,17 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "loaded_disk": problem.load_disk,
         "applied_load": problem.load,
         "total_force": applied,
+        "floor_disk": disks,
+        "x": x,
+        "component": ["force_x", "force_z", "torque"],
     }
     if packing.given is not None:
-        numbers["distance_from_given"] = np.stack([np.asarray(packing.moved(state.position)) for state in own])
+        values["distance_from_given"] = np.stack([np.asarray(packing.moved(state.position)) for state in own])
     if loaded and len(problem.held):
-        numbers["reaction"] = np.stack([solution.reaction(state) for state in solution.loaded])
-    data |= {name: described(name, values) for name, values in numbers.items()}
+        values["reaction"] = np.stack([solution.reaction(state) for state in solution.loaded])
+    data |= load_coordinates(solution.load_factors) | {name: described(name, one) for name, one in values.items()}
     data |= _listed(own, states) | dict(certificates_dataset(states).variables) | _reached(states)
     data |= described_events([(k, event) for k, state in enumerate(own) for event in state.reached.events])
-    data |= {"floor_disk": described("floor_disk", disks), "x": described("x", x)}
-    data["component"] = described("component", ["force_x", "force_z", "torque"])
     moved = any(state.reached.time_step is not None for state in states)
     choices = {"rest": solution.rest_choice, "load": solution.load_choice}
     law = KNOWN_LAWS[solution.scene.contact.law].law  # from outside the package: its module registers it
