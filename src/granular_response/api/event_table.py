@@ -10,10 +10,9 @@ from typing import Any, overload
 import xarray as xr
 
 from ..scene.errors import suggestion
-from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Event
+from ..state import Event
+from ..store.variables import EVENT_KINDS as KINDS
 
-#: Every kind of event.
-KINDS = CONTACT_EVENTS + LOST_EVENTS + ROLLING_EVENTS
 #: Rows of a table in a notebook.
 _SHOWN = 20
 

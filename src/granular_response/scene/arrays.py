@@ -142,7 +142,6 @@ class ArrayPacking(Sparse, PackingDescription):
 
     @property
     def disk_count(self) -> int:
-        """Number of disks."""
         return len(self.x)
 
     def build(self) -> Packing:

@@ -62,7 +62,6 @@ class LatticePacking(PackingDescription):
 
     @property
     def disk_count(self) -> int:
-        """Number of disks."""
         return int(self.row_count().sum())
 
     @property

@@ -70,7 +70,6 @@ class PouredPacking(PackingDescription):
 
     @property
     def disk_count(self) -> int:
-        """Number of disks."""
         return self.disks
 
     def build(self) -> Packing:

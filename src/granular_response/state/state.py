@@ -7,7 +7,7 @@ What a method does not know of a state is ``None`` in its records.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -157,8 +157,7 @@ class Reached:
 
     def after(self, earlier: Reached) -> Reached:
         """This record, and what only the one ``earlier`` knows."""
-        known = {field.name: getattr(self, field.name) for field in fields(self)}
-        return replace(earlier, **{name: value for name, value in known.items() if value not in (None, ())})
+        return replace(earlier, **{name: value for name, value in vars(self).items() if value not in (None, ())})
 
 
 @dataclass(frozen=True, repr=False)

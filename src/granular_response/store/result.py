@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -346,7 +346,7 @@ def _as_solved(dataset: xr.Dataset, index: int) -> State:
             return contacts
         places = dataset[f"{prefix}_own_place"].values[index]
         kept = np.argsort(places, kind="stable")[np.count_nonzero(places < 0) :]
-        return Contacts(*(getattr(contacts, field.name)[kept] for field in fields(Contacts)))
+        return Contacts(**{name: values[kept] for name, values in vars(contacts).items()})
 
     return replace(state, pairs=own(state.pairs, "contact"), walls=own(state.walls, "wall"))
 
