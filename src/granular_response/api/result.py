@@ -30,11 +30,9 @@ from ..state import Certificate, State
 from ..store import export as exporting
 from ..store import files
 from ..store.checked import read_result
-from ..store.contact_table import contact_table
-from ..store.result import scene_of, solution_from, state_from, to_dataset
-from . import compiling
+from ..store.result import contact_table, scene_of, solution_from, state_from, to_dataset
 from .event_table import Events
-from .terminal import shown
+from .terminal import LOG, logged, shown
 
 
 class Result:
@@ -414,7 +412,7 @@ class Result:
         (1.0, 0.5)
         """
         solution = self._solved
-        with shown(progress) as report, compiling.logged(report):
+        with shown(progress) as report, logged(report):
             further = continue_solution(solution, load_factors, progress=report)
         return vouched(further)
 
@@ -506,7 +504,7 @@ def solve(
     asked = described(scene)
     if method is not None:
         asked = asked.updated({"protocol.method": method})
-    with shown(progress) as report, compiling.logged(report):
+    with shown(progress) as report, logged(report):
         solution = solve_scene(asked, load_factors=load_factors, progress=report)
     return vouched(solution)
 
@@ -515,7 +513,7 @@ def vouched(solution: Solution) -> Result:
     """The result; how it was reached goes into the log, and remarks on it are warnings."""
     for stage, choice in (("gravity", solution.rest_choice), ("loads", solution.load_choice)):
         if choice is not None:
-            compiling.LOG.info("%s by %s: %s", stage, choice.method, choice.reason)
+            LOG.info("%s by %s: %s", stage, choice.method, choice.reason)
     for remark in solution.remarks:
         warnings.warn(remark, stacklevel=3)
     return Result(solution)

@@ -1,4 +1,4 @@
-"""Solutions as labelled datasets, and states back from them.
+"""Solutions as labelled datasets, states back from them, and their contacts as a table.
 
 A dataset is in reduced units: lengths in mean disk radii, masses in mean disk masses, forces in mean disk
 weights. What its variables are is said in ``variables.py``.
@@ -22,11 +22,24 @@ from ..observe.difference import match_candidates, pair_force_difference, wall_f
 from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
 from ..scene import text as scene_text
+from ..scene.laboratory import FORCE, LENGTH
 from ..scene.material import KNOWN_LAWS
 from ..solvers.problem import Problem
 from ..solvers.solution import Solution
 from ..solvers.timestep import time_step_reason
-from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Box, Certificate, Contacts, Event, Reached, State
+from ..state import (
+    CONTACT_EVENTS,
+    LOST_EVENTS,
+    ROLLING_EVENTS,
+    Box,
+    Certificate,
+    Contacts,
+    Event,
+    FloatArray,
+    Reached,
+    State,
+)
+from ..state.box import WALL_MEANINGS
 from ..state.state import MEANINGS
 from .variables import (
     CERTIFICATE,
@@ -425,3 +438,37 @@ def scene_of(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None = Non
             cure = "the script that made the result, which must register it"
         raise ResultError(f"contact.law = {law!r}: is a law of {cure}")
     return Scene.from_dict(data, folder=folder)
+
+
+def contact_table(state: State, radius: FloatArray) -> Any:
+    """A ``pandas.DataFrame`` of the closed contacts of disks with ``radius`` (n,), those between disks first."""
+    pairs, walls = state.pairs, state.walls
+    between, at_wall = pairs.touching, walls.touching
+    middle = (radius[pairs.first] - 0.5 * pairs.overlap)[:, None] * state.pair_normal()
+    point = np.concatenate(
+        [
+            (state.position[pairs.first] - middle)[between],
+            state.box.on_wall(state.position[walls.first], walls.second)[at_wall],
+        ]
+    )
+
+    def joined(name: str) -> np.ndarray:
+        return np.concatenate([getattr(pairs, name)[between], getattr(walls, name)[at_wall]])
+
+    columns = {
+        "first": joined("first"),
+        "second": np.concatenate([pairs.second[between], np.full(at_wall.sum(), -1, np.int32)]),
+        "wall": np.array([""] * between.sum() + [WALL_MEANINGS[k] for k in walls.second[at_wall]], object),
+        "x": point[:, 0],
+        "z": point[:, 1],
+        "status": np.array([MEANINGS[code] for code in joined("status")], object),
+        "normal_force": joined("normal_force"),
+        "tangential_force": joined("tangential_force"),
+    }
+    units = {"x": LENGTH, "z": LENGTH, "normal_force": FORCE, "tangential_force": FORCE}
+    if pairs.resists_rolling or walls.resists_rolling:
+        columns["rolling_force"], units["rolling_force"] = joined("rolling_force"), FORCE
+        columns["rolling_status"] = np.array([MEANINGS[code] for code in joined("rolling_status")], object)
+    found = xr.Dataset({name: ("contact", values) for name, values in columns.items()}).to_dataframe()
+    found.attrs["units"] = units
+    return found

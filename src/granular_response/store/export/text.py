@@ -17,8 +17,7 @@ import numpy as np
 import xarray as xr
 
 from ...state import Box
-from ..contact_table import contact_table
-from ..result import events_from, state_from
+from ..result import contact_table, events_from, state_from
 from ..variables import EVENTS
 from .frames import extent, frames, in_plane, mark
 
