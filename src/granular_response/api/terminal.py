@@ -1,4 +1,4 @@
-"""What is said during a computation: progress, silent at first and where nobody looks, and that kernels are compiled."""
+"""What is said of a computation: progress, silent at first and where nobody looks, and that kernels are compiled."""
 
 from __future__ import annotations
 

@@ -46,7 +46,6 @@ class Law(Protocol):
 
         A law with parameters of its own takes them by name after these.
         """
-        ...
 
     def elastic_force(self, overlap, shape): ...
     def stiffness(self, overlap, shape): ...
@@ -57,11 +56,9 @@ class Law(Protocol):
 
         None for a law in which radii do not matter.
         """
-        ...
 
     def stiffest(self, force: float) -> float:
         """Largest normal stiffness at normal forces up to ``force``."""
-        ...
 
     def softened(self, part: float) -> Self:
         """The law with which a packing of ``part`` of the height sinks by the same lengths under its own weight.
@@ -69,11 +66,9 @@ class Law(Protocol):
         For the start of large packings alone: the force at an overlap is ``part`` times that of this law at ``part`` of
         the overlap, so ``part**2`` times the constant for linear springs.
         """
-        ...
 
     def without_friction(self) -> Self:
         """The same law without its part along the tangent."""
-        ...
 
 
 @by_type

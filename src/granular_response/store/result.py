@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -127,6 +127,11 @@ def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, xr.Variabl
     return {**data, "event_state": described("event_state", [k for k, _ in found])}
 
 
+def stored_values(dataset: xr.Dataset, prefix: str, names: Iterable[str]) -> dict[str, Any]:
+    """The values of variables ``prefix + name``, by ``name``, as far as a dataset has them."""
+    return {name: dataset[prefix + name].values for name in names if prefix + name in dataset}
+
+
 def events_from(dataset: xr.Dataset, index: int | None = None) -> list[tuple[int, Event]]:
     """Stored events with the index of the state that each leads to: of the state ``index``, or all."""
     if "event_state" not in dataset:
@@ -171,13 +176,9 @@ def _reached(states: Sequence[State]) -> dict[str, xr.Variable]:
 
 def _reached_from(one: xr.Dataset) -> dict[str, Any]:
     """The numbers of a stored record; what is not known is left out."""
-    found: dict[str, Any] = {}
-    for name in REACHED:
-        if f"reached_{name}" in one:
-            value = one[f"reached_{name}"].values.item()
-            if value not in ("", NOT_DETERMINED) and value == value:
-                found[name] = bool(value) if name == "settled" else value
-    return found
+    known = {name: value.item() for name, value in stored_values(one, "reached_", REACHED).items()}
+    known = {name: value for name, value in known.items() if value not in ("", NOT_DETERMINED) and value == value}
+    return {name: bool(value) if name == "settled" else value for name, value in known.items()}
 
 
 def load_coordinates(factors: Sequence[float]) -> dict[str, xr.Variable]:
@@ -381,17 +382,13 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
     one = dataset.isel(state=index)
     certificate = None
     if "certificate_force_residual" in one:
-        numbers: dict[str, Any] = {
-            name: one[f"certificate_{name}"].values.item() for name in CERTIFICATE if f"certificate_{name}" in one
-        }
+        numbers = {name: value.item() for name, value in stored_values(one, "certificate_", CERTIFICATE).items()}
         if numbers["negative_modes"] == NOT_DETERMINED:
             numbers["negative_modes"] = None
         certificate = Certificate(**numbers)
 
     def contacts(prefix: str) -> Contacts:
-        found = {
-            name: one[f"{prefix}_{name}"].values for name in (*CONTACT, *ROLLING) if f"{prefix}_{name}" in one.variables
-        }
+        found = stored_values(one, f"{prefix}_", (*CONTACT, *ROLLING))
         first, second = (one[name].values.astype(np.int32) for name in CONTACTS[prefix][1:])
         return Contacts(first, second, **found)
 

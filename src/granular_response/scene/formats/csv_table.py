@@ -20,16 +20,8 @@ from ..errors import suggestion
 from .table import NO_BOX, FormatError, Mark, Once, Table, lines_of, number, numbers, radii, shown, upward
 
 #: What is read of a disk, and the names of columns that have it.
-NAMES = {
-    "x": ("x",),
-    "y": ("y",),
-    "z": ("z",),
-    "radius": ("radius", "r"),
-    "diameter": ("diameter", "d"),
-    "mass": ("mass",),
-    "density": ("density",),
-}
 LENGTHS, MATERIAL = ("x", "y", "z", "radius", "diameter"), ("mass", "density")
+NAMES = {name: (name,) for name in LENGTHS + MATERIAL} | {"radius": ("radius", "r"), "diameter": ("diameter", "d")}
 #: What ``columns`` of a scene may name.
 NAMED = ("x", "z", "radius", "diameter", *MATERIAL)
 #: Units of length in metres; pixels may be of any size.

@@ -7,6 +7,7 @@ ends the process at some damaged files.
 
 from __future__ import annotations
 
+import math
 import struct
 from itertools import pairwise
 from pathlib import Path
@@ -116,13 +117,14 @@ class _Frames:
         """A chunk of that shape as numbers; ``default`` is what the format takes for a missing one, None: an error."""
         kinds = "u" if name == "particles/N" else "f" if name.startswith(("particles/", "configuration/")) else "uif"
         for frame in (self.last, 0):
-            found = self._chunk(frame, name)
-            if found is not None and found.dtype.kind not in kinds:
+            if (found := self._chunk(frame, name)) is None:
+                continue
+            if found.dtype.kind not in kinds:
                 raise FormatError(f"chunk {name}: has values of another kind, {found.dtype}")
-            if found is not None and (found.size == int(np.prod(shape)) or frame == self.last):
-                if found.size != int(np.prod(shape)):
-                    raise FormatError(f"chunk {name}: has {found.size} values, must have {int(np.prod(shape))}")
+            if found.size == math.prod(shape):
                 return found.astype(float).reshape(shape)
+            if frame == self.last:
+                raise FormatError(f"chunk {name}: has {found.size} values, must have {math.prod(shape)}")
         if default is None:
             raise FormatError(f"is not a GSD file with particles: chunk {name} is missing")
         return np.full(shape, default)
