@@ -103,8 +103,7 @@ class Result:
         (mg), and ``reached.events_error`` an estimate, no bound, of what that leaves out of a force of the floor or a
         wall since the state before, per load.
         """
-        found = [(k, event) for k, state in enumerate(self._states) for event in state.reached.events]
-        return Events((event for _, event in found), (k for k, _ in found))
+        return Events((k, event) for k, state in enumerate(self._states) for event in state.reached.events)
 
     @property
     def floor_response(self) -> xr.DataArray:
