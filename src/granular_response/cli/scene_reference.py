@@ -38,9 +38,8 @@ class Section(NamedTuple):
     given: Mapping[str, Any] = MappingProxyType({})  #: keys that must be there, with values that are allowed
     left_out: frozenset[str] = frozenset()  #: keys that another section has
 
-    def listed(self) -> list[Key]:
+    def listed(self) -> Iterator[Key]:
         """The keys in the order of the description."""
-        found = []
         for name, info in self.model.model_fields.items():
             if name in self.left_out:
                 continue
@@ -48,10 +47,7 @@ class Section(NamedTuple):
                 raise TypeError(f"{self.model.__name__}.{name} has no description")
             required = info.is_required() or name == "kind"
             default = "" if required else _spelled(info.get_default(call_default_factory=True))
-            found.append(
-                Key(f"{self.place}.{name}", default, self._allowed(name), unit_of(name, info), info.description)
-            )
-        return found
+            yield Key(f"{self.place}.{name}", default, self._allowed(name), unit_of(name, info), info.description)
 
     def _allowed(self, name: str) -> str:
         """What the message about a wrong value says."""

@@ -14,19 +14,26 @@ RULES = {"cut": CUT, "literal": LITERAL, "unloading": UNLOADING}
 
 
 @kernel
-def tangential_cut(spring, slip_velocity, force_normal, law, time_step):
+def cut_force(spring, slip_velocity, force_normal, stiffness, damping, friction, time_step):
     """Spring plus dashpot cut to the Coulomb limit; returns force and new spring.
 
     The limit is ``friction * |force_normal|`` with the dashpot's part included. Where it acts, the stored
     spring becomes the one that gives the cut force, so that the contact sticks again from there.
     """
     trial = spring + slip_velocity * time_step
-    damping = law.tangential_damping * slip_velocity
-    force = -law.tangential_stiffness * trial - damping
-    limit = law.friction * magnitude(force_normal)
+    damped = damping * slip_velocity
+    force = -stiffness * trial - damped
+    limit = friction * magnitude(force_normal)
     cut = select(force > limit, limit, force)
     cut = select(cut < -limit, -limit, cut)
-    return cut, quotient_where(cut != force, -(cut + damping), law.tangential_stiffness, trial)
+    return cut, quotient_where(cut != force, -(cut + damped), stiffness, trial)
+
+
+@kernel
+def tangential_cut(spring, slip_velocity, force_normal, law, time_step):
+    """:func:`cut_force` along the tangent."""
+    stiffness, damping = law.tangential_stiffness, law.tangential_damping
+    return cut_force(spring, slip_velocity, force_normal, stiffness, damping, law.friction, time_step)
 
 
 @kernel
