@@ -284,15 +284,10 @@ class Result:
         rest, now = (state_from(self._data, k) for k in (0, state))  # on one list of candidates
         forces = load_forces(rest, now) if added else contact_forces(now)
         tensor = coarse_grained_stress(forces, grid_points(across + origin, up), width)
-        names = np.array(["x", "z"])
-        labels = {"long_name": "stress that the load adds" if added else "stress", "units": f"{FORCE} / {LENGTH}"}
-        return xr.DataArray(
-            tensor,
-            {"z": up, "x": across, "force": names, "branch": names},
-            ("z", "x", "force", "branch"),
-            "stress",
-            {**labels, "gaussian_width": width},
-        )
+        names, title = np.array(["x", "z"]), "stress that the load adds" if added else "stress"
+        coordinates = {"z": up, "x": across, "force": names, "branch": names}
+        labels = {"long_name": title, "units": f"{FORCE} / {LENGTH}", "gaussian_width": width}
+        return xr.DataArray(tensor, coordinates, tuple(coordinates), "stress", labels)
 
     def influence(self, *, state: int = -1, sliding: str = "refuse") -> xr.DataArray:
         """What a small force on any disk adds to the vertical force on each floor disk, exactly in the limit.
@@ -323,19 +318,15 @@ class Result:
         disks = data["floor_disk"].values
         found = influence(self._solved.problem, chosen, disks, sliding=sliding)
         across = chosen.box.separation(chosen.position, np.array([self.origin, 0.0]))[:, 0]
-        return xr.DataArray(
-            found,
-            {
-                "floor_disk": data["floor_disk"],
-                "x": ("floor_disk", data["x"].values, data["x"].attrs),
-                "disk_x": ("disk", across, {"units": LENGTH}),
-                "disk_z": ("disk", chosen.position[:, 1], {"units": LENGTH}),
-                "component": ["x", "z", "torque"][: found.shape[2]],
-            },
-            ("floor_disk", "disk", "component"),
-            "influence",
-            {"long_name": "vertical floor force per small force on a disk", "units": "1"},
-        )
+        coordinates = {
+            "floor_disk": data["floor_disk"],
+            "x": ("floor_disk", data["x"].values, data["x"].attrs),
+            "disk_x": ("disk", across, {"units": LENGTH}),
+            "disk_z": ("disk", chosen.position[:, 1], {"units": LENGTH}),
+            "component": ["x", "z", "torque"][: found.shape[2]],
+        }
+        labels = {"long_name": "vertical floor force per small force on a disk", "units": "1"}
+        return xr.DataArray(found, coordinates, ("floor_disk", "disk", "component"), "influence", labels)
 
     def _index(self, state: int) -> int:
         if isinstance(state, bool) or not isinstance(state, (int, np.integer)):

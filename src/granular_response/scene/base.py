@@ -145,11 +145,7 @@ class Description(BaseModel, metaclass=_Public):
         for key, value in data.items():
             if key not in cls.model_fields:
                 meant = cls._elsewhere(key) or suggestion(key, cls.model_fields)
-                raise Problem(
-                    f"unknown key{meant} (allowed: {keys or 'none'})",
-                    key=(key if isinstance(key, str) else str(key),),
-                    value=value,
-                )
+                raise Problem(f"unknown key{meant} (allowed: {keys or 'none'})", key=(str(key),), value=value)
         return {key: plain(value) for key, value in data.items()}
 
     @classmethod

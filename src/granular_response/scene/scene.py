@@ -386,10 +386,9 @@ def _merged(old: Any, change: Any, path: tuple[str, ...]) -> Any:
         new = list(old)
         for part, value in change.items():
             if not str(part).isdecimal() or int(part) >= len(old):
-                meant = f", did you mean {show_key(path)}.0.{part}?" if old and part in Load.model_fields else ""
-                raise SceneError(
-                    f"{show_key((*path, part))}: {show_key(path)} has {len(old)} items, no item {show(part)}{meant}"
-                )
+                key = show_key(path)
+                meant = f", did you mean {key}.0.{part}?" if old and part in Load.model_fields else ""
+                raise SceneError(f"{show_key((*path, part))}: {key} has {len(old)} items, no item {show(part)}{meant}")
             new[int(part)] = _merged(old[int(part)], value, (*path, part))
         return new
     if not isinstance(old, dict) or ("kind" in change and change["kind"] != old.get("kind")):

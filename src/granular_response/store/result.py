@@ -167,10 +167,8 @@ def _reached(states: Sequence[State]) -> dict[str, xr.Variable]:
         elif any(one is not None for one in known):
             whole = all(one is None or isinstance(one, (bool, int, np.integer)) for one in known)
             missing, kind, said = (NOT_DETERMINED, np.int64, " (-1: not known)") if whole else (np.nan, float, "")
-            values = np.array([missing if one is None else one for one in known], kind)
-            data[f"reached_{name}"] = described(
-                f"reached_{name}", values, text=VARIABLES[f"reached_{name}"].text + said
-            )
+            values, own = np.array([missing if one is None else one for one in known], kind), f"reached_{name}"
+            data[own] = described(own, values, text=VARIABLES[own].text + said)
     return data
 
 
@@ -442,12 +440,9 @@ def contact_table(state: State, radius: FloatArray) -> Any:
     pairs, walls = state.pairs, state.walls
     between, at_wall = pairs.touching, walls.touching
     middle = (radius[pairs.first] - 0.5 * pairs.overlap)[:, None] * state.pair_normal()
-    point = np.concatenate(
-        [
-            (state.position[pairs.first] - middle)[between],
-            state.box.on_wall(state.position[walls.first], walls.second)[at_wall],
-        ]
-    )
+    on_disks = (state.position[pairs.first] - middle)[between]
+    on_walls = state.box.on_wall(state.position[walls.first], walls.second)[at_wall]
+    point = np.concatenate([on_disks, on_walls])
 
     def joined(name: str) -> np.ndarray:
         return np.concatenate([getattr(pairs, name)[between], getattr(walls, name)[at_wall]])

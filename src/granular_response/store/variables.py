@@ -83,9 +83,8 @@ def variable(dims, values, long_name: str, **attributes) -> xr.Variable:
     """xr.Variable with the attributes that every stored variable has."""
     dimensions = (dims,) if isinstance(dims, str) else tuple(dims)
     # numpy's arrays are taken as they are: xarray need not find out whether they are Dask's
-    return xr.Variable(
-        dimensions, np.asarray(values), {"long_name": long_name, "units": "1", **attributes}, fastpath=True
-    )
+    labels = {"long_name": long_name, "units": "1", **attributes}
+    return xr.Variable(dimensions, np.asarray(values), labels, fastpath=True)
 
 
 def described(name: str, values: Any, *, along: str = "state", text: str = "", **attributes: Any) -> xr.Variable:

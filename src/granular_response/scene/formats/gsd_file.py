@@ -60,9 +60,8 @@ class _Frames:
         if not len(self._index):
             raise FormatError("is not a GSD file with particles: it has no frame")
         self.last = int(self._index["frame"].max())
-        self._check_index(
-            [(0, _HEADER.size), (index_at, index_size * _ENTRY.itemsize), (names_at, names_size * _NAME_BYTES)]
-        )
+        lists = [(index_at, index_size * _ENTRY.itemsize), (names_at, names_size * _NAME_BYTES)]
+        self._check_index([(0, _HEADER.size), *lists])
 
     def _check_index(self, regions: list[tuple[int, int]]) -> None:
         """Raise FormatError unless frames are numbered one by one, and each chunk has a name and a place of its own."""
