@@ -517,7 +517,6 @@ def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scen
 
 
 def _places(name: str, given: Any) -> np.ndarray:
-    """Coordinates of a grid along one axis."""
     places = finite_numbers(given)
     if places is None:
         said = " ".join(show(given).split())  # an array is several lines

@@ -39,7 +39,6 @@ class Section(NamedTuple):
     left_out: frozenset[str] = frozenset()  #: keys that another section has
 
     def listed(self) -> Iterator[Key]:
-        """The keys in the order of the description."""
         for name, info in self.model.model_fields.items():
             if name in self.left_out:
                 continue

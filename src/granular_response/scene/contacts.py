@@ -34,7 +34,6 @@ class GivenContact(NamedTuple):
 
     @property
     def words(self) -> str:
-        """Its two sides."""
         return bodies(self.first, self.second, self.at_wall)
 
 

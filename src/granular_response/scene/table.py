@@ -116,12 +116,10 @@ class FilePacking(Sparse, PackingDescription):
 
     @property
     def file(self) -> Path:
-        """The table's place."""
         return Path(self._folder or ".", self.path)
 
     @property
     def files(self) -> list[Path]:
-        """All that it is read from."""
         return [self.file, *([Path(self._folder or ".", self.springs)] if self.springs else [])]
 
     def _table(self) -> formats.Table:

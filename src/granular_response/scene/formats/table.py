@@ -87,7 +87,6 @@ class Mark:
 
     @property
     def box(self) -> FileBox:
-        """The box that it describes."""
         return FileBox(0.0, self.width, 0.0, self.periodic)
 
     @classmethod

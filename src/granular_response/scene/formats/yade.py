@@ -62,7 +62,6 @@ def read(path: Path) -> Table:
 
 
 def _names(line: str, place: str, late: bool) -> list[str]:
-    """The names of a format line."""
     names = line.replace("#", " ", 1).split()[1:]
     if late or len(names) != 1:
         raise FormatError("format must be one word such as x_y_z_r, above the spheres", place)
