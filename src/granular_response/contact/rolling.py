@@ -16,7 +16,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ..machine.machine_code import kernel
-from .coulomb import cut_force
 
 
 class Rolling(NamedTuple):
@@ -34,5 +33,12 @@ def arms(first, second=None):
 
 @kernel
 def rolling_force(spring, rolled, normal, rolling, time_step):
-    """Rolling force and new spring, ``rolled`` : R w."""
-    return cut_force(spring, rolled, normal, rolling.stiffness, rolling.damping, rolling.friction, time_step)
+    """Rolling force and new spring, ``rolled`` : R w. Where the limit acts, the spring is what the cut force leaves."""
+    trial = spring + rolled * time_step
+    damping = rolling.damping * rolled
+    force = -rolling.stiffness * trial - damping
+    limit = rolling.friction * abs(normal)
+    if abs(force) <= limit:
+        return force, trial
+    cut = limit if force > 0.0 else -limit
+    return cut, -(cut + damping) / rolling.stiffness
