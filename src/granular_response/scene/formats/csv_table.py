@@ -59,8 +59,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
     mark: Mark | None = None
     once = Once()
     lines, whole = lines_of(path)
-    for line_number, line in enumerate(lines, start=1):
-        place = f"line {line_number}"
+    for place, line in lines:
         if line.lstrip().startswith("#"):
             if found := Mark.found(line, place):
                 once.add("mark of granular-response", place)

@@ -97,10 +97,10 @@ def read(path: Path) -> Table:
     sections: dict[str, list[tuple[str, list[str]]]] = {}  #: lines of each, with their places
     section = ""
     lines, whole = lines_of(path)
-    mark = Mark.found(lines[0], "line 1") if lines else None
-    for line_number, line in enumerate(lines[1:], start=2):
+    mark = Mark.found(lines[0][1], "line 1") if lines else None
+    for place, line in lines[1:]:
         text, _, comment = line.partition("#")
-        cells, place = text.split(), f"line {line_number}"
+        cells = text.split()
         if not cells:
             continue
         if cells[0][0].isalpha():
