@@ -100,7 +100,7 @@ class Scene(Sparse):
                 rule = f"{_SMOOTH}, which alone can balance it"
                 raise Problem(rule, key=("loads", place, "torque"), value=load.torque)
         sideways = sum(load.force[0] for load in self.loads)
-        held = any(load.holds(0) for load in self.loads)
+        held = any(load.displacement and load.displacement[0] is not None for load in self.loads)
         rounding = 1e-12 * sum(abs(load.force[0]) for load in self.loads)
         if self.packing.periodic and not rough_floor and abs(sideways) > rounding and not held:
             rule = "must be 0 with periodic sides on a smooth floor, which hold nothing"
