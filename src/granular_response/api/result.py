@@ -284,7 +284,8 @@ class Result:
         rest, now = (state_from(self._data, k) for k in (0, state))  # on one list of candidates
         forces = load_forces(rest, now) if added else contact_forces(now)
         tensor = coarse_grained_stress(forces, grid_points(across + origin, up), width)
-        names, title = np.array(["x", "z"]), "stress that the load adds" if added else "stress"
+        title = "stress that the load adds" if added else "stress"
+        names = np.array(["x", "z"])
         coordinates = {"z": up, "x": across, "force": names, "branch": names}
         labels = {"long_name": title, "units": f"{FORCE} / {LENGTH}", "gaussian_width": width}
         return xr.DataArray(tensor, coordinates, tuple(coordinates), "stress", labels)

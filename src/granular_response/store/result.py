@@ -27,19 +27,8 @@ from ..scene.material import KNOWN_LAWS
 from ..solvers.problem import Problem
 from ..solvers.solution import Solution
 from ..solvers.timestep import time_step_reason
-from ..state import (
-    CONTACT_EVENTS,
-    LOST_EVENTS,
-    ROLLING_EVENTS,
-    Box,
-    Certificate,
-    Contacts,
-    Event,
-    FloatArray,
-    Reached,
-    State,
-)
-from ..state.box import WALL_MEANINGS
+from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Box, Certificate, Contacts, Event, Reached, State
+from ..state.box import WALL_MEANINGS, FloatArray
 from ..state.state import MEANINGS
 from .variables import (
     CERTIFICATE,
@@ -167,7 +156,8 @@ def _reached(states: Sequence[State]) -> dict[str, xr.Variable]:
         elif any(one is not None for one in known):
             whole = all(one is None or isinstance(one, (bool, int, np.integer)) for one in known)
             missing, kind, said = (NOT_DETERMINED, np.int64, " (-1: not known)") if whole else (np.nan, float, "")
-            values, own = np.array([missing if one is None else one for one in known], kind), f"reached_{name}"
+            own = f"reached_{name}"
+            values = np.array([missing if one is None else one for one in known], kind)
             data[own] = described(own, values, text=VARIABLES[own].text + said)
     return data
 
