@@ -13,10 +13,10 @@ from .api.observables import mobilization as mobilization
 from .api.observables import modes as modes
 from .api.observables import stiffness_matrix as stiffness_matrix
 from .api.observables import work as work
-from .api.preparations import preparations as preparations
 from .api.result import Result as Result
 from .api.result import open_result as open_result
 from .api.result import solve as solve
+from .api.sweep import preparations as preparations
 from .api.sweep import sweep as sweep
 from .errors import GranularError as GranularError
 from .errors import SolveError as SolveError

@@ -10,13 +10,7 @@ from reference_loop import Material, contact_force
 from small_scenes import free_disks
 
 from granular_response.contact import Linear
-from granular_response.contact.coulomb import (
-    RULES,
-    cut,
-    tangential,
-    tangential_literal,
-    tangential_unloading,
-)
+from granular_response.contact.coulomb import CUT, LITERAL, RULES, UNLOADING, tangential
 from granular_response.contact.law import normal_force
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.solvers.dynamics import Dynamics
@@ -62,20 +56,20 @@ LAW = Linear(1000.0, 10.0, 800.0, 5.0, 0.5, -math.inf)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_sliding_is_cut_with_the_dashpot_and_the_spring_follows(sign):
     """The limit is 0.5 * 4 = 2; the spring that gives it beside the dashpot's 1 is (2 - 1) / 800."""
-    force, spring = cut(sign * 3e-3, sign * 0.2, 4.0, 800.0, 5.0, 0.5, 5e-3)
+    force, spring = tangential(sign * 3e-3, sign * 0.2, 4.0, LAW, CUT, 5e-3)
     assert force == pytest.approx(-sign * 2.0)
     assert spring == pytest.approx(sign * 1.0 / 800.0)
-    again, kept = cut(spring, sign * 0.2, 4.0, 800.0, 5.0, 0.5, 0.0)
+    again, kept = tangential(spring, sign * 0.2, 4.0, LAW, CUT, 0.0)
     assert (again, kept) == (pytest.approx(force), pytest.approx(spring))
 
 
 def test_unloading_rule_freezes_the_spring_against_further_stretch_alone():
-    force, frozen = tangential_unloading(1e-2, 0.2, 10.0, LAW, 5e-3)
+    force, frozen = tangential(1e-2, 0.2, 10.0, LAW, UNLOADING, 5e-3)
     assert (force, frozen) == (pytest.approx(-8.0 - 1.0), 1e-2)
-    force, back = tangential_unloading(1e-2, -0.2, 10.0, LAW, 5e-3)
+    force, back = tangential(1e-2, -0.2, 10.0, LAW, UNLOADING, 5e-3)
     assert (force, back) == (pytest.approx(-7.2 + 1.0), pytest.approx(9e-3))
-    within = (1e-3, 0.2, 10.0, LAW, 5e-3)
-    assert tangential_unloading(*within) == tangential_literal(*within)
+    unloading, literal = (tangential(1e-3, 0.2, 10.0, LAW, rule, 5e-3) for rule in (UNLOADING, LITERAL))
+    assert unloading == literal
 
 
 finite = st.floats(-5.0, 5.0, allow_nan=False)

@@ -10,10 +10,9 @@ from typing import Any, overload
 import xarray as xr
 
 from ..scene.errors import suggestion
-from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Event
+from ..state import Event
+from ..store.variables import EVENT_KINDS as KINDS
 
-#: Every kind of event.
-KINDS = CONTACT_EVENTS + LOST_EVENTS + ROLLING_EVENTS
 #: Rows of a table in a notebook.
 _SHOWN = 20
 
@@ -31,22 +30,23 @@ class Events(Sequence[Event]):
     >>> counts = result.events.to_dataframe().groupby(["state", "kind"]).size()
     """
 
-    def __init__(self, events: Iterable[Event] = (), states: Iterable[int] = ()) -> None:
-        self._events = tuple(events)
-        #: For each event the index of the state that it leads to; 0 is the initial equilibrium.
-        self.states = tuple(states)
+    def __init__(self, pairs: Iterable[tuple[int, Event]] = ()) -> None:
+        self._pairs = tuple(pairs)
+
+    @property
+    def states(self) -> tuple[int, ...]:
+        """For each event the index of the state that it leads to; 0 is the initial equilibrium."""
+        return tuple(state for state, _ in self._pairs)
 
     @overload
     def __getitem__(self, place: int) -> Event: ...
     @overload
     def __getitem__(self, place: slice) -> Events: ...
     def __getitem__(self, place: int | slice) -> Event | Events:
-        if isinstance(place, slice):
-            return Events(self._events[place], self.states[place])
-        return self._events[place]
+        return Events(self._pairs[place]) if isinstance(place, slice) else self._pairs[place][1]
 
     def __len__(self) -> int:
-        return len(self._events)
+        return len(self._pairs)
 
     def of(self, *kinds: str) -> Events:
         """The events of these kinds. Raises ValueError for a kind that there is not.
@@ -58,12 +58,12 @@ class Events(Sequence[Event]):
         """
         for kind in kinds:
             check_kind(kind)
-        return self._where([event.kind in kinds for event in self._events])
+        return Events(pair for pair in self._pairs if pair[1].kind in kinds)
 
     @property
     def lost(self) -> Events:
         """Where equilibria were lost."""
-        return self._where([event.lost for event in self._events])
+        return Events(pair for pair in self._pairs if pair[1].lost)
 
     def counts(self) -> dict[str, int]:
         """How many there are of each kind that there is.
@@ -73,7 +73,7 @@ class Events(Sequence[Event]):
         >>> sum(result.events.counts().values()) == len(result.events)
         True
         """
-        kinds = [event.kind for event in self._events]
+        kinds = [event.kind for event in self]
         return {kind: kinds.count(kind) for kind in KINDS if kind in kinds}
 
     def to_dataframe(self) -> Any:
@@ -85,17 +85,11 @@ class Events(Sequence[Event]):
         ['state', 'load_factor', 'kind']
         """
         columns = {"state": self.states}
-        columns |= {field.name: tuple(getattr(event, field.name) for event in self._events) for field in fields(Event)}
+        columns |= {field.name: tuple(getattr(event, field.name) for event in self) for field in fields(Event)}
         return xr.Dataset({name: ("event", list(values)) for name, values in columns.items()}).to_dataframe()
 
-    def _where(self, chosen: Sequence[bool]) -> Events:
-        kept = [pair for pair, one in zip(zip(self._events, self.states, strict=True), chosen, strict=True) if one]
-        return Events([event for event, _ in kept], [k for _, k in kept])
-
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Events):
-            return NotImplemented
-        return (self._events, self.states) == (other._events, other.states)
+        return self._pairs == other._pairs if isinstance(other, Events) else NotImplemented
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -104,13 +98,13 @@ class Events(Sequence[Event]):
         return f"Events: {counts or 'none'}"
 
     def __repr__(self) -> str:
-        lines = [f"  {event.load_factor:.9g}: {event.kind}, {event.where}" for event in self._events[:_SHOWN]]
+        lines = [f"  {event.load_factor:.9g}: {event.kind}, {event.where}" for event in self[:_SHOWN]]
         more = len(self) - len(lines)
         return "\n".join([self._counted(), *lines, *([f"  and {more} more"] if more else [])])
 
     def _repr_html_(self) -> str:
         rows = [("state", "load factor", "kind", "where", "until", "displacement", "reason")]
-        for k, event in zip(self.states[:_SHOWN], self._events[:_SHOWN], strict=True):
+        for k, event in self._pairs[:_SHOWN]:
             lost = (f"{event.until:.9g}", f"{event.displacement:.3g}", event.reason) if event.lost else ("", "", "")
             rows.append((str(k), f"{event.load_factor:.9g}", event.kind, event.where, *lost))
         lines = [f"<tr>{''.join(f'<td>{html.escape(cell)}</td>' for cell in row)}</tr>" for row in rows]

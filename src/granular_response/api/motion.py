@@ -17,9 +17,8 @@ from ..solvers.solution import Progress
 from ..state import State
 from ..store import variables
 from ..store.result import UNITS
-from . import compiling
 from .result import described
-from .terminal import shown
+from .terminal import logged, shown
 
 #: What is known of each disk at each time.
 _OF_DISKS = ("position", "velocity", "angle", "angular_velocity")
@@ -75,7 +74,7 @@ def motion(
             if not isinstance(load.disk, int):
                 said = f"loads[{k}].disk = {show(load.disk)}: must be the number of a disk, since start is under load"
                 raise SceneError(f"{said}; result.loaded_disks has it")
-    with shown(progress) as report, compiling.logged(report):
+    with shown(progress) as report, logged(report):
         found = trajectory(asked, times, start=start, progress=report)
     packing, states = found.problem.packing, found.states
     data = {name: variables.described(name, [getattr(one, name) for one in states], along="time") for name in _OF_DISKS}

@@ -19,7 +19,6 @@ from ..solvers.modes import stiffness_matrix as _stiffness
 from ..solvers.strain import Following, strained
 from ..solvers.work import slid, stored
 from ..solvers.work import work as done_by_loads
-from ..state import Contacts
 from ..store.result import common_candidates, load_coordinates
 from .result import Result
 
@@ -93,20 +92,18 @@ def mobilization(result: Result) -> xr.Dataset:
     scene, states = result.scene, common_candidates(result._states, result.to_dataset()["radius"].values)
 
     def along(kind: str, friction: float) -> np.ndarray:
-        return np.stack([_mobilized(getattr(state, kind), friction) for state in states])
+        found = []
+        for contacts in (getattr(state, kind) for state in states):
+            limit = np.where(contacts.touching & (contacts.normal_force > 0.0), friction * contacts.normal_force, 0.0)
+            unknown = np.full(len(limit), np.nan)
+            found.append(np.divide(np.abs(contacts.tangential_force), limit, out=unknown, where=limit > 0.0))
+        return np.stack(found)
 
-    return xr.Dataset(
-        {
-            "mobilization": (("state", "contact"), along("pairs", scene.contact.friction)),
-            "wall_mobilization": (("state", "wall_contact"), along("walls", scene.resolved_wall.friction)),
-        },
-        _along(result),
-    )
-
-
-def _mobilized(contacts: Contacts, friction: float) -> np.ndarray:
-    limit = np.where(contacts.touching & (contacts.normal_force > 0.0), friction * contacts.normal_force, 0.0)
-    return np.divide(np.abs(contacts.tangential_force), limit, out=np.full(len(limit), np.nan), where=limit > 0.0)
+    data = {
+        "mobilization": (("state", "contact"), along("pairs", scene.contact.friction)),
+        "wall_mobilization": (("state", "wall_contact"), along("walls", scene.resolved_wall.friction)),
+    }
+    return xr.Dataset(data, _along(result))
 
 
 def force_distribution(result: Result, *, state: int = -1, bins: int = 24, to: float = 6.0) -> xr.DataArray:
@@ -170,13 +167,11 @@ def modes(result: Result, count: int = 6, *, state: int = -1, sliding: str = "re
     chosen, problem = result._solved_state(state), result._solved.problem
     values, vectors = lowest_modes(problem, chosen, count, network.rattlers(chosen), sliding=sliding)
     frequency = np.sqrt(np.maximum(values, 0.0))  # a disk that rolls freely has 0, up to rounding
-    return xr.Dataset(
-        {
-            "frequency": ("mode", frequency, {"long_name": "frequency", "units": "1 / reduced_time"}),
-            "displacement": (("mode", "disk", "component"), vectors),
-        },
-        {"component": ["x", "z", "angle"][: problem.freedoms]},
-    )
+    data: dict[str, Any] = {
+        "frequency": ("mode", frequency, {"long_name": "frequency", "units": "1 / reduced_time"}),
+        "displacement": (("mode", "disk", "component"), vectors),
+    }
+    return xr.Dataset(data, {"component": ["x", "z", "angle"][: problem.freedoms]})
 
 
 def elastic_moduli(

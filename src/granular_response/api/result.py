@@ -30,11 +30,9 @@ from ..state import Certificate, State
 from ..store import export as exporting
 from ..store import files
 from ..store.checked import read_result
-from ..store.contact_table import contact_table
-from ..store.result import scene_of, solution_from, state_from, to_dataset
-from . import compiling
+from ..store.result import contact_table, scene_of, solution_from, state_from, to_dataset
 from .event_table import Events
-from .terminal import shown
+from .terminal import LOG, logged, shown
 
 
 class Result:
@@ -105,8 +103,7 @@ class Result:
         (mg), and ``reached.events_error`` an estimate, no bound, of what that leaves out of a force of the floor or a
         wall since the state before, per load.
         """
-        found = [(k, event) for k, state in enumerate(self._states) for event in state.reached.events]
-        return Events((event for _, event in found), (k for k, _ in found))
+        return Events((k, event) for k, state in enumerate(self._states) for event in state.reached.events)
 
     @property
     def floor_response(self) -> xr.DataArray:
@@ -287,15 +284,11 @@ class Result:
         rest, now = (state_from(self._data, k) for k in (0, state))  # on one list of candidates
         forces = load_forces(rest, now) if added else contact_forces(now)
         tensor = coarse_grained_stress(forces, grid_points(across + origin, up), width)
+        title = "stress that the load adds" if added else "stress"
         names = np.array(["x", "z"])
-        labels = {"long_name": "stress that the load adds" if added else "stress", "units": f"{FORCE} / {LENGTH}"}
-        return xr.DataArray(
-            tensor,
-            {"z": up, "x": across, "force": names, "branch": names},
-            ("z", "x", "force", "branch"),
-            "stress",
-            {**labels, "gaussian_width": width},
-        )
+        coordinates = {"z": up, "x": across, "force": names, "branch": names}
+        labels = {"long_name": title, "units": f"{FORCE} / {LENGTH}", "gaussian_width": width}
+        return xr.DataArray(tensor, coordinates, tuple(coordinates), "stress", labels)
 
     def influence(self, *, state: int = -1, sliding: str = "refuse") -> xr.DataArray:
         """What a small force on any disk adds to the vertical force on each floor disk, exactly in the limit.
@@ -326,19 +319,15 @@ class Result:
         disks = data["floor_disk"].values
         found = influence(self._solved.problem, chosen, disks, sliding=sliding)
         across = chosen.box.separation(chosen.position, np.array([self.origin, 0.0]))[:, 0]
-        return xr.DataArray(
-            found,
-            {
-                "floor_disk": data["floor_disk"],
-                "x": ("floor_disk", data["x"].values, data["x"].attrs),
-                "disk_x": ("disk", across, {"units": LENGTH}),
-                "disk_z": ("disk", chosen.position[:, 1], {"units": LENGTH}),
-                "component": ["x", "z", "torque"][: found.shape[2]],
-            },
-            ("floor_disk", "disk", "component"),
-            "influence",
-            {"long_name": "vertical floor force per small force on a disk", "units": "1"},
-        )
+        coordinates = {
+            "floor_disk": data["floor_disk"],
+            "x": ("floor_disk", data["x"].values, data["x"].attrs),
+            "disk_x": ("disk", across, {"units": LENGTH}),
+            "disk_z": ("disk", chosen.position[:, 1], {"units": LENGTH}),
+            "component": ["x", "z", "torque"][: found.shape[2]],
+        }
+        labels = {"long_name": "vertical floor force per small force on a disk", "units": "1"}
+        return xr.DataArray(found, coordinates, ("floor_disk", "disk", "component"), "influence", labels)
 
     def _index(self, state: int) -> int:
         if isinstance(state, bool) or not isinstance(state, (int, np.integer)):
@@ -414,7 +403,7 @@ class Result:
         (1.0, 0.5)
         """
         solution = self._solved
-        with shown(progress) as report, compiling.logged(report):
+        with shown(progress) as report, logged(report):
             further = continue_solution(solution, load_factors, progress=report)
         return vouched(further)
 
@@ -506,7 +495,7 @@ def solve(
     asked = described(scene)
     if method is not None:
         asked = asked.updated({"protocol.method": method})
-    with shown(progress) as report, compiling.logged(report):
+    with shown(progress) as report, logged(report):
         solution = solve_scene(asked, load_factors=load_factors, progress=report)
     return vouched(solution)
 
@@ -515,7 +504,7 @@ def vouched(solution: Solution) -> Result:
     """The result; how it was reached goes into the log, and remarks on it are warnings."""
     for stage, choice in (("gravity", solution.rest_choice), ("loads", solution.load_choice)):
         if choice is not None:
-            compiling.LOG.info("%s by %s: %s", stage, choice.method, choice.reason)
+            LOG.info("%s by %s: %s", stage, choice.method, choice.reason)
     for remark in solution.remarks:
         warnings.warn(remark, stacklevel=3)
     return Result(solution)
@@ -529,7 +518,6 @@ def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scen
 
 
 def _places(name: str, given: Any) -> np.ndarray:
-    """Coordinates of a grid along one axis."""
     places = finite_numbers(given)
     if places is None:
         said = " ".join(show(given).split())  # an array is several lines

@@ -1,17 +1,23 @@
-"""Progress on a terminal or in a notebook: nothing for the first two seconds, nothing at all where nobody looks."""
+"""What is said of a computation: progress, silent at first and where nobody looks, and that kernels are compiled."""
 
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import shutil
 import time
 from collections.abc import Callable, Iterator
-from types import TracebackType
 from typing import Any, Self
 
+from numba.core import event
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+LOG = logging.getLogger("granular_response")
+TEXT = "compiling kernels, which takes up to a minute and is kept for the next time"
+#: The stage of a progress in which nothing else goes on.
+STAGE = "compiling (first run only)"
 
 
 def columns() -> int | None:
@@ -45,9 +51,7 @@ class TerminalProgress:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if self._bars is not None:
             self._bars.stop()
             self._bars = None
@@ -85,3 +89,28 @@ class TerminalProgress:
             self._task = self._bars.add_task(what or "working", total=total)
             self._what = what
         self._bars.update(self._task, completed=done, total=total)
+
+
+class _Once(event.Listener):
+    def __init__(self, progress: Callable[[float, float, str], Any] | None, say: Callable[[str], None] | None) -> None:
+        self._said, self._progress, self._say = False, progress, say
+
+    def on_start(self, _: Any) -> None:
+        if not self._said:
+            self._said = True
+            LOG.info(TEXT)
+            if self._say is not None:
+                self._say(TEXT)
+        if self._progress is not None:  # of every function: a bar is silent at first
+            self._progress(0.0, 1.0, STAGE)
+
+    def on_end(self, _: Any) -> None:
+        pass
+
+
+def logged(
+    progress: Callable[[float, float, str], Any] | None = None, say: Callable[[str], None] | None = None
+) -> contextlib.AbstractContextManager[Any]:
+    """Within it, the first compilation is logged and told to ``say``, and each is the stage of a ``progress``."""
+    listener: contextlib.AbstractContextManager[Any] = event.install_listener("numba:compile", _Once(progress, say))
+    return listener

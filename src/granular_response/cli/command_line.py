@@ -81,7 +81,6 @@ class CommandLine:
         typer.echo(f"{self.name}: {message}", err=True)
 
     def print_version(self) -> None:
-        """Name and version on standard output."""
         typer.echo(f"{self.name} {__version__}")
 
     def run(self) -> None:

@@ -113,8 +113,7 @@ def _keep(output: Path, solution: Solution, started: float, allow_unsettled: boo
 @contextmanager
 def _computing(threads: int | None) -> Iterator[TerminalProgress]:
     """On so many threads, with a line of progress; on a terminal it is said where kernels are compiled."""
-    from ..api.compiling import logged
-    from ..api.terminal import TerminalProgress
+    from ..api.terminal import TerminalProgress, logged
     from ..machine.threads import cores, using
 
     loaded()

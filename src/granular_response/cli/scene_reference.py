@@ -38,9 +38,7 @@ class Section(NamedTuple):
     given: Mapping[str, Any] = MappingProxyType({})  #: keys that must be there, with values that are allowed
     left_out: frozenset[str] = frozenset()  #: keys that another section has
 
-    def listed(self) -> list[Key]:
-        """The keys in the order of the description."""
-        found = []
+    def listed(self) -> Iterator[Key]:
         for name, info in self.model.model_fields.items():
             if name in self.left_out:
                 continue
@@ -48,10 +46,7 @@ class Section(NamedTuple):
                 raise TypeError(f"{self.model.__name__}.{name} has no description")
             required = info.is_required() or name == "kind"
             default = "" if required else _spelled(info.get_default(call_default_factory=True))
-            found.append(
-                Key(f"{self.place}.{name}", default, self._allowed(name), unit_of(name, info), info.description)
-            )
-        return found
+            yield Key(f"{self.place}.{name}", default, self._allowed(name), unit_of(name, info), info.description)
 
     def _allowed(self, name: str) -> str:
         """What the message about a wrong value says."""
@@ -70,13 +65,8 @@ SECTIONS = (
     Section("Pile", "packing", scene.PilePacking, left_out=_BOTH),
     Section("Slab or pile", "packing", scene.SlabPacking, left_out=frozenset(scene.SlabPacking.model_fields) - _BOTH),
     Section("Poured disks", "packing", scene.PouredPacking),
-    Section("Packing from a file", "packing", scene.FilePacking, {"kind": "file", "path": "disks.csv", "width": 1.0}),
-    Section(
-        "Packing from arrays",
-        "packing",
-        scene.ArrayPacking,
-        {"kind": "arrays", "x": [1.0], "z": [1.0], "radius": [1.0]},
-    ),
+    Section("Packing from a file", "packing", scene.FilePacking, {"path": "disks.csv", "width": 1.0}),
+    Section("Packing from arrays", "packing", scene.ArrayPacking, {"x": [1.0], "z": [1.0], "radius": [1.0]}),
     Section("Contacts between disks", "contact", scene.Contact),
     Section("Floor and side walls", "wall", scene.Wall),
     Section("Loads", "loads[]", scene.Load, {"disk": "top-centre", "force": (0.0, 0.0)}),

@@ -30,27 +30,18 @@ def cut(spring, slip_velocity, force_normal, stiffness, damping, friction, time_
 
 
 @kernel
-def tangential_literal(spring, slip_velocity, force_normal, law, time_step):
-    """The paper's equation for the spring taken literally: it is frozen while k_T|s| exceeds mu |f_N|.
+def tangential_frozen(spring, slip_velocity, force_normal, law, rule, time_step):
+    """The paper's equation for the spring: it is frozen while k_T|s| exceeds mu |f_N|, and the force is not cut.
 
-    The force itself is not cut, and a frozen spring stays frozen on unloading too: kept to show that this
-    reading does not settle.
+    LITERAL is the equation taken literally: a frozen spring stays frozen on unloading too, kept to show that this
+    reading does not settle. UNLOADING lies between it and the paper's words: the spring is frozen only against slip
+    that would stretch it further, and a contact that unloads sticks at once; where the normal force falls the
+    tangential force stays beyond the limit.
     """
-    free = law.friction * magnitude(force_normal) - law.tangential_stiffness * magnitude(spring) > 0.0
-    new = spring + select(free, slip_velocity * time_step, 0.0)
-    return -law.tangential_stiffness * new - law.tangential_damping * slip_velocity, new
-
-
-@kernel
-def tangential_unloading(spring, slip_velocity, force_normal, law, time_step):
-    """As :func:`tangential_literal`, but the spring is frozen only against slip that would stretch it further.
-
-    Between the paper's equation and its words: the spring is kept from growing at the limit, and a contact that
-    unloads sticks at once. The force is not cut: where the normal force falls it stays beyond the limit.
-    """
-    within = law.friction * magnitude(force_normal) - law.tangential_stiffness * magnitude(spring) > 0.0
-    moved = slip_velocity * time_step
-    new = spring + select(within, moved, select(spring * slip_velocity < 0.0, moved, 0.0))
+    moves = law.friction * magnitude(force_normal) - law.tangential_stiffness * magnitude(spring) > 0.0
+    if rule == UNLOADING:
+        moves = moves | (spring * slip_velocity < 0.0)
+    new = spring + select(moves, slip_velocity * time_step, 0.0)
     return -law.tangential_stiffness * new - law.tangential_damping * slip_velocity, new
 
 
@@ -58,9 +49,7 @@ def tangential_unloading(spring, slip_velocity, force_normal, law, time_step):
 def tangential(spring, slip_velocity, force_normal, law, rule, time_step):
     """Tangential force and new spring by ``rule``: CUT, LITERAL or UNLOADING."""
     if rule != CUT:
-        if rule == LITERAL:
-            return tangential_literal(spring, slip_velocity, force_normal, law, time_step)
-        return tangential_unloading(spring, slip_velocity, force_normal, law, time_step)
+        return tangential_frozen(spring, slip_velocity, force_normal, law, rule, time_step)
     return cut(
         spring, slip_velocity, force_normal, law.tangential_stiffness, law.tangential_damping, law.friction, time_step
     )

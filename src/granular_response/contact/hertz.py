@@ -27,19 +27,13 @@ class Hertz(NamedTuple):
     tangential_damping: float
     friction: float
     least_force: float
-    factor: float  #: K sqrt(reduced_radius)
     reduced_radius: float
+    factor: float  #: K sqrt(reduced_radius)
 
     @classmethod
-    def of(
-        cls, normal_stiffness: float, normal_damping: float, tangential_stiffness: float, tangential_damping: float,
-        friction: float, least_force: float, reduced_radius: float,
-    ) -> Hertz:  # fmt: skip
-        """The law from its constants (see :class:`.law.Law`)."""
-        return cls(
-            normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force,
-            (normal_stiffness / 1.5) ** 1.5, reduced_radius,
-        )  # fmt: skip
+    def of(cls, normal_stiffness: float, *constants: float) -> Hertz:
+        """The law from the constants of :meth:`.law.Law.of`."""
+        return cls._make((normal_stiffness, *constants, (normal_stiffness / 1.5) ** 1.5))
 
     # Open contacts, with a negative overlap, are asked too; what they answer is not used.
     def elastic_force(self, overlap, shape):

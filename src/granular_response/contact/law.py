@@ -15,9 +15,8 @@ from typing import Protocol, Self
 
 from numpy.typing import NDArray
 
-from ..machine.by_type import by_type
 from ..machine.lanes import select
-from ..machine.machine_code import kernel
+from ..machine.machine_code import by_type, kernel
 
 
 class Law(Protocol):
@@ -41,13 +40,12 @@ class Law(Protocol):
     @classmethod
     def of(
         cls, normal_stiffness: float, normal_damping: float, tangential_stiffness: float, tangential_damping: float,
-        friction: float, least_force: float, reduced_radius: float,
+        friction: float, least_force: float, reduced_radius: float, /,
     ) -> Self:  # fmt: skip
         """The law from its constants; ``reduced_radius`` is that of the contacts that have the stiffness.
 
         A law with parameters of its own takes them by name after these.
         """
-        ...
 
     def elastic_force(self, overlap, shape): ...
     def stiffness(self, overlap, shape): ...
@@ -58,11 +56,9 @@ class Law(Protocol):
 
         None for a law in which radii do not matter.
         """
-        ...
 
     def stiffest(self, force: float) -> float:
         """Largest normal stiffness at normal forces up to ``force``."""
-        ...
 
     def softened(self, part: float) -> Self:
         """The law with which a packing of ``part`` of the height sinks by the same lengths under its own weight.
@@ -70,11 +66,9 @@ class Law(Protocol):
         For the start of large packings alone: the force at an overlap is ``part`` times that of this law at ``part`` of
         the overlap, so ``part**2`` times the constant for linear springs.
         """
-        ...
 
     def without_friction(self) -> Self:
         """The same law without its part along the tangent."""
-        ...
 
 
 @by_type

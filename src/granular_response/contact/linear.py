@@ -16,12 +16,9 @@ class Linear(NamedTuple):
     least_force: float
 
     @classmethod
-    def of(
-        cls, normal_stiffness: float, normal_damping: float, tangential_stiffness: float, tangential_damping: float,
-        friction: float, least_force: float, reduced_radius: float,
-    ) -> Linear:  # fmt: skip
-        """The law from its constants (see :class:`.law.Law`); ``reduced_radius`` does not matter."""
-        return cls(normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force)
+    def of(cls, *constants: float) -> Linear:
+        """The law from the constants of :meth:`.law.Law.of`; the last one, a radius, does not matter."""
+        return cls._make(constants[:-1])
 
     def elastic_force(self, overlap, shape):
         return self.normal_stiffness * overlap

@@ -11,7 +11,7 @@ import math
 from ..contact.law import stiffness
 from ..machine.lanes import WIDTH, anywhere, gather, magnitude, put, select, spread, take
 from ..machine.machine_code import kernel
-from ..state.status import OPEN, SLIDING, STICKING
+from ..state import OPEN, SLIDING, STICKING
 from .statics import _contact_at
 
 #: What a contact does next; ``SLIDES`` is negative where it will slide under a negative force.

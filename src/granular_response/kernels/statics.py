@@ -24,7 +24,7 @@ from ..contact.coulomb import return_map
 from ..contact.law import elastic_force, energy, stiffness
 from ..machine.lanes import WIDTH, anywhere, gather, magnitude, put, quotient_where, root, select, spread, take
 from ..machine.machine_code import kernel
-from ..state.status import AT_LIMIT, OPEN, SLIDING, STICKING
+from ..state import AT_LIMIT, OPEN, SLIDING, STICKING
 
 Floats = NDArray[Any]
 

@@ -1,4 +1,4 @@
-"""How kernels are compiled, and where their machine code is kept.
+"""How kernels are compiled, how a type chooses what they call, and where their machine code is kept.
 
 Numba keeps machine code by the file of a kernel, but a kernel also holds code inlined from other files. So the folder
 is named after all sources that kernels are made of: what was compiled from others is never found again. Nothing is
@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import fcntl
 import hashlib
+import inspect
 import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
-from functools import cache, partial
+from functools import cache, partial, wraps
 from pathlib import Path
 from typing import Any
 
 import numba as nb
+from numba.extending import overload
 
 _PACKAGE = Path(__file__).parents[1]
 #: Folders of the package whose files make kernels or are inlined into them.
@@ -45,6 +47,28 @@ def kernel(function: Callable | None = None, **options: Any) -> Any:
     if folder is not None and hasattr(compiled, "_cache"):  # not with compilation off
         _keep_own_types_alone(compiled, folder / "lock")
     return compiled
+
+
+def by_type(function: Callable) -> Any:
+    """Decorator: the method of the same name of the first argument, in Python and in compiled code alike.
+
+    The argument is a named tuple (a contact law, an integrator), of a class in a module that can be imported. Compiled
+    code knows the class from the type, so the choice costs nothing at run time. The body of ``function`` is never run:
+    its arguments and docstring say what the methods have in common.
+    """
+    name = function.__name__
+
+    @wraps(function)
+    def called(self, *arguments):
+        return getattr(self, name)(*arguments)
+
+    def method(*types):
+        return getattr(types[0].instance_class, name)
+
+    # Numba compares the names of the arguments
+    method.__signature__ = called.__signature__ = inspect.signature(function)  # type: ignore[attr-defined]
+    overload(called, jit_options={"error_model": "numpy", "forceinline": True})(method)
+    return called
 
 
 def _keep_own_types_alone(compiled: Any, lock: Path) -> None:

@@ -1,8 +1,5 @@
 """How many threads a computation takes: one, unless more are asked for around it.
 
-    with threads.using(2):
-        solve(scene)
-
 The factorisations of large packings use them. Results have the same bits for any number. Processes of a sweep are one
 for each core already, and keep to one thread each.
 """

@@ -29,36 +29,24 @@ else:
     ModelMetaclass = type(BaseModel)
 
 PACKING_KINDS = ("slab", "pile", "poured", "file", "arrays")
-#: Units of all keys that hold a number with a decimal point; the empty one is that of a plain number.
+#: Units of keys; those of other keys are plain numbers.
 UNITS = {
-    "polydispersity": "",
-    "sizes": "any",
-    "fractions": "",
-    "lattice_constant": "mean radius",
-    "x": "length",
-    "z": "that of x",
-    "radius": "that of x",
-    "mass": "any",
-    "width": "mean radius, or that of x",
-    "origin": "that of x",
-    "normal_stiffness": "mg / mean radius",
-    "stiffness_ratio": "",
-    "friction": "",
-    "damping_ratio": "",
-    "rolling_friction": "",
-    "rolling_stiffness_ratio": "",
-    "force": "mg",
-    "displacement": "mean radius",
-    "torque": "mg × mean radius",
-    "vx": "sqrt(gR)",
-    "vz": "sqrt(gR)",
-    "spin": "1 / sqrt(R/g)",
-    "time_step": "sqrt(R/g)",
-    "ramp_time": "sqrt(R/g)",
-    "duration": "sqrt(R/g)",
-    "amplitude": "g",
-    "load_factors": "",
-    "stop_kinetic_energy": "mg × mean radius",
+    key: unit
+    for unit, keys in {
+        "any": ("sizes", "mass"),
+        "length": ("x",),
+        "that of x": ("z", "radius", "origin"),
+        "mean radius, or that of x": ("width",),
+        "mean radius": ("lattice_constant", "displacement"),
+        "mg / mean radius": ("normal_stiffness",),
+        "mg": ("force",),
+        "mg × mean radius": ("torque", "stop_kinetic_energy"),
+        "sqrt(gR)": ("vx", "vz"),
+        "1 / sqrt(R/g)": ("spin",),
+        "sqrt(R/g)": ("time_step", "ramp_time", "duration"),
+        "g": ("amplitude",),
+    }.items()
+    for key in keys
 }
 
 
@@ -157,11 +145,7 @@ class Description(BaseModel, metaclass=_Public):
         for key, value in data.items():
             if key not in cls.model_fields:
                 meant = cls._elsewhere(key) or suggestion(key, cls.model_fields)
-                raise Problem(
-                    f"unknown key{meant} (allowed: {keys or 'none'})",
-                    key=(key if isinstance(key, str) else str(key),),
-                    value=value,
-                )
+                raise Problem(f"unknown key{meant} (allowed: {keys or 'none'})", key=(str(key),), value=value)
         return {key: plain(value) for key, value in data.items()}
 
     @classmethod

@@ -34,7 +34,6 @@ class GivenContact(NamedTuple):
 
     @property
     def words(self) -> str:
-        """Its two sides."""
         return bodies(self.first, self.second, self.at_wall)
 
 
@@ -65,11 +64,11 @@ def read(path: Path, position: FloatArray, box: Box, table: Table) -> tuple[Give
     ``position`` (n, 2) and ``box`` are those of the packing. Raises FormatError, OSError and UnicodeError.
     """
     lines, whole = lines_of(path)
-    if lines and lines[0].startswith("ITEM:"):
+    if lines and lines[0][1].startswith("ITEM:"):
         return checked([*_of_pairs(path, position, box, table), *_of_walls(table)], len(position))
     if not whole:
         raise FormatError("is cut: its last line has no end")
-    return checked(_of_table(lines), len(position))
+    return checked(_of_table([line for _, line in lines]), len(position))
 
 
 def _of_table(lines: list[str]) -> Iterator[GivenContact]:

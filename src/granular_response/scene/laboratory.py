@@ -188,8 +188,8 @@ class LaboratoryUnits:
         >>> units.define(registry)  # doctest: +SKIP
         >>> result.to_dataset().pint.quantify(unit_registry=registry)  # doctest: +SKIP
         """
-        named = {LENGTH: "length", MASS: "mass", TIME: "time", FORCE: "force"}
-        for (name, quantity), unit in zip(named.items(), ("m", "kg", "s", "N"), strict=True):
+        named = {LENGTH: ("length", "m"), MASS: ("mass", "kg"), TIME: ("time", "s"), FORCE: ("force", "N")}
+        for name, (quantity, unit) in named.items():
             registry.define(f"{name} = {self.unit(quantity)!r} {unit}")
 
 

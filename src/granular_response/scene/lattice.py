@@ -62,15 +62,7 @@ class LatticePacking(PackingDescription):
 
     @property
     def disk_count(self) -> int:
-        """Number of disks."""
         return int(self.row_count().sum())
-
-    @property
-    def spacing(self) -> float:
-        """The lattice constant as a number, in mean radii."""
-        if isinstance(self.lattice_constant, str):
-            return touching_largest(self.polydispersity)
-        return self.lattice_constant
 
     @model_validator(mode="after")
     def _check_size(self) -> LatticePacking:
@@ -84,7 +76,8 @@ class LatticePacking(PackingDescription):
         row = np.repeat(np.arange(len(count)), count)
         column = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
         radius = 1.0 - self.polydispersity * generator(self.seed, self.realization).random(len(row))
-        a = self.spacing
+        given = self.lattice_constant
+        a = touching_largest(self.polydispersity) if isinstance(given, str) else given
         x = 0.5 * a * (1 + left[row] + 2 * column)
         z = 0.5 * a + row * (0.5 * math.sqrt(3.0) * a)
         return Packing(

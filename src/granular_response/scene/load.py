@@ -114,10 +114,6 @@ class Load(Sparse):
                 raise Problem(rule, key=("force",), value=list(self.force))
         return self
 
-    def holds(self, axis: int) -> bool:
-        """Whether the disk is held along x (0) or z (1)."""
-        return self.displacement is not None and self.displacement[axis] is not None
-
 
 def resolve_disk(
     selector: str | int | RowSelector | TopSelector,

@@ -55,7 +55,6 @@ class Packing:
 
     @property
     def n(self) -> int:
-        """Number of disks."""
         return len(self.radius)
 
     def __repr__(self) -> str:
@@ -64,7 +63,6 @@ class Packing:
 
     @property
     def box(self) -> Box:
-        """What bounds the disks."""
         return Box(self.width, self.periodic)
 
     @property

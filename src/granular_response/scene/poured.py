@@ -26,13 +26,7 @@ _SAME_PLACE = 1e-9
 Disks = Annotated[
     int, Field(strict=True, ge=1, le=MOST_POURED), allowed(f"must be a whole number from 1 to {MOST_POURED}")
 ]
-
-
-Numbers = Annotated[
-    tuple[Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)], ...],
-    Field(min_length=1),
-    allowed("must be a list of numbers greater than 0"),
-]
+Numbers = Annotated[tuple[Positive, ...], Field(min_length=1), allowed("must be a list of numbers greater than 0")]
 
 
 class PouredPacking(PackingDescription):
@@ -76,7 +70,6 @@ class PouredPacking(PackingDescription):
 
     @property
     def disk_count(self) -> int:
-        """Number of disks."""
         return self.disks
 
     def build(self) -> Packing:

@@ -15,8 +15,8 @@ from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, Valida
 
 from ..inputs import unreadable
 from . import formats
+from .arrays import ROUNDING, packed
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
-from .disks import ROUNDING, packed
 from .errors import Problem, SceneError, describe, show
 from .formats import csv_table
 from .packing import Packing, exact_mean
@@ -116,12 +116,10 @@ class FilePacking(Sparse, PackingDescription):
 
     @property
     def file(self) -> Path:
-        """The table's place."""
         return Path(self._folder or ".", self.path)
 
     @property
     def files(self) -> list[Path]:
-        """All that it is read from."""
         return [self.file, *([Path(self._folder or ".", self.springs)] if self.springs else [])]
 
     def _table(self) -> formats.Table:

@@ -1,31 +1,23 @@
 """What a packing is at one moment: its state, its contacts and their status, its box."""
 
-from .box import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, Box, FloatArray, foot_points, wall_normals
-from .events import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Event
-from .reached import Certificate, Reached
-from .state import Contacts, State, contact_force
-from .status import AT_LIMIT, OPEN, SLIDING, STICKING
-
-__all__ = [
-    "AT_LIMIT",
-    "CONTACT_EVENTS",
-    "FLOOR",
-    "LEFT_WALL",
-    "LOST_EVENTS",
-    "OPEN",
-    "RIGHT_WALL",
-    "ROLLING_EVENTS",
-    "SLIDING",
-    "STICKING",
-    "WALL_NORMAL",
-    "Box",
-    "Certificate",
-    "Contacts",
-    "Event",
-    "FloatArray",
-    "Reached",
-    "State",
-    "contact_force",
-    "foot_points",
-    "wall_normals",
-]
+from .box import FLOOR as FLOOR
+from .box import LEFT_WALL as LEFT_WALL
+from .box import RIGHT_WALL as RIGHT_WALL
+from .box import WALL_NORMAL as WALL_NORMAL
+from .box import Box as Box
+from .box import FloatArray as FloatArray
+from .box import foot_points as foot_points
+from .box import wall_normals as wall_normals
+from .state import AT_LIMIT as AT_LIMIT
+from .state import CONTACT_EVENTS as CONTACT_EVENTS
+from .state import LOST_EVENTS as LOST_EVENTS
+from .state import OPEN as OPEN
+from .state import ROLLING_EVENTS as ROLLING_EVENTS
+from .state import SLIDING as SLIDING
+from .state import STICKING as STICKING
+from .state import Certificate as Certificate
+from .state import Contacts as Contacts
+from .state import Event as Event
+from .state import Reached as Reached
+from .state import State as State
+from .state import contact_force as contact_force

@@ -61,7 +61,6 @@ class Box:
 
     @property
     def walls(self) -> tuple[int, ...]:
-        """The walls that there are."""
         return (FLOOR,) if self.periodic else (FLOOR, LEFT_WALL, RIGHT_WALL)
 
     def separation(self, a, b) -> FloatArray:

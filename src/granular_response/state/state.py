@@ -1,19 +1,163 @@
-"""The state of a packing: the one description that observables, datasets and restarts read.
+"""What a packing is at one moment: positions, contacts and their status, how it was reached, and what it guarantees.
 
-Units are the reduced ones (mean disk radius, mean disk mass, g); the sign conventions are those of
-``docs/architecture.md``. Arrays are never modified once a state exists.
+Observables, datasets and restarts read this one description. Units are the reduced ones (mean disk radius, mean disk
+mass, g); the sign conventions are those of ``docs/architecture.md``. Arrays are never modified once a state exists.
+What a method does not know of a state is ``None`` in its records.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .box import Box, FloatArray, wall_normals
-from .reached import Certificate, Reached
-from .status import OPEN, SLIDING
+from .box import Box, FloatArray, bodies, wall_normals
+
+#: Part of its limit by which a force may be below it and count as at the limit.
+AT_LIMIT = 1e-9
+
+#: Not in touch; in touch within the Coulomb limit (or without friction); at the Coulomb limit.
+OPEN, STICKING, SLIDING = 0, 1, 2
+#: Their names, in order.
+MEANINGS = ("open", "sticking", "sliding")
+
+#: What a contact does at an event.
+CONTACT_EVENTS = ("opens", "closes", "slides", "sticks", "reverses")
+#: What it does along the rolling.
+ROLLING_EVENTS = ("rolls", "stops rolling", "rolls back")
+#: What happens to an equilibrium that ends: a longer increment finds the next one nearby, the motion of the disks leads
+#: to it, or to one of several.
+LOST_EVENTS = ("stepped over", "jump", "bifurcation")
+
+#: Part of what a disk bears that may be out of balance.
+BALANCED = 1e-6
+
+
+@dataclass(frozen=True)
+class Event:
+    """One change on a load path: a contact changes its status, or an equilibrium is lost.
+
+    ``kind`` is, for a contact, ``"opens"``, ``"closes"``, ``"slides"`` (reaches Coulomb's limit), ``"sticks"`` (leaves
+    it) or ``"reverses"`` (slides the other way); where it resists rolling also ``"rolls"`` (reaches the limit of that),
+    ``"stops rolling"`` or ``"rolls back"``. Where an equilibrium is lost it is ``"stepped over"`` (the next one is
+    near, under a slightly larger load), ``"jump"`` (the motion of the disks leads to it) or ``"bifurcation"`` (it is
+    unstable, and the motion leads to one of several others). Lengths are in mean disk radii.
+
+    Examples
+    --------
+    >>> opening = result.events.of("opens")[0]
+    >>> opening.kind, 0.0 < opening.load_factor < 1.0
+    ('opens', True)
+    >>> event = gr.Event(0.25, "opens", first=3, second=1, x=2.0, z=1.0)
+    >>> event.lost, event.where
+    (False, 'disks 3 and 1')
+    """
+
+    load_factor: float  #: multiplier of the scene's loads at which it happens
+    kind: str
+    first: int = -1  #: disk; the one that moves farthest where an equilibrium is lost, -1 if not recorded
+    second: int = -1  #: the other disk, or the wall; -1 where an equilibrium is lost
+    at_wall: bool = False
+    x: float = float("nan")  #: of the point of contact, or of the disk
+    z: float = float("nan")
+    until: float = float("nan")  #: load factor at which the path goes on: it happens between the two
+    displacement: float = 0.0  #: largest of a disk on the way from a lost equilibrium to the next
+    reason: str = ""  #: why an equilibrium is lost
+
+    @property
+    def lost(self) -> bool:
+        """Whether an equilibrium ends."""
+        return self.kind in LOST_EVENTS
+
+    @property
+    def where(self) -> str:
+        """The disks, or the disk and the wall, for people."""
+        if self.first < 0:
+            return "unknown disk"
+        if self.second < 0:
+            return f"disk {self.first}"
+        return bodies(self.first, self.second, self.at_wall)
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What a static state guarantees, measured on the state itself.
+
+    ``force_residual``, ``torque_residual``: largest on any disk (mean weights, mean radii). ``coulomb_excess``:
+    largest ``|f_t| - friction f_n``. ``smallest_normal_force``: over closed contacts. ``kinetic_energy``: per
+    disk. ``negative_modes``: unstable directions of the tangent with the recorded statuses (where contacts slide 1
+    stands for any number; None: not determined). ``loose_disks``: disks with fewer than two contacts.
+    ``unbalanced_part``: largest unbalanced force on a disk, or torque per radius, as a part of what it bears, its
+    weight or its largest contact force (nan: not measured, in files from before).
+    ``rolling_excess``: largest rolling force beyond its limit.
+
+    Examples
+    --------
+    >>> result.certificate.stable, result.certificate.force_residual < 1e-9
+    (True, True)
+    """
+
+    force_residual: float
+    torque_residual: float
+    coulomb_excess: float
+    smallest_normal_force: float
+    kinetic_energy: float
+    negative_modes: int | None
+    loose_disks: int
+    unbalanced_part: float = float("nan")
+    rolling_excess: float = 0.0
+
+    @property
+    def balanced(self) -> bool:
+        """Whether forces and torques on each disk cancel, as far as it bears any."""
+        return not self.unbalanced_part > BALANCED
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether the packing is in balance and no direction is unstable; None where that was not determined."""
+        if not self.balanced:
+            return False
+        return None if self.negative_modes is None else self.negative_modes == 0
+
+
+@dataclass(frozen=True)
+class Reached:
+    """How a state was reached.
+
+    Reduced units; ``kinetic_energy`` is per disk, before the static finish. ``network_fixed_steps``,
+    ``sliding_contacts`` and ``mean_acceleration`` are the further criteria of Sec. III.C, as they were when the
+    kinetic energy had fallen below its limit.
+    """
+
+    method: str | None = None  #: dynamics, minimise, path or statics
+    certificate: Certificate | None = None
+    settled: bool | None = None  #: whether dynamics came to rest; False when its steps ran out
+    steps: int | None = None  #: time steps of the dynamics since it began
+    time_step: float | None = None  #: of the dynamics
+    time: float | None = None  #: since the last ramp began
+    rebuilds: int | None = None  #: times that candidate contacts were listed again
+    kinetic_energy: float | None = None
+    relaxation_steps: int | None = None  #: time steps of the last relaxation
+    network_fixed_steps: int | None = None  #: time steps in which no contact opened or closed
+    sliding_contacts: int | None = None
+    mean_acceleration: float | None = None  #: of disks with two contacts or more, in units of g
+    loose_disks: int | None = None  #: disks with fewer than two contacts
+    #: of these, disks that still rolled when the others were at rest, and were stopped by hand; None for none
+    stopped_rattlers: int | None = None
+    more_relaxations: int | None = None  #: stretches of dynamics between tries of the static finish
+    newton_iterations: int | None = None
+    finish_displacement: float | None = None  #: largest of a disk in the static finish (mean radii)
+    escapes: int | None = None  #: saddles of the energy that were left
+    increments: int | None = None  #: of the path so far
+    factorisations: int | None = None  #: of the path so far
+    events: tuple[Event, ...] = ()  #: of the path since the state before
+    events_within: float | None = None  #: load within which a path took events together (mean weights)
+    events_error: float | None = None  #: estimate of what that leaves out since then of a floor or wall force
+
+    def after(self, earlier: Reached) -> Reached:
+        """This record, and what only the one ``earlier`` knows."""
+        return replace(earlier, **{name: value for name, value in vars(self).items() if value not in (None, ())})
 
 
 @dataclass(frozen=True, repr=False)

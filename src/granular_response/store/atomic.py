@@ -18,6 +18,8 @@ import stat
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
+from ..inputs import check_regular
+
 
 def write_bytes(
     path: str | os.PathLike[str], data: bytes, check: Callable[[bytes], None] | None = None, *, lasting: bool = True
@@ -74,13 +76,9 @@ def _regular(path: str | os.PathLike[str]) -> Path:
         raise OSError(errno.EILSEQ, "has a name that is not UTF-8", os.fspath(path)) from None
     target = Path(os.path.realpath(path))
     try:
-        kind = os.stat(target).st_mode
+        check_regular(path)
     except FileNotFoundError:
         return target
-    if stat.S_ISDIR(kind):
-        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), os.fspath(path))
-    if not stat.S_ISREG(kind):
-        raise OSError(errno.EINVAL, "is not a regular file", os.fspath(path))
     if not os.access(target, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), os.fspath(path))
     return target

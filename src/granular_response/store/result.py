@@ -1,4 +1,4 @@
-"""Solutions as labelled datasets, and states back from them.
+"""Solutions as labelled datasets, states back from them, and their contacts as a table.
 
 A dataset is in reduced units: lengths in mean disk radii, masses in mean disk masses, forces in mean disk
 weights. What its variables are is said in ``variables.py``.
@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import fields, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -22,12 +22,14 @@ from ..observe.difference import match_candidates, pair_force_difference, wall_f
 from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
 from ..scene import text as scene_text
+from ..scene.laboratory import FORCE, LENGTH
 from ..scene.material import KNOWN_LAWS
 from ..solvers.problem import Problem
 from ..solvers.solution import Solution
 from ..solvers.timestep import time_step_reason
 from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Box, Certificate, Contacts, Event, Reached, State
-from ..state.status import MEANINGS
+from ..state.box import WALL_MEANINGS, FloatArray
+from ..state.state import MEANINGS
 from .variables import (
     CERTIFICATE,
     CONTACT,
@@ -114,6 +116,11 @@ def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, xr.Variabl
     return {**data, "event_state": described("event_state", [k for k, _ in found])}
 
 
+def stored_values(dataset: xr.Dataset, prefix: str, names: Iterable[str]) -> dict[str, Any]:
+    """The values of variables ``prefix + name``, by ``name``, as far as a dataset has them."""
+    return {name: dataset[prefix + name].values for name in names if prefix + name in dataset}
+
+
 def events_from(dataset: xr.Dataset, index: int | None = None) -> list[tuple[int, Event]]:
     """Stored events with the index of the state that each leads to: of the state ``index``, or all."""
     if "event_state" not in dataset:
@@ -149,22 +156,17 @@ def _reached(states: Sequence[State]) -> dict[str, xr.Variable]:
         elif any(one is not None for one in known):
             whole = all(one is None or isinstance(one, (bool, int, np.integer)) for one in known)
             missing, kind, said = (NOT_DETERMINED, np.int64, " (-1: not known)") if whole else (np.nan, float, "")
+            own = f"reached_{name}"
             values = np.array([missing if one is None else one for one in known], kind)
-            data[f"reached_{name}"] = described(
-                f"reached_{name}", values, text=VARIABLES[f"reached_{name}"].text + said
-            )
+            data[own] = described(own, values, text=VARIABLES[own].text + said)
     return data
 
 
 def _reached_from(one: xr.Dataset) -> dict[str, Any]:
     """The numbers of a stored record; what is not known is left out."""
-    found: dict[str, Any] = {}
-    for name in REACHED:
-        if f"reached_{name}" in one:
-            value = one[f"reached_{name}"].values.item()
-            if value not in ("", NOT_DETERMINED) and value == value:
-                found[name] = bool(value) if name == "settled" else value
-    return found
+    known = {name: value.item() for name, value in stored_values(one, "reached_", REACHED).items()}
+    known = {name: value for name, value in known.items() if value not in ("", NOT_DETERMINED) and value == value}
+    return {name: bool(value) if name == "settled" else value for name, value in known.items()}
 
 
 def load_coordinates(factors: Sequence[float]) -> dict[str, xr.Variable]:
@@ -267,14 +269,10 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     change = forces - at_rest
     applied = np.array([solution.applied_force(state) for state in solution.loaded], float)
     of_states = dict(states_dataset(states).variables)
-    data: dict[Any, xr.Variable] = {
-        "state_load_factor": of_states.pop("load_factor"),
-        **of_states,
-        "contact_force": described("contact_force", [state.pair_force() for state in states]),
-        "wall_force": described("wall_force", [state.wall_force() for state in states]),
-        **load_coordinates(solution.load_factors),
-    }
-    numbers = {
+    data: dict[Any, xr.Variable] = {"state_load_factor": of_states.pop("load_factor"), **of_states}
+    values: dict[str, Any] = {
+        "contact_force": [state.pair_force() for state in states],
+        "wall_force": [state.wall_force() for state in states],
         "floor_force_rest": at_rest,
         "floor_force": forces,
         "floor_force_change": change,
@@ -285,16 +283,17 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "loaded_disk": problem.load_disk,
         "applied_load": problem.load,
         "total_force": applied,
+        "floor_disk": disks,
+        "x": x,
+        "component": ["force_x", "force_z", "torque"],
     }
     if packing.given is not None:
-        numbers["distance_from_given"] = np.stack([np.asarray(packing.moved(state.position)) for state in own])
+        values["distance_from_given"] = np.stack([np.asarray(packing.moved(state.position)) for state in own])
     if loaded and len(problem.held):
-        numbers["reaction"] = np.stack([solution.reaction(state) for state in solution.loaded])
-    data |= {name: described(name, values) for name, values in numbers.items()}
+        values["reaction"] = np.stack([solution.reaction(state) for state in solution.loaded])
+    data |= load_coordinates(solution.load_factors) | {name: described(name, one) for name, one in values.items()}
     data |= _listed(own, states) | dict(certificates_dataset(states).variables) | _reached(states)
     data |= described_events([(k, event) for k, state in enumerate(own) for event in state.reached.events])
-    data |= {"floor_disk": described("floor_disk", disks), "x": described("x", x)}
-    data["component"] = described("component", ["force_x", "force_z", "torque"])
     moved = any(state.reached.time_step is not None for state in states)
     choices = {"rest": solution.rest_choice, "load": solution.load_choice}
     law = KNOWN_LAWS[solution.scene.contact.law].law  # from outside the package: its module registers it
@@ -349,7 +348,7 @@ def _as_solved(dataset: xr.Dataset, index: int) -> State:
             return contacts
         places = dataset[f"{prefix}_own_place"].values[index]
         kept = np.argsort(places, kind="stable")[np.count_nonzero(places < 0) :]
-        return Contacts(*(getattr(contacts, field.name)[kept] for field in fields(Contacts)))
+        return Contacts(**{name: values[kept] for name, values in vars(contacts).items()})
 
     return replace(state, pairs=own(state.pairs, "contact"), walls=own(state.walls, "wall"))
 
@@ -371,17 +370,13 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
     one = dataset.isel(state=index)
     certificate = None
     if "certificate_force_residual" in one:
-        numbers: dict[str, Any] = {
-            name: one[f"certificate_{name}"].values.item() for name in CERTIFICATE if f"certificate_{name}" in one
-        }
+        numbers = {name: value.item() for name, value in stored_values(one, "certificate_", CERTIFICATE).items()}
         if numbers["negative_modes"] == NOT_DETERMINED:
             numbers["negative_modes"] = None
         certificate = Certificate(**numbers)
 
     def contacts(prefix: str) -> Contacts:
-        found = {
-            name: one[f"{prefix}_{name}"].values for name in (*CONTACT, *ROLLING) if f"{prefix}_{name}" in one.variables
-        }
+        found = stored_values(one, f"{prefix}_", (*CONTACT, *ROLLING))
         first, second = (one[name].values.astype(np.int32) for name in CONTACTS[prefix][1:])
         return Contacts(first, second, **found)
 
@@ -428,3 +423,34 @@ def scene_of(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None = Non
             cure = "the script that made the result, which must register it"
         raise ResultError(f"contact.law = {law!r}: is a law of {cure}")
     return Scene.from_dict(data, folder=folder)
+
+
+def contact_table(state: State, radius: FloatArray) -> Any:
+    """A ``pandas.DataFrame`` of the closed contacts of disks with ``radius`` (n,), those between disks first."""
+    pairs, walls = state.pairs, state.walls
+    between, at_wall = pairs.touching, walls.touching
+    middle = (radius[pairs.first] - 0.5 * pairs.overlap)[:, None] * state.pair_normal()
+    on_disks = (state.position[pairs.first] - middle)[between]
+    on_walls = state.box.on_wall(state.position[walls.first], walls.second)[at_wall]
+    point = np.concatenate([on_disks, on_walls])
+
+    def joined(name: str) -> np.ndarray:
+        return np.concatenate([getattr(pairs, name)[between], getattr(walls, name)[at_wall]])
+
+    columns = {
+        "first": joined("first"),
+        "second": np.concatenate([pairs.second[between], np.full(at_wall.sum(), -1, np.int32)]),
+        "wall": np.array([""] * between.sum() + [WALL_MEANINGS[k] for k in walls.second[at_wall]], object),
+        "x": point[:, 0],
+        "z": point[:, 1],
+        "status": np.array([MEANINGS[code] for code in joined("status")], object),
+        "normal_force": joined("normal_force"),
+        "tangential_force": joined("tangential_force"),
+    }
+    units = {"x": LENGTH, "z": LENGTH, "normal_force": FORCE, "tangential_force": FORCE}
+    if pairs.resists_rolling or walls.resists_rolling:
+        columns["rolling_force"], units["rolling_force"] = joined("rolling_force"), FORCE
+        columns["rolling_status"] = np.array([MEANINGS[code] for code in joined("rolling_status")], object)
+    found = xr.Dataset({name: ("contact", values) for name, values in columns.items()}).to_dataframe()
+    found.attrs["units"] = units
+    return found

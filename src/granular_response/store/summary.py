@@ -19,7 +19,7 @@ from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from . import files as store
 from .checked import read_result
-from .result import events_from
+from .result import events_from, stored_values
 from .variables import EVENT_KINDS, NOT_DETERMINED
 
 #: Attributes that a summary shows elsewhere or not at all.
@@ -111,7 +111,7 @@ def _result(result: xr.Dataset) -> Iterator[tuple[str, RenderableType]]:
     rows = [(stage, f"{method} ({reasons.get(stage, '')})") for stage, method in methods.items()]
     verdicts = [(name, result.attrs[name]) for name in ("stable", "settled") if name in result.attrs]
     yield "how it was solved", _pairs([*rows, *verdicts])
-    if work := {name: result[f"reached_{name}"].values for name in _WORK if f"reached_{name}" in result}:
+    if work := stored_values(result, "reached_", _WORK):
         shown = ((name, ("-" if n == NOT_DETERMINED else n for n in work[name])) for name in work)
         yield "work", _by_factor(result, shown)
     if "event_state" in result:

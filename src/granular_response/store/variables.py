@@ -20,7 +20,7 @@ import xarray as xr
 from ..inputs import read_text
 from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS
 from ..state.box import WALL_MEANINGS
-from ..state.status import MEANINGS
+from ..state.state import MEANINGS
 from .files import CHARACTERS, TEXT
 
 RADII, WEIGHTS = "in mean disk radii", "in mean disk weights"
@@ -83,9 +83,8 @@ def variable(dims, values, long_name: str, **attributes) -> xr.Variable:
     """xr.Variable with the attributes that every stored variable has."""
     dimensions = (dims,) if isinstance(dims, str) else tuple(dims)
     # numpy's arrays are taken as they are: xarray need not find out whether they are Dask's
-    return xr.Variable(
-        dimensions, np.asarray(values), {"long_name": long_name, "units": "1", **attributes}, fastpath=True
-    )
+    labels = {"long_name": long_name, "units": "1", **attributes}
+    return xr.Variable(dimensions, np.asarray(values), labels, fastpath=True)
 
 
 def described(name: str, values: Any, *, along: str = "state", text: str = "", **attributes: Any) -> xr.Variable:

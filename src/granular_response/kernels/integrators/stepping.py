@@ -17,9 +17,8 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ...machine.by_type import by_type
 from ...machine.lanes import WIDTH, anywhere, magnitude, put, spread, take
-from ...machine.machine_code import kernel
+from ...machine.machine_code import by_type, kernel
 from ..forces import forces
 
 #: Steps between two looks at how far disks have moved.

@@ -20,16 +20,8 @@ from ..errors import suggestion
 from .table import NO_BOX, FormatError, Mark, Once, Table, lines_of, number, numbers, radii, shown, upward
 
 #: What is read of a disk, and the names of columns that have it.
-NAMES = {
-    "x": ("x",),
-    "y": ("y",),
-    "z": ("z",),
-    "radius": ("radius", "r"),
-    "diameter": ("diameter", "d"),
-    "mass": ("mass",),
-    "density": ("density",),
-}
 LENGTHS, MATERIAL = ("x", "y", "z", "radius", "diameter"), ("mass", "density")
+NAMES = {name: (name,) for name in LENGTHS + MATERIAL} | {"radius": ("radius", "r"), "diameter": ("diameter", "d")}
 #: What ``columns`` of a scene may name.
 NAMED = ("x", "z", "radius", "diameter", *MATERIAL)
 #: Units of length in metres; pixels may be of any size.
@@ -67,8 +59,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
     mark: Mark | None = None
     once = Once()
     lines, whole = lines_of(path)
-    for line_number, line in enumerate(lines, start=1):
-        place = f"line {line_number}"
+    for place, line in lines:
         if line.lstrip().startswith("#"):
             if found := Mark.found(line, place):
                 once.add("mark of granular-response", place)

@@ -7,6 +7,7 @@ ends the process at some damaged files.
 
 from __future__ import annotations
 
+import math
 import struct
 from itertools import pairwise
 from pathlib import Path
@@ -59,9 +60,8 @@ class _Frames:
         if not len(self._index):
             raise FormatError("is not a GSD file with particles: it has no frame")
         self.last = int(self._index["frame"].max())
-        self._check_index(
-            [(0, _HEADER.size), (index_at, index_size * _ENTRY.itemsize), (names_at, names_size * _NAME_BYTES)]
-        )
+        lists = [(index_at, index_size * _ENTRY.itemsize), (names_at, names_size * _NAME_BYTES)]
+        self._check_index([(0, _HEADER.size), *lists])
 
     def _check_index(self, regions: list[tuple[int, int]]) -> None:
         """Raise FormatError unless frames are numbered one by one, and each chunk has a name and a place of its own."""
@@ -116,13 +116,14 @@ class _Frames:
         """A chunk of that shape as numbers; ``default`` is what the format takes for a missing one, None: an error."""
         kinds = "u" if name == "particles/N" else "f" if name.startswith(("particles/", "configuration/")) else "uif"
         for frame in (self.last, 0):
-            found = self._chunk(frame, name)
-            if found is not None and found.dtype.kind not in kinds:
+            if (found := self._chunk(frame, name)) is None:
+                continue
+            if found.dtype.kind not in kinds:
                 raise FormatError(f"chunk {name}: has values of another kind, {found.dtype}")
-            if found is not None and (found.size == int(np.prod(shape)) or frame == self.last):
-                if found.size != int(np.prod(shape)):
-                    raise FormatError(f"chunk {name}: has {found.size} values, must have {int(np.prod(shape))}")
+            if found.size == math.prod(shape):
                 return found.astype(float).reshape(shape)
+            if frame == self.last:
+                raise FormatError(f"chunk {name}: has {found.size} values, must have {math.prod(shape)}")
         if default is None:
             raise FormatError(f"is not a GSD file with particles: chunk {name} is missing")
         return np.full(shape, default)

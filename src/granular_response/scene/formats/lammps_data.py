@@ -56,7 +56,7 @@ class _Header:
     def __init__(self) -> None:
         self.counts: dict[str, int] = {}
         self.sides: dict[str, tuple[float, float]] = {}
-        self.corner: list[float] | None = None
+        self.corner = 0.0  #: x from which edges are measured
 
     def add(self, cells: list[str], place: str) -> str:
         """Take a line; what it says. Raises FormatError for one that is no header."""
@@ -75,7 +75,7 @@ class _Header:
             upright(numbers(values, cells[3:], place), place)
             return "xy xz yz"
         if cells[3:] == ["abc", "origin"]:
-            self.corner = numbers(values, ("x", "y", "z"), place)
+            self.corner = numbers(values, ("x", "y", "z"), place)[0]
             return "abc origin"
         if len(cells) == 4 and cells[3] in _EDGES:
             k = _EDGES.index(cells[3])
@@ -85,11 +85,6 @@ class _Header:
             return f"bounds in {'xyz'[k]}"
         raise FormatError(f"{shown(' '.join(cells))}: is no header of a LAMMPS data file", place)
 
-    def across(self) -> tuple[float, float]:
-        """Where the box begins in x, and its width."""
-        left, width = self.sides["x"]
-        return left if self.corner is None else left + self.corner[0], width
-
 
 def read(path: Path) -> Table:
     """The disks of section Atoms."""
@@ -97,10 +92,10 @@ def read(path: Path) -> Table:
     sections: dict[str, list[tuple[str, list[str]]]] = {}  #: lines of each, with their places
     section = ""
     lines, whole = lines_of(path)
-    mark = Mark.found(lines[0], "line 1") if lines else None
-    for line_number, line in enumerate(lines[1:], start=2):
+    mark = Mark.found(lines[0][1], "line 1") if lines else None
+    for place, line in lines[1:]:
         text, _, comment = line.partition("#")
-        cells, place = text.split(), f"line {line_number}"
+        cells = text.split()
         if not cells:
             continue
         if cells[0][0].isalpha():
@@ -144,7 +139,8 @@ def read(path: Path) -> Table:
             raise FormatError(f"type = {shown(kind)}: must be from 1 to {most}, as the header atom types says", place)
     if not whole:
         raise FormatError("is cut: its last line has no end")
-    left, width = header.across()
+    left, width = header.sides["x"]
+    left += header.corner
     if mark is not None:
         mark.check(len(rows), whole)
         if (left, width) != (0.0, mark.width):

@@ -51,13 +51,12 @@ class _Item(NamedTuple):
     lines: list[tuple[str, str]]
 
 
-def _frames(lines: list[str], rows: str = "ATOMS") -> list[dict[str, _Item]]:
+def _frames(lines: list[tuple[str, str]], rows: str = "ATOMS") -> list[dict[str, _Item]]:
     """All frames by their items. Raises FormatError for a line that belongs to none, and for an item given twice."""
     known = (*_ITEMS, f"NUMBER OF {rows}", rows)
     frames: list[dict[str, _Item]] = [{}]
     item: _Item | None = None
-    for k, line in enumerate(lines, start=1):
-        place = f"line {k}"
+    for place, line in lines:
         if not line.strip():
             continue
         if not line.startswith("ITEM:"):

@@ -87,7 +87,6 @@ class Mark:
 
     @property
     def box(self) -> FileBox:
-        """The box that it describes."""
         return FileBox(0.0, self.width, 0.0, self.periodic)
 
     @classmethod
@@ -132,16 +131,17 @@ class Once:
             raise FormatError(f"{what}: is given twice, in {first} and here; must be given once", place)
 
 
-def lines_of(path: Path) -> tuple[list[str], bool]:
-    """The lines of a text file, and whether the last one has an end. OSError, UnicodeError.
+def lines_of(path: Path) -> tuple[list[tuple[str, str]], bool]:
+    """The lines of a text file, each after its place, and whether the last one has an end. OSError, UnicodeError.
 
     Raises FormatError for what ends lines or pages elsewhere: in a comment it would take the row after it along.
     """
     text = read_text(path).replace("\r\n", "\n").replace("\r", "\n")
-    lines = text.split("\n")[: -1 if text.endswith("\n") else None]
-    for k, line in enumerate(lines, start=1):
+    found = text.split("\n")[: -1 if text.endswith("\n") else None]
+    lines = [(f"line {k}", line) for k, line in enumerate(found, start=1)]
+    for place, line in lines:
         if len(line.splitlines()) > 1 or line[-1:] in _OTHER_ENDS:
-            raise FormatError("has a line or page end of another kind within, must be one line", f"line {k}")
+            raise FormatError("has a line or page end of another kind within, must be one line", place)
     return lines, text.endswith("\n") or not text
 
 

@@ -23,8 +23,7 @@ def read(path: Path) -> Table:
     once = Once()
     values = 0  #: in each line, where the format leaves their number open
     lines, whole = lines_of(path)
-    for line_number, line in enumerate(lines, start=1):
-        place = f"line {line_number}"
+    for place, line in lines:
         if line.lstrip().startswith("#"):
             if (found := Mark.found(line, place)) and Mark.ends(line):
                 once.add("last line of granular-response", place)
@@ -62,7 +61,6 @@ def read(path: Path) -> Table:
 
 
 def _names(line: str, place: str, late: bool) -> list[str]:
-    """The names of a format line."""
     names = line.replace("#", " ", 1).split()[1:]
     if late or len(names) != 1:
         raise FormatError("format must be one word such as x_y_z_r, above the spheres", place)

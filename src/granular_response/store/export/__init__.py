@@ -85,9 +85,8 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
         raise ExportError(f"{output}: format {ending!r} is unknown, must be {' or '.join(SUFFIXES)}")
     writer, states = _WRITERS[ending]
     if states == "every" and state is not None:
-        raise ExportError(
-            f"state = {state}: {output} is a series of all states, must be left out (.vtu holds one state)"
-        )
+        rule = "is a series of all states, must be left out (.vtu holds one state)"
+        raise ExportError(f"state = {state}: {output} {rule}")
     if not isinstance(result, (str, os.PathLike, xr.Dataset)):
         result = result.to_dataset() if hasattr(result, "to_dataset") else xr.Dataset()
     read = [] if isinstance(result, xr.Dataset) else [result]
@@ -116,9 +115,8 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
     except lammps.NoCounterpart as error:
         raise ExportError(f"{output}: {error}") from None
     except ModuleNotFoundError as error:
-        raise ExportError(
-            f"{output}: needs the package {error.name}, pip install {(error.name or '').partition('.')[0]}"
-        ) from error
+        package = (error.name or "").partition(".")[0]
+        raise ExportError(f"{output}: needs the package {error.name}, pip install {package}") from error
     except OSError as error:
         raise ExportError(f"{output}: cannot be written: {error.strerror or error}") from error
     if ending in _READ or ending == ".lammps":

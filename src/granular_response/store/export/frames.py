@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -13,20 +12,12 @@ from ...state import Box, FloatArray, State
 from ..result import state_from
 
 
-class Frame(NamedTuple):
-    """One state as pictures need it."""
-
-    step: int  #: index of the state in the result
-    state: State
-    force_change: FloatArray  #: (n, 2) contact forces that the load adds
-
-
-def frames(dataset: xr.Dataset, only: int | None = None) -> Iterator[Frame]:
-    """The states in order, or the one with the index ``only``."""
+def frames(dataset: xr.Dataset, only: int | None = None) -> Iterator[tuple[int, State, FloatArray]]:
+    """Index, state and (n, 2) contact forces that its load adds: of all states in order, or of the index ``only``."""
     rest = contact_force_sums(state_from(dataset, 0))
     for index in range(dataset.sizes["state"]) if only is None else [only]:
         state = state_from(dataset, index)
-        yield Frame(index, state, contact_force_sums(state) - rest)
+        yield index, state, contact_force_sums(state) - rest
 
 
 def contact_force_sums(state: State) -> FloatArray:

@@ -17,8 +17,7 @@ import numpy as np
 import xarray as xr
 
 from ...state import Box
-from ..contact_table import contact_table
-from ..result import events_from, state_from
+from ..result import contact_table, events_from, state_from
 from ..variables import EVENTS
 from .frames import extent, frames, in_plane, mark
 
@@ -77,11 +76,11 @@ def lammps_dump(dataset: xr.Dataset, path: Path, only: int | None = None) -> dic
     depth = float(radius.max())
     sides = "pp" if Box.of(dataset.attrs).periodic else "ff"
     lines = []
-    for frame in frames(dataset, only):
-        lines += ["ITEM: TIMESTEP", str(frame.step), "ITEM: NUMBER OF ATOMS", str(len(radius))]
+    for step, state, force_change in frames(dataset, only):
+        lines += ["ITEM: TIMESTEP", str(step), "ITEM: NUMBER OF ATOMS", str(len(radius))]
         lines += [f"ITEM: BOX BOUNDS {sides} ff pp", f"0.0 {width!r}", f"0.0 {height!r}", f"{-depth!r} {depth!r}"]
         lines.append("ITEM: ATOMS id type x y z radius mass c_force_change[1] c_force_change[2] c_force_change[3]")
-        rows = _rows([in_plane(frame.state.position), radius, mass, in_plane(frame.force_change)])
+        rows = _rows([in_plane(state.position), radius, mass, in_plane(force_change)])
         lines += [f"{k} 1 {row}" for k, row in enumerate(rows, start=1)]
     return _file(path, lines)
 
