@@ -41,11 +41,13 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None, forma
     target = folder or figures_folder(group)
     paths: list[Path] = []
     try:
-        figures = function(datasets)
+        with style.context():
+            figures = function(datasets)
+            grey = digitised.add(figures, group)
         panels = {stem: style.drawn_letters(figure) for stem, figure in figures.items()}
         told = group_member(group, "draw", "captions")(datasets, described)
-        for stem, grey in digitised.add(figures, group).items():
-            told[stem] = replace(told[stem], text=f"{told[stem].text} {grey}")
+        for stem, sources in grey.items():
+            told[stem] = replace(told[stem], text=f"{told[stem].text} {sources}")
         said = captions.document(told, panels, captions.question(group))
         for stem, figure in figures.items():
             paths += style.save(figure, stem, target, wanted, inputs=[path])

@@ -45,7 +45,6 @@ APART = {
 }
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``crossover_scaling``, ``crossover_scaling_regions`` and ``crossover_scaling_apart``."""
     slabs, paths, powers = datasets["slabs"], datasets["paths"], datasets["powers"]
@@ -113,7 +112,7 @@ def _brackets(one: xr.Dataset, event: str) -> tuple[np.ndarray, np.ndarray]:
 
 def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     """(a) crossover, (b) region at the floor, (c) first opening against layers, with power laws; names beside them."""
-    figure, panels = style.figure(2, 2, width="double", height=5.6)
+    figure, panels = style.figure(2, 2, height=5.6)
     titles(panels.flat, NAMES.values())
     for event, axes in zip(NAMES, panels.flat, strict=False):
         exponents = []
@@ -168,7 +167,7 @@ def apart(layers: ArrayLike) -> list[int]:
 def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure:
     """Depth of the region of open contacts over that of the slab, against the scaled force, for each friction."""
     chosen = regions_of(powers)
-    figure, panels = style.figure(1, max(1, len(chosen)), width="double", height=2.7, sharey=True)
+    figure, panels = style.figure(1, max(1, len(chosen)), height=2.7, sharey=True)
     titles(panels[0], [name(powers, series) for series in chosen])
     for axes, series in zip(panels[0], chosen, strict=False):
         rows = _slabs_of(slabs, powers, series)
@@ -203,7 +202,7 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     """Crossover over its value at the smallest entry, against width, stiffness and confinement."""
     differs = powers["varied"].values
     kinds = [kind for kind in APART if (differs == kind).any()]
-    figure, panels = style.figure(1, max(1, len(kinds)), width="double", height=2.7)
+    figure, panels = style.figure(1, max(1, len(kinds)), height=2.7)
     titles(panels[0, : len(kinds)])
     for axes, kind in zip(panels[0], kinds, strict=False):
         for series, look in family(np.flatnonzero(differs == kind).tolist(), of="friction"):

@@ -26,11 +26,10 @@ TITLES = "vertical force", "oblique force", "widths", "moved disks"
 DOTS = GUIDE | {"linestyle": DOTTED}
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``experiments`` from ``means`` and ``packings``, ``experiments_images`` from ``picture_K`` and ``means``."""
     means, packings = datasets["means"], datasets["packings"]
-    figure, panels = style.figure(2, 3, width="double", height=5.2)
+    figure, panels = style.figure(2, 3, height=5.2)
     force, straight = means["force_applied"].values, means["angle_applied"].values == 90.0
     known = straight & np.isfinite(means["contrast"].values[:, 0])
     _, starts = np.unique(means["packing"].values[known], return_index=True)
@@ -118,7 +117,7 @@ def _images(datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Above one packing between crossed polarisers, below the mean force of all."""
     pictures = {int(name.removeprefix("picture_")): one for name, one in datasets.items() if name.startswith("picture")}
     means, number = datasets["means"], max(1, len(pictures))
-    figure, panels = style.figure(2, number, width="double", height=3.9)
+    figure, panels = style.figure(2, number, height=3.9)
     for (case, one), (above, below) in zip(pictures.items(), panels.T, strict=False):
         half = polarised(above, one, float(one["total_force"].max()), pixels=PIXELS)
         field = means["force"].isel(case=case).sel(estimate="mean", x=slice(-half, half)).dropna("depth", how="all")

@@ -31,7 +31,6 @@ NAMES = {
 }
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``hysteresis_loops`` from ``curves`` and ``floor``, ``hysteresis_ranges`` from ``loops`` and ``events``."""
     return {
@@ -72,7 +71,7 @@ def looped(polydispersity: np.ndarray, friction: np.ndarray) -> tuple[list[int],
 
 def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
     """(a) loops of the lattices, (b) the floor under one of them."""
-    figure, ((loops, below),) = style.figure(1, 2, width="double", height=2.9)
+    figure, ((loops, below),) = style.figure(1, 2, height=2.9)
     friction = curves["friction"].values
     cases, one = looped(curves["polydispersity"].values, friction)
     colours = dict(family(different(friction[cases]), of="friction"))
@@ -103,7 +102,7 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
 
 def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
     """(a) what is left, (b), (c) what the first and the second loop lose, by force; (d) where ranges end."""
-    figure, panels = style.figure(2, 3, width="double", height=5.2, sharex="row", sharey="row")
+    figure, panels = style.figure(2, 3, height=5.2, sharex="row", sharey="row")
     grid = panels[0, 0].get_gridspec()
     for axes in panels[1]:
         axes.remove()

@@ -24,7 +24,6 @@ REACH = 30.0
 LEAST = 0.8
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``influence_map`` from the dataset ``packings``, ``influence_saint_venant`` from ``saint_venant``."""
     return {"influence_map": _maps(datasets["packings"]), "influence_saint_venant": _decay(datasets["saint_venant"])}
@@ -45,7 +44,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 def _maps(data: xr.Dataset) -> Figure:
     """A panel for each case with the polydispersity of the last one; disks that bear nothing stay white."""
     data = data.isel(case=data["polydispersity"].values == data["polydispersity"].values[-1])
-    figure, (panels,) = style.figure(1, data.sizes["case"], width="double", height=2.4, sharey=True)
+    figure, (panels,) = style.figure(1, data.sizes["case"], height=2.4, sharey=True)
     # the weight of a unit force is 1 where no floor disk is relieved; what exceeds that is pushed up and down
     largest = float(np.nanquantile(data["total"].values, 0.995))
     medians = np.nanmedian(data["total"].values, axis=1)
@@ -73,7 +72,7 @@ def _maps(data: xr.Dataset) -> Figure:
 
 def _decay(data: xr.Dataset) -> Figure:
     """(a) the difference against height over separation, (b) its power for each case."""
-    figure, ((falls, powers),) = style.figure(1, 2, width="double", height=3.2)
+    figure, ((falls, powers),) = style.figure(1, 2, height=3.2)
     cases = materials(data["polydispersity"], data["friction"])
     for case, (name, look) in enumerate(cases):
         one = data.isel(case=case, separation=0)

@@ -30,7 +30,6 @@ REACH = 20.0
 RANGE = -0.5, 1.0
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``moduli_packings`` and ``moduli_response`` from ``packings``, ``moduli_loaded`` from ``slabs``."""
     packings = datasets["packings"]
@@ -67,7 +66,7 @@ def _mean_and_spread(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
 
 def _moduli(data: xr.Dataset) -> Figure:
     """(a) bulk and (b) shear modulus against coordination, affine and relaxed; (c) horizontal over vertical."""
-    figure, (panels,) = style.figure(1, 3, width="double", height=3.2)
+    figure, (panels,) = style.figure(1, 3, height=3.2)
     a, b, c, d = (data["moduli"].sel(modulus=name) for name in "abcd")
     bulk, shear = bulk_and_shear(a, b, c, d)
     shown = {
@@ -103,7 +102,7 @@ def _responses(data: xr.Dataset) -> Figure:
     """Mean response of the largest packings of each case over that of the slabs of their moduli."""
     cases = materials(data["polydispersity"], data["friction"])
     rows = -(-len(cases) // 3)
-    figure, panels = style.figure(rows, 3, width="double", height=0.5 + 1.9 * rows, sharex=True, sharey=True)
+    figure, panels = style.figure(rows, 3, height=0.5 + 1.9 * rows, sharex=True, sharey=True)
     place, texts = data["place"].values, []
     for case, ((name, _), axes) in enumerate(zip(cases, panels.flat, strict=False)):
         one = data.isel(case=case, size=int(np.nanargmax(data["layers"].values[case])), smoothing=0)
@@ -125,7 +124,7 @@ def _responses(data: xr.Dataset) -> Figure:
 
 def _maps(slabs: xr.Dataset) -> Figure:
     """r and sliding contacts of each slab at the force to be shown: the first at it or above, or the last one."""
-    figure, (panels,) = style.figure(1, slabs.sizes["slab"], width="double", height=2.2, sharey=True)
+    figure, (panels,) = style.figure(1, slabs.sizes["slab"], height=2.2, sharey=True)
     texts = []
     for k, axes in enumerate(panels):
         slab = slabs.isel(slab=k, step=np.isfinite(slabs["force"].values[k]))

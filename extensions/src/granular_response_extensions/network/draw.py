@@ -21,14 +21,13 @@ from .parameters import Parameters
 POLYDISPERSITY, FRICTION = 0.1, 0.2
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``network_statistics`` from the dataset ``statistics``."""
     data = datasets["statistics"]
     rest = data.sel(state="rest")
     delta, mu = among(data["polydispersity"], [POLYDISPERSITY])[0], among(data["friction"], [FRICTION])[0]
     one = rest.sel(polydispersity=delta).mean("realization")
-    figure, panels = style.figure(2, 3, width="double", height=5.2)
+    figure, panels = style.figure(2, 3, height=5.2)
     (forces, spreads, limits), (fabric, contacts, excess) = panels
     for value, look in family(data["friction"].values, of="friction", marked=False):
         by = one.sel(friction=value)

@@ -41,7 +41,6 @@ TAPPED = "v*X"
 LEAST_PART = 0.03
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``preparation`` from the brackets of the events, ``preparation_mobilized`` from the dataset ``mobilized``."""
     return {
@@ -52,7 +51,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def _onsets(events: xr.Dataset) -> Figure:
     """A panel for each event, a row for each slab."""
     slabs = sorted(set(zip(events["wall_friction"].values.tolist(), events["friction"].values.tolist(), strict=True)))
-    figure, panels = style.figure(2, 3, width="double", height=4.8, sharex=True, sharey=True)
+    figure, panels = style.figure(2, 3, height=4.8, sharex=True, sharey=True)
     titles(panels.flat, PANELS.values())
     for axes, name in zip(panels.flat, PANELS, strict=True):
         _event(axes, events.isel(event=np.flatnonzero(events["name"].values == name)), slabs)
@@ -72,7 +71,7 @@ def _onsets(events: xr.Dataset) -> Figure:
 def _against_mobilized(data: xr.Dataset) -> Figure:
     """A panel for each event: its force against the part of the contacts that are fully mobilized at rest."""
     names = data["name"].values.tolist()
-    figure, (panels,) = style.figure(1, len(names), width="double", height=3.2, sharex=True, sharey=True)
+    figure, (panels,) = style.figure(1, len(names), height=3.2, sharex=True, sharey=True)
     titles(panels, [PANELS[name] for name in names])
     part, delta = 100.0 * data["mobilized_part"].isel(margin=0).values, data["polydispersity"].values
     taps, gravity = data["tap_amplitude"].values, data["gravity"].values

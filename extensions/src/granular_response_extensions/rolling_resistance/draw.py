@@ -23,11 +23,10 @@ REACH = 20.0
 PILES = {"supported": "side walls", "free": "none", "resisting": f"none, ${ROLLING}$"}
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``rolling_resistance`` and ``rolling_resistance_torque`` from the datasets of the study."""
     thresholds, piles, slabs = (datasets[name] for name in ("thresholds", "piles", "slabs"))
-    figure, panels = style.figure(2, 3, width="double", height=5.2)
+    figure, panels = style.figure(2, 3, height=5.2)
     (least, floor, events), (*responses, couples) = panels
     _least(least, thresholds)
     _floor(floor, piles, thresholds)
@@ -124,7 +123,7 @@ def _couples(axes: Axes, slab: xr.Dataset) -> None:
 
 def _torques(slab: xr.Dataset) -> Figure:
     """What the antisymmetric stress takes at each row, and what couples hand on below it."""
-    figure, panels = style.figure(1, 2, width="double", height=2.8, sharex=True, sharey=True)
+    figure, panels = style.figure(1, 2, height=2.8, sharex=True, sharey=True)
     rows = np.arange(slab.sizes["line"])
     shares = {"antisymmetric": rows, "couple": rows + 0.5}
     for axes, (name, below) in zip(panels[0], shares.items(), strict=True):

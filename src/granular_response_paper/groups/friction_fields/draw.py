@@ -29,7 +29,6 @@ LEVELS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7)
 DIFFERENCE_LEVELS = (0.05, 0.3)
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig13_force_chains``, ``fig14_vertical_stress`` and ``fig15_force_profiles``."""
     return {
@@ -63,7 +62,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 def _force_chains(data: xr.Dataset) -> Figure:
     """The central third of the slab: the forces, and below them the forces times depth, which undoes their decay."""
     frictions = data["friction"].values
-    figure, panels = style.figure(2, len(frictions), width="double", height=4.2)
+    figure, panels = style.figure(2, len(frictions), height=4.2)
     width, disk, load = float(data["width"]), int(data["loaded_disk"]), float(data["force"])
     radius = data["radius"].values
     added = np.concatenate([data["contact_added_force"].values, data["wall_added_force"].values], axis=1)
@@ -99,7 +98,7 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
     fields = to_floor(data["stress_zz"].values, z, float(data["stress_width"]))
     names = list(map(_friction, data["friction"].values))
     rows, last = len(names) + 1, "abcdefgh"[len(names)]
-    figure, panels = style.figure(rows, 2, width="double", height=1.62 * rows + 0.3, sharex=True, sharey=True)
+    figure, panels = style.figure(rows, 2, height=1.62 * rows + 0.3, sharex=True, sharey=True)
     half = min(MAP_HALF_WIDTH, float(x.max()))
     largest = float(max(fields.max(), lattice.max()))
     furthest = float(np.abs(fields - lattice)[..., np.abs(x) <= half].max())
@@ -149,7 +148,7 @@ def to_floor(stress: FloatArray, z: FloatArray, width: float) -> FloatArray:
 def _force_profiles(data: xr.Dataset) -> Figure:
     """Fig. 15: a panel for each friction with a curve for each depth, over all contacts between two rows."""
     frictions, depths = data["friction"].values, data["depth"].values
-    figure, panels = style.figure(1, len(frictions), width="double", height=3.0, sharex=True)
+    figure, panels = style.figure(1, len(frictions), height=3.0, sharex=True)
     for column, axes in enumerate(panels[0]):
         for row, look in family(range(len(depths)), of="length", dashed=True):
             x, magnitude = (data[name].values[column, row] for name in ("contact_x", "magnitude"))

@@ -45,7 +45,6 @@ PAPER_OPENINGS = {0.0: 0.75, 0.2: 4.0, 1.0: 6.0}
 PAPER_CROSSOVER, PAPER_THIRD_PEAK, PAPER_SYMMETRIC = 20.0, 40.0, 91.0
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """Figures by file stem, from the datasets of the study of the same name."""
     response = datasets["response"]
@@ -102,7 +101,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 def _linear_range(response: xr.Dataset) -> Figure:
     """Fig. 6."""
-    figure, ((panel,),) = style.figure(width="double", height=3.2)
+    figure, ((panel,),) = style.figure(height=3.2)
     ends = []
     elastic = float(response["response_at_centre"].isel(friction=-1).dropna("force")[0])
     band = elastic * (1.0 - LINEAR), elastic * (1.0 + LINEAR)
@@ -130,7 +129,7 @@ def _linear_range(response: xr.Dataset) -> Figure:
 
 def _profiles(response: xr.Dataset) -> Figure:
     """Fig. 7."""
-    figure, axes = style.figure(1, 2, width="double", height=3.0, sharey=True)
+    figure, axes = style.figure(1, 2, height=3.0, sharey=True)
     notes = {0.2: f"; paper: two peaks near {PAPER_CROSSOVER:g}", 1.0: ""}
     titles(axes[0], [style.equals(style.FRICTION, friction) + notes[friction] for friction in PROFILE_FRICTIONS])
     for panel, friction in zip(axes[0], PROFILE_FRICTIONS, strict=True):
@@ -144,7 +143,7 @@ def _profiles(response: xr.Dataset) -> Figure:
 
 def _friction_axis(axis: xr.Dataset, response: xr.Dataset) -> Figure:
     """Fig. 12."""
-    figure, ((panel,),) = style.figure(height=2.6)
+    figure, ((panel,),) = style.figure(width=style.SINGLE, height=2.6)
     curves = axis.sel(friction=among(axis["friction"], AXIS_FRICTIONS))
     _plot_profiles(panel, curves, "friction", response.isel(friction=-1, force=0))
     panel.set(ylabel=style.RESPONSE, ylim=(0.0, None))
@@ -154,7 +153,7 @@ def _friction_axis(axis: xr.Dataset, response: xr.Dataset) -> Figure:
 
 def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     """Fig. 16; the profile at the largest symmetric force of (b) is followed by those beyond the instability."""
-    figure, axes = style.figure(1, 2, width="double", height=2.9)
+    figure, axes = style.figure(1, 2, height=2.9)
     left, right = axes[0]
     one = response.sel(friction=LARGE_FRICTION)
     _plot_profiles(left, at_forces(one, LARGE_FORCES), "force", one.isel(force=0))
@@ -200,7 +199,7 @@ def _plot_profiles(panel: Axes, curves: xr.Dataset, along: Literal["force", "fri
 def _contacts(states: xr.Dataset, friction: float) -> Figure:
     """Figs. 8 and 9: the central third, one panel for each force."""
     stored, shown = states["force"].values, contact_forces(states)
-    figure, axes = style.figure(1, len(shown), width="double", height=2.1)
+    figure, axes = style.figure(1, len(shown), height=2.1)
     handles: dict[str, Any] = {}
     for panel, force in zip(axes[0], shown, strict=True):
         loaded = states.isel(state=int(np.flatnonzero(stored == force)[0]))

@@ -47,7 +47,6 @@ EVENTS = {
 PAPER_OPENING, PAPER_CHANGE, PAPER_STIFFNESSES, PAPER_SATURATION = 0.75, 0.02, (1e3, 1e5), 2e3
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """The figures of Sec. IV from the datasets of the study of the same name."""
     return {
@@ -99,7 +98,7 @@ def _stiffness_is(value: float) -> str:
 
 
 def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
-    figure, ((profiles, centre),) = style.figure(1, 2, width="double", height=2.7, width_ratios=[1.45, 1.0])
+    figure, ((profiles, centre),) = style.figure(1, 2, height=2.7, width_ratios=[1.45, 1.0])
     data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
     x = data["x"].values
     chosen = nearest(data["force"].values, PROFILE_FORCES)
@@ -137,7 +136,7 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
 
 def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
     chosen = nearest(states["force"].values, NETWORK_FORCES)
-    figure, (panels,) = style.figure(1, len(chosen), width="double", height=2.05)
+    figure, (panels,) = style.figure(1, len(chosen), height=2.05)
     handles: dict[str, LineCollection] = {}
     for axes, k in zip(panels, chosen, strict=True):
         one = states.isel(force=k)
@@ -150,7 +149,7 @@ def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
 
 def _teardrop(sizes: xr.Dataset) -> Figure:
     each = _by_stiffness(sizes)
-    figure, panels = style.figure(len(each), 2, width="double", height=0.3 + 2.2 * len(each), sharex=True)
+    figure, panels = style.figure(len(each), 2, height=0.3 + 2.2 * len(each), sharex=True)
     for (deep, wide), slabs in zip(panels, each.values(), strict=True):
         for axes, name, label in ((deep, "teardrop_depth", style.DEPTH), (wide, "teardrop_width", style.WIDTH)):
             _growth(axes, slabs, name)
@@ -178,7 +177,7 @@ def _growth(axes: Axes, slabs: xr.Dataset, name: str) -> None:
 
 
 def _stiffness(data: xr.Dataset) -> Figure:
-    figure, ((centre, size, events),) = style.figure(1, 3, width="double", height=2.5)
+    figure, ((centre, size, events),) = style.figure(1, 3, height=2.5)
     k = data["normal_stiffness"].values
     held = data["new_neighbours"].values == 0
 
@@ -226,7 +225,7 @@ def _stiffness(data: xr.Dataset) -> Figure:
 
 
 def _slabs(sizes: xr.Dataset) -> Figure:
-    figure, ((profiles, events),) = style.figure(1, 2, width="double", height=2.9)
+    figure, ((profiles, events),) = style.figure(1, 2, height=2.9)
     each = _by_stiffness(sizes)
     softest, slabs = next(iter(each.items()))
     at_force = slabs.isel(force=nearest(slabs["force"].values, [COMPARED_FORCE])[0])

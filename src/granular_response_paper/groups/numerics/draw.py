@@ -22,10 +22,9 @@ FORCE_ERROR, RESTART_ENERGY, PAPER_RATIO = 1e-2, 1e-22, 0.5
 BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.2), "handlelength": 2.4}
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """One figure with three panels."""
-    figure, axes = style.figure(1, 3, width="double", height=2.9)
+    figure, axes = style.figure(1, 3, height=2.9)
     stop, restart, damping = axes[0]
     _stop_energy(stop, datasets["stop_energy"])
     _restart(restart, datasets["restart"])

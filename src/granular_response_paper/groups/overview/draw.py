@@ -25,7 +25,6 @@ HALF_WIDTH = 30.0
 PIXELS = 680
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``overview``, the last frame of ``growing_force``, and ``photoelastic``."""
     frames = Frames(_slabs(datasets), half_width=HALF_WIDTH, figure=Figure())

@@ -42,7 +42,6 @@ MARKERS = ("o", "s", "D", "P")
 UPWARDS, DOWNWARDS = r"$\uparrow$", r"$\downarrow$"
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """Fig. 22 and what stands behind it, from the datasets of the study of the same name."""
     shown, shapes, others, realizations = (
@@ -95,7 +94,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 def _diagram(crossovers: xr.Dataset) -> Figure:
     """Fig. 22: the crossover force of every polydispersity in one plane, beside the forces of experiments."""
-    figure, ((axes,),) = style.figure(width="double", height=3.9)
+    figure, ((axes,),) = style.figure(height=3.9)
     axes.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel=f"crossover force {style.FORCE}", **_FRICTION_AXES)
     axes.set(xlim=(-0.07, 1.16), ylim=FORCES)
     axes.yaxis.set_major_formatter("{x:g}")
@@ -169,7 +168,7 @@ def _certainty(crossovers: xr.Dataset, shapes: xr.Dataset, others: xr.Dataset, r
     applied = shapes["applied_force"].values
     limits = FORCES[0], 2.0 * float(np.nanmax(applied))
     columns = _by_disorder(crossovers)
-    figure, panels = style.figure(2, len(columns), width="double", height=4.2, sharey="row")
+    figure, panels = style.figure(2, len(columns), height=4.2, sharey="row")
     handles: dict[str, Any] = {}
     for (delta, look), axes in zip(columns, panels[0], strict=True):
         here = _of(crossovers, delta)
@@ -284,7 +283,7 @@ def _starts(starts: xr.Dataset) -> Figure:
     """The dip under one force and the contacts at rest against the start; a column for each polydispersity."""
     deltas = different(starts["polydispersity"])
     frictions = [mu for mu in different(starts["friction"]) if mu <= 0.2 and mu != 0.05]
-    figure, panels = style.figure(2, len(deltas), width="double", height=4.0, sharex="col", sharey="row")
+    figure, panels = style.figure(2, len(deltas), height=4.0, sharex="col", sharey="row")
     names: list[str] = []
     for column, delta in enumerate(deltas):
         touching = touching_largest(delta)

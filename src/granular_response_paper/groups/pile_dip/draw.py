@@ -33,7 +33,6 @@ DRAWN = ["frictionless", "frictional"]
 KEY = 5.0
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig17_pile`` and ``fig17_pile_profiles`` from the datasets of the study of the same name."""
     piles, stress = datasets["piles"], datasets["stress"]
@@ -47,7 +46,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 
 def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
-    figure, panels = style.figure(3, 2, width="double", height=3.9)
+    figure, panels = style.figure(3, 2, height=3.9)
     shown = piles.sel(case=DRAWN)
     strongest = float(np.linalg.norm(shown["contact_force"].values, axis=-1).max())
     fields = stress["stress_zz"].sel(case=DRAWN) + _wall_part(shown, stress)
@@ -120,7 +119,7 @@ def _network(axes: Axes, one: xr.Dataset) -> None:
 
 def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     """Not in the paper: the stress at one height, and the floor forces, of all three states."""
-    figure, ((line, floor),) = style.figure(1, 2, width="double", height=2.5)
+    figure, ((line, floor),) = style.figure(1, 2, height=2.5)
     for index, (case, name) in enumerate(NAMES.items()):
         one = stress["profile_zz"].sel(case=case)
         line.plot(stress["x"], one, **style.line(index), label=name)

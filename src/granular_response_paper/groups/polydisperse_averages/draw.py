@@ -58,7 +58,6 @@ START_NAMES = {
 PAPER_CONTACTS = 4.25
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig02_polydisperse_forces``, ``fig19_disordered_response``, ``fig20_disordered_linear_range``,
     ``fig21_disordered_forces`` and ``packings`` from the datasets of the study of the same name."""
@@ -120,7 +119,7 @@ def _shown(data: xr.Dataset) -> NDArray[np.intp]:
 
 def _forces(data: xr.Dataset) -> Figure:
     """Fig. 2: the slab under gravity, and in the middle third the incremental forces, and these times the depth."""
-    figure, panels = style.figure(2, 2, width="double", height=4.4, height_ratios=(1.0, 1.6))
+    figure, panels = style.figure(2, 2, height=4.4, height_ratios=(1.0, 1.6))
     grid = panels[0, 0].get_gridspec()
     for axes in panels[0]:
         axes.remove()
@@ -180,7 +179,7 @@ def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     frictions = different(data["friction"])
     starts = [name for name in START_NAMES if name in data["lattice_constant"].values]
     figure, panels = style.figure(
-        len(starts), len(frictions), width="double", height=0.5 + 1.95 * len(starts), sharex=True, sharey="col"
+        len(starts), len(frictions), height=0.5 + 1.95 * len(starts), sharex=True, sharey="col"
     )
     x = data["x"].values
     for row, start in enumerate(starts):
@@ -225,7 +224,7 @@ def _linear_range(data: xr.Dataset) -> Figure:
     deltas, frictions = different(data["polydispersity"])[::-1], different(data["friction"])
     looks = {friction: look | {"markersize": 3.0} for friction, look in family(frictions, of="friction")}
     wide = [1.0] * len(deltas) + [1.2]
-    figure, panels = style.figure(1, len(deltas) + 1, width="double", height=3.1, width_ratios=wide)
+    figure, panels = style.figure(1, len(deltas) + 1, height=3.1, width_ratios=wide)
     *responses, ends = panels[0]
     for axes, delta in zip(responses, deltas, strict=True):
         for friction in frictions:
@@ -292,7 +291,7 @@ def _averages(data: xr.Dataset) -> Figure:
     disordered = data.isel(case=data["polydispersity"].values > 0.0)
     deltas, frictions = different(disordered["polydispersity"]), different(disordered["friction"])
     figure, panels = style.figure(
-        len(frictions), len(deltas), width="double", height=0.5 + 1.35 * len(frictions), sharex=True, sharey="row"
+        len(frictions), len(deltas), height=0.5 + 1.35 * len(frictions), sharex=True, sharey="row"
     )
     w = smoothed_by(data)
     x = data["x"].values
@@ -339,7 +338,7 @@ def _packings(data: xr.Dataset) -> Figure:
     deltas = different(data["polydispersity"])
     colours = dict(zip(deltas, style.ordered_colours(len(deltas), of="polydispersity"), strict=True))
     disordered = [delta for delta in deltas if delta]
-    figure, panels = style.figure(2, max(len(disordered), 2), width="double", height=4.6)
+    figure, panels = style.figure(2, max(len(disordered), 2), height=4.6)
     grid = panels[0, 0].get_gridspec()
     for axes in panels.flat:
         axes.remove()

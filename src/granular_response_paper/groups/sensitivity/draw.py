@@ -16,10 +16,9 @@ from granular_response_paper.panels import family
 from .parameters import Parameters
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """Largest difference of the floor response from the reference, for every variant and friction."""
-    figure, ((axes,),) = style.figure(width="double", height=3.2)
+    figure, ((axes,),) = style.figure(height=3.2)
     # powers of ten as such
     texts = [str(text) for text in next(iter(datasets.values()))["text"].values[1:]]
     names = [re.sub(r"1e(-?\d+)", r"$10^{\1}$", text) for text in texts]

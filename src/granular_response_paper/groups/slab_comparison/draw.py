@@ -29,11 +29,10 @@ _KEYS = ("friction", "floor", "gravity", "disks_per_layer")
 _BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 2, "columnspacing": 1.4}
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig01b_slab_comparison`` from the dataset ``slabs`` of the study of the same name."""
     data = datasets["slabs"]
-    figure, ((profiles, distances),) = style.figure(1, 2, width="double", height=3.5)
+    figure, ((profiles, distances),) = style.figure(1, 2, height=3.5)
     _profiles(profiles, data)
     _distances(distances, data)
     titles((profiles, distances), ("response and elastic slab", "distance"), stem=STEM)

@@ -35,7 +35,6 @@ AXES = {
 }
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``stability_steps``, a panel for each property of the scene."""
     return {"stability_steps": _steps(datasets)}
@@ -51,7 +50,7 @@ def _steps(datasets: Mapping[str, xr.Dataset]) -> Figure:
     studies = {name: datasets[f"time_step_{name}"] for name in AXES if f"time_step_{name}" in datasets}
     columns = min(4, len(studies))
     rows = -(-len(studies) // columns)
-    figure, panels = style.figure(rows, columns, width="double", height=0.5 + 1.9 * rows, sharey=True)
+    figure, panels = style.figure(rows, columns, height=0.5 + 1.9 * rows, sharey=True)
     for axes in panels.flat[len(studies) :]:
         axes.set_axis_off()
     for axes, (name, study) in zip(panels.flat, studies.items(), strict=False):

@@ -25,7 +25,6 @@ ELASTIC = (0.1, 0.3, 0.6)
 PAPER = 0.2915, 0.3
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig10_stiffness_ratio`` from the datasets of the study of the same name, and ``fig11_spring_model``.
 
@@ -34,7 +33,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     form.
     """
     response, elastic, events = datasets["response"], datasets["elastic"], datasets["events"]
-    figure, ((simulated, bodies, dips),) = style.figure(1, 3, width="double", height=3.1)
+    figure, ((simulated, bodies, dips),) = style.figure(1, 3, height=3.1)
     force = float(response["force"])
     shown = among(response["stiffness_ratio"], DRAWN)
     looks = {ratio: look | {"linewidth": 1.1} for ratio, look in family(shown, of="other", marked=False, dashed=True)}

@@ -27,7 +27,6 @@ LINEAR_UNTIL = 0.4
 HALF_WIDTH = 48.0
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig23_superposition``, ``fig24_superposition`` and ``fig24b_superposition_error``."""
     figures = {stem: _responses(datasets["responses"], force) for stem, force in FORCES.items()}
@@ -59,7 +58,7 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
     distances = data["distance"].values
     rows = (len(distances) + 1) // 2
     figure, grid = style.figure(
-        2 * rows, 2, width="double", height=0.45 + 2.4 * rows, sharex=True, sharey="row", height_ratios=[4, 1] * rows
+        2 * rows, 2, height=0.45 + 2.4 * rows, sharex=True, sharey="row", height_ratios=[4, 1] * rows
     )
     panels, strips = grid[::2], grid[1::2]
     x, responses = data["x"].values, data["floor_response"].values
@@ -93,7 +92,7 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
 
 def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Errors against force on the floor and at all contacts, and against depth; means over realizations."""
-    figure, panels = style.figure(1, 3, width="double", height=3.0, sharey=True)
+    figure, panels = style.figure(1, 3, height=3.0, sharey=True)
     floor, contacts, deep = panels[0]
     errors, linear = datasets["errors"], datasets["linear_range"]
     force, distances = errors["force"].values, errors["distance"].values

@@ -35,13 +35,12 @@ OVER: dict[str, Any] = {
 }
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """Figures by file stem, from the datasets of the study of the same name."""
     states, copies = datasets["states"], datasets["copies"]
     with_states = states.sizes["state"] == 3
     rows = 2 if with_states else 1
-    figure, axes = style.figure(rows, 2, width="double", height=3.3 + 2.3 * (rows - 1), height_ratios=[1.3, 1.0][:rows])
+    figure, axes = style.figure(rows, 2, height=3.3 + 2.3 * (rows - 1), height_ratios=[1.3, 1.0][:rows])
     _protocols(axes[0, 0], datasets["runs"], datasets["held"])
     _copies(axes[0, 1], copies)
     loads = [_lost(datasets["runs"]), f"copies, {_load(float(copies['force']))}"]

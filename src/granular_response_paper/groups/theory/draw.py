@@ -16,11 +16,10 @@ from granular_response_paper.panels import family, titles, zero
 from .parameters import Parameters
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig01_predictions`` from the dataset ``predictions`` of the study of the same name."""
     data = datasets["predictions"]
-    figure, ((elliptic, hyperbolic),) = style.figure(1, 2, width="double", height=2.7, sharex=True, sharey=True)
+    figure, ((elliptic, hyperbolic),) = style.figure(1, 2, height=2.7, sharex=True, sharey=True)
 
     x = data["x"].values
     elliptic.plot(x, data["slab_rough"], **style.line(0), label="slab, rough floor")

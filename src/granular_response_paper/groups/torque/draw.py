@@ -18,7 +18,6 @@ from .parameters import Parameters
 KEY = 5.0
 
 
-@style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig18_torque`` from the datasets of the study of the same name."""
     return {"fig18_torque": _chains(datasets["torques"])}
@@ -38,7 +37,7 @@ def _chains(data: xr.Dataset) -> Figure:
     limits = {"xlim": (left - 0.5, right + 0.5), "ylim": (low - 0.5, top + 2.4)}
     rows = (len(torques) + 2) // 3
     height = np.ptp(limits["ylim"]) / np.ptp(limits["xlim"]) * style.DOUBLE / 3.0 + 0.2
-    figure, panels = style.figure(rows, 3, width="double", height=float(height) * rows)
+    figure, panels = style.figure(rows, 3, height=float(height) * rows)
     added = np.concatenate([data["contact_added_force"].values, data["wall_added_force"].values], axis=1)
     largest = float(np.linalg.norm(added, axis=-1).max())
     for index, axes in enumerate(panels.ravel()):
