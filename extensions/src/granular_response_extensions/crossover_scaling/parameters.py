@@ -10,7 +10,6 @@ from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Positive, Ratio, Sides, allowed
-from granular_response.scene.errors import Problem
 from granular_response.state import FloatArray
 from granular_response_extensions.parameters import SurveyedGroup
 from granular_response_paper.parameters import SIZE, UNIT_LOAD, Checked, Checks, Growing, growing, over, some
@@ -83,20 +82,11 @@ def varied(slabs: xr.Dataset, name: str) -> FloatArray:
     return np.asarray(found / slabs["layers"].values if name in per else found, float)
 
 
-def _different_names(series: tuple[Series, ...]) -> tuple[Series, ...]:
-    names = [one.name for one in series]
-    if len(set(names)) < len(names):
-        raise Problem("must have different names")
-    return series
-
-
 class Parameters(SurveyedGroup):
     scene: Annotated[Scene, over(_SLAB, *SIZE, *_DECIDED)] = Field(
         _SLAB, description="Base scene; walls are twice as stiff as the disks."
     )
-    series: Annotated[tuple[Series, ...], AfterValidator(some), AfterValidator(_different_names)] = Field(
-        description="Slabs that are compared."
-    )
+    series: Annotated[tuple[Series, ...], AfterValidator(some)] = Field(description="Slabs that are compared.")
     visible: Positive = Field(description="Dip of the floor response at x = 0, per largest value, that is two peaks.")
     first_force: Positive = Field(description="Least force, over the force of horizontal contacts at rest.")
     factor: Annotated[float, Field(strict=True, gt=1, le=2), allowed("must be a number above 1, at most 2")] = Field(
@@ -111,3 +101,7 @@ class Parameters(SurveyedGroup):
     @property
     def surveyed(self) -> bool:
         return any(one.surveyed for one in self.series)
+
+    def checks(self) -> Checks:
+        yield from super().checks()
+        yield "series", len({one.name for one in self.series}) == len(self.series), "must have different names"
