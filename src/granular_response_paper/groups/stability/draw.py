@@ -17,11 +17,8 @@ from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, of_group
 from granular_response_paper.panels import titles
 
-from .parameters import Parameters
+from .parameters import BLOWS_UP, SETTLES, Parameters
 
-#: Outcomes of a kick in the order of their codes.
-OUTCOMES = ("settles", "cycles", "blows up", "no rest state")
-SETTLES, BLOWS_UP = OUTCOMES.index("settles"), OUTCOMES.index("blows up")
 #: Axes of the study of time steps with their labels.
 AXES = {
     "normal_stiffness": style.STIFFNESS,
@@ -36,7 +33,6 @@ AXES = {
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``stability_steps``, a panel for each property of the scene."""
     return {"stability_steps": _steps(datasets)}
 
 

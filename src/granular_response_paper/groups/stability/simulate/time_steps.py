@@ -20,11 +20,9 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states, rest_state
 from granular_response.solvers.timestep import stability_limit
 from granular_response.state import State
+from granular_response_paper.groups.stability.parameters import BLOWS_UP, CYCLES, NO_REST, OUTCOMES, SETTLES
 from granular_response_paper.records import column, record
 
-#: What becomes of a kick.
-SETTLES, CYCLES, BLOWS_UP, NO_REST = 0, 1, 2, 3
-OUTCOMES = ("settles", "cycles", "blows up", "no rest state")
 #: Largest velocity of the kick, in units of the mean overlap times the frequency of a contact.
 KICK = 1e-3
 #: Parts into which a run is divided to see whether the energy still falls.
