@@ -46,7 +46,6 @@ APART = {
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``crossover_scaling``, ``crossover_scaling_regions`` and ``crossover_scaling_apart``."""
     slabs, paths, powers = datasets["slabs"], datasets["paths"], datasets["powers"]
     return {
         "crossover_scaling": _against_layers(slabs, powers),

@@ -27,7 +27,6 @@ DOTS = GUIDE | {"linestyle": DOTTED}
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``experiments`` from ``means`` and ``packings``, ``experiments_images`` from ``picture_K`` and ``means``."""
     means, packings = datasets["means"], datasets["packings"]
     figure, panels = style.figure(2, 3, height=5.2)
     force, straight = means["force_applied"].values, means["angle_applied"].values == 90.0

@@ -32,7 +32,6 @@ NAMES = {
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``hysteresis_loops`` from ``curves`` and ``floor``, ``hysteresis_ranges`` from ``loops`` and ``events``."""
     return {
         "hysteresis_loops": _loops(datasets["curves"], datasets["floor"]),
         "hysteresis_ranges": _ranges(datasets["loops"], datasets["events"]),

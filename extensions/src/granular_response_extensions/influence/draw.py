@@ -25,7 +25,6 @@ LEAST = 0.8
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``influence_map`` from the dataset ``packings``, ``influence_saint_venant`` from ``saint_venant``."""
     return {"influence_map": _maps(datasets["packings"]), "influence_saint_venant": _decay(datasets["saint_venant"])}
 
 

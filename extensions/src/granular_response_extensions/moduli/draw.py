@@ -31,7 +31,6 @@ RANGE = -0.5, 1.0
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``moduli_packings`` and ``moduli_response`` from ``packings``, ``moduli_loaded`` from ``slabs``."""
     packings = datasets["packings"]
     return {
         "moduli_packings": _moduli(packings),

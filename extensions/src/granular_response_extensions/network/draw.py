@@ -22,7 +22,6 @@ POLYDISPERSITY, FRICTION = 0.1, 0.2
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``network_statistics`` from the dataset ``statistics``."""
     data = datasets["statistics"]
     rest = data.sel(state="rest")
     delta, mu = among(data["polydispersity"], [POLYDISPERSITY])[0], among(data["friction"], [FRICTION])[0]

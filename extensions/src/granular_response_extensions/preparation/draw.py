@@ -42,7 +42,6 @@ LEAST_PART = 0.03
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``preparation`` from the brackets of the events, ``preparation_mobilized`` from the dataset ``mobilized``."""
     return {
         "preparation": _onsets(datasets["events"]), "preparation_mobilized": _against_mobilized(datasets["mobilized"])
     }  # fmt: skip

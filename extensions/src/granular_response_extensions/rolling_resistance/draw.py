@@ -24,7 +24,6 @@ PILES = {"supported": "side walls", "free": "none", "resisting": f"none, ${ROLLI
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``rolling_resistance`` and ``rolling_resistance_torque`` from the datasets of the study."""
     thresholds, piles, slabs = (datasets[name] for name in ("thresholds", "piles", "slabs"))
     figure, panels = style.figure(2, 3, height=5.2)
     (least, floor, events), (*responses, couples) = panels

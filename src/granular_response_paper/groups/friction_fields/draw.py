@@ -30,7 +30,6 @@ DIFFERENCE_LEVELS = (0.05, 0.3)
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig13_force_chains``, ``fig14_vertical_stress`` and ``fig15_force_profiles``."""
     return {
         "fig13_force_chains": _force_chains(datasets["forces"]),
         "fig14_vertical_stress": _vertical_stress(datasets["stress"]),

@@ -46,7 +46,6 @@ PAPER_CROSSOVER, PAPER_THIRD_PEAK, PAPER_SYMMETRIC = 20.0, 40.0, 91.0
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """Figures by file stem, from the datasets of the study of the same name."""
     response = datasets["response"]
     figures = {
         "fig06_linear_range": _linear_range(response),

@@ -48,7 +48,6 @@ PAPER_OPENING, PAPER_CHANGE, PAPER_STIFFNESSES, PAPER_SATURATION = 0.75, 0.02, (
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """The figures of Sec. IV from the datasets of the study of the same name."""
     return {
         "fig03_frictionless_response": _response(datasets["response"], datasets["events"]),
         "fig04_frictionless_contacts": _contacts(datasets["rest"], datasets["states"]),

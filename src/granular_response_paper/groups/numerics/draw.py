@@ -23,7 +23,6 @@ BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.2), 
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """One figure with three panels."""
     figure, axes = style.figure(1, 3, height=2.9)
     stop, restart, damping = axes[0]
     _stop_energy(stop, datasets["stop_energy"])

@@ -26,7 +26,6 @@ PIXELS = 680
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``overview``, the last frame of ``growing_force``, and ``photoelastic``."""
     frames = Frames(_slabs(datasets), half_width=HALF_WIDTH, figure=Figure())
     frames.draw(-1)
     return {
@@ -37,7 +36,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def animations(datasets: Mapping[str, xr.Dataset]) -> dict[str, FuncAnimation]:
-    """``growing_force``."""
     return {"growing_force": animate(_slabs(datasets), half_width=HALF_WIDTH, figure=Figure())}
 
 

@@ -43,7 +43,6 @@ UPWARDS, DOWNWARDS = r"$\uparrow$", r"$\downarrow$"
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """Fig. 22 and what stands behind it, from the datasets of the study of the same name."""
     shown, shapes, others, realizations = (
         _usual(datasets[name]) for name in ("crossovers", "shapes", "definitions", "realizations")
     )

@@ -34,7 +34,6 @@ KEY = 5.0
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig17_pile`` and ``fig17_pile_profiles`` from the datasets of the study of the same name."""
     piles, stress = datasets["piles"], datasets["stress"]
     return {"fig17_pile": _pile(piles, stress), "fig17_pile_profiles": _profiles(piles, stress)}
 

@@ -59,8 +59,6 @@ PAPER_CONTACTS = 4.25
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig02_polydisperse_forces``, ``fig19_disordered_response``, ``fig20_disordered_linear_range``,
-    ``fig21_disordered_forces`` and ``packings`` from the datasets of the study of the same name."""
     return {
         "fig02_polydisperse_forces": _forces(datasets["forces"]),
         "fig19_disordered_response": _response(datasets["individual"], datasets["averages"]),

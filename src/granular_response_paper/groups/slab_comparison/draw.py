@@ -30,7 +30,6 @@ _BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17),
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig01b_slab_comparison`` from the dataset ``slabs`` of the study of the same name."""
     data = datasets["slabs"]
     figure, ((profiles, distances),) = style.figure(1, 2, height=3.5)
     _profiles(profiles, data)

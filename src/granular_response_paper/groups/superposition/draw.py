@@ -28,7 +28,6 @@ HALF_WIDTH = 48.0
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig23_superposition``, ``fig24_superposition`` and ``fig24b_superposition_error``."""
     figures = {stem: _responses(datasets["responses"], force) for stem, force in FORCES.items()}
     figures["fig24b_superposition_error"] = _errors(datasets)
     return figures

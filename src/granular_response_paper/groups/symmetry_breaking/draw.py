@@ -36,7 +36,6 @@ OVER: dict[str, Any] = {
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """Figures by file stem, from the datasets of the study of the same name."""
     states, copies = datasets["states"], datasets["copies"]
     with_states = states.sizes["state"] == 3
     rows = 2 if with_states else 1

@@ -17,7 +17,6 @@ from .parameters import Parameters
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig01_predictions`` from the dataset ``predictions`` of the study of the same name."""
     data = datasets["predictions"]
     figure, ((elliptic, hyperbolic),) = style.figure(1, 2, height=2.7, sharex=True, sharey=True)
 

@@ -19,7 +19,6 @@ KEY = 5.0
 
 
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig18_torque`` from the datasets of the study of the same name."""
     return {"fig18_torque": _chains(datasets["torques"])}
 
 
