@@ -38,7 +38,6 @@ from numpy.typing import NDArray
 
 from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS, flags
-from granular_response_paper.ensembles import at_rest
 from granular_response_paper.records import column, record
 
 #: What a crossover is known to be.
@@ -86,7 +85,7 @@ class Ensemble:
 
     def at_rest(self, step: int) -> FloatArray:
         """(r, x) responses of the realizations that are at rest at one step."""
-        return at_rest(self.response, step)
+        return self.response[np.isfinite(self.response[:, step, 0]), step]
 
     def shape(self, response: FloatArray) -> FloatArray:
         """The :func:`shape` of symmetric responses (..., x)."""

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
-from granular_response_paper.captions import WEIGHT, Caption, Value, of_group, of_scene, panels
+from granular_response_paper.captions import WEIGHT, Caption, Value, of_group, of_scene
 from granular_response_paper.panels import among, family, grey_limit, label_ends, titles, zero
 
 from .parameters import Parameters
@@ -89,13 +89,10 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         beyond, left = drawn(dynamic, DYNAMIC_FORCES), drawn(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
         given["fig16_large_forces"] = said(sorted({*left, *beyond}), [0.2, float(dynamic["friction"])])
         fields |= {"left": left, "beyond": beyond}
-    found = of_group("friction_linear_range", given, **fields)
     for friction, stem in CONTACTS:
         if f"states_mu_{friction:g}" in datasets:
-            shown = contact_forces(datasets[f"states_mu_{friction:g}"])
-            of_contacts = {"friction": friction, "panels": panels(shown)}
-            found |= of_group("friction_linear_range", {stem: said(shown, friction)}, **of_contacts)
-    return found
+            given[stem] = said(contact_forces(datasets[f"states_mu_{friction:g}"]), friction)
+    return of_group("friction_linear_range", given, **fields)
 
 
 def _linear_range(response: xr.Dataset) -> Figure:

@@ -21,7 +21,7 @@ from matplotlib.ticker import FixedLocator
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
-from granular_response_paper.captions import Caption, of_group, of_scene, panels, values
+from granular_response_paper.captions import Caption, of_group, of_scene, values
 from granular_response_paper.panels import family, grey_limit, label_ends, titles, zero
 
 from .parameters import Parameters
@@ -63,19 +63,18 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         return stored[nearest(stored, wanted)].tolist()
 
     depths, stiffnesses = [n for n, _ in parameters.sizes], parameters.size_stiffnesses
-    slab, shown = of_scene(parameters.scene), drawn(NETWORK_FORCES, "states")
+    slab = of_scene(parameters.scene)
     deep = {**slab, "normal_stiffness": stiffnesses, "packing": f"slabs of {values(depths)} layers"}
     of_stiffness = {"force": drawn(STIFFNESS_FORCES, "stiffness"), "normal_stiffness": parameters.stiffnesses}
     return of_group(
         "frictionless_crossover",
         {
             "fig03_frictionless_response": {**slab, "force": drawn(PROFILE_FORCES, "response")},
-            "fig04_frictionless_contacts": {**slab, "force": shown},
+            "fig04_frictionless_contacts": {**slab, "force": drawn(NETWORK_FORCES, "states")},
             "fig05_teardrop": deep,
             "fig05b_stiffness": slab | of_stiffness,
             "fig05c_depth": {**deep, "force": parameters.size_forces},
         },
-        panels=panels(shown),
         stiffnesses=stiffnesses,
         compared=drawn((COMPARED_FORCE,), "sizes"),
     )

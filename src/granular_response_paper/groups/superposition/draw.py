@@ -36,19 +36,15 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     diameters = [2 * offset for offset in parameters.offsets]
     scene, distance = parameters.scene, [2.0 * d for d in diameters]
-    panels = lettered(f"d = {d:g} diameters" for d in diameters)
-    said = of_scene(scene, force=parameters.forces, distance=distance, realizations=parameters.realizations)
-    found = of_group(
+    given = {stem: of_scene(scene, force=force, distance=distance) for stem, force in FORCES.items()}
+    several = of_scene(scene, force=parameters.forces, distance=distance, realizations=parameters.realizations)
+    return of_group(
         "superposition",
-        {"fig24b_superposition_error": said},
-        p=parameters,
+        given | {"fig24b_superposition_error": several},
+        panels=lettered(f"d = {d:g} diameters" for d in diameters),
         tolerance=100.0 * parameters.tolerance,
         until=LINEAR_UNTIL,
     )
-    for stem, force in FORCES.items():
-        said = of_scene(scene, force=force, distance=distance)
-        found |= of_group("superposition", {stem: said}, panels=panels, force=force)
-    return found
 
 
 def _responses(dataset: xr.Dataset, force: float) -> Figure:
