@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import different, family, material, titles, zero
+from granular_response_paper.panels import different, family, material, note, titles, zero
 
 from .parameters import Parameters
 
@@ -81,7 +81,7 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
             again = DOTS | {"marker": style.MARKERS[k]} if branch == 2 else {}
             loops.plot(1e3 * x[branch], load[branch], **look | again)
         end, text = (1e3 * np.nanmax(x[0]), np.nanmax(load[0])), style.equals(style.FRICTION, friction[case])
-        loops.annotate(text, end, (3, 0), textcoords="offset points", va="center")
+        note(loops, text, end, (3, 0), va="center")
     loops.set(xlabel=rf"displacement of the loaded disk$\,/\,10^{{-3}}{style.RADIUS}$", ylabel=style.FORCE)
     loops.set_xlim(0.0, 1.16e3 * float(np.nanmax(curves["displacement"].values[cases])))
     loops.set_ylim(bottom=0.0)

@@ -14,7 +14,7 @@ from matplotlib.patches import Circle
 from granular_response.plot import style
 from granular_response_extensions.panels import materials
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
-from granular_response_paper.panels import titles, zero
+from granular_response_paper.panels import note, titles, zero
 
 from .parameters import Parameters
 
@@ -94,7 +94,7 @@ def _decay(data: xr.Dataset) -> Figure:
             powers.errorbar([case], [mean], error, capsize=3, **look | {"linestyle": "none", "markersize": 5})
     ends = np.array(data.attrs["fitted"], float)
     falls.plot(ends, 0.5 * (ends / ends[0]) ** -2.0, color=style.BLACK, linewidth=0.9, linestyle=(0, (4, 2)))
-    falls.annotate("elastic: power 2", (ends[0], 0.5), (2, 3), textcoords="offset points")
+    note(falls, "elastic: power 2", (ends[0], 0.5), (2, 3))
     style.logarithmic(falls)
     falls.set(xlabel="height / distance of the halves", ylabel="difference on the floor")
     falls.legend(loc="lower left")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -76,8 +75,7 @@ def _force_chains(data: xr.Dataset) -> Figure:
             (panels[0, index], added[index], strongest, _round(load / 5.0), style.WEIGHT, LONGEST),
             (panels[1, index], deep, DEEP, 0.5, style.RADIUS, LONGEST_DEEP),
         ):
-            look: dict[str, Any] = {"facecolor": style.DISKS, "edgecolor": "none"}
-            network.draw_disks(axes, position[inside], radius[inside], **look)
+            network.draw_disks(axes, position[inside], radius[inside], facecolor=style.DISKS, edgecolor="none")
             forces(axes, contacts, vector, largest, shown=near, longest=longest)
             force_key(axes, (2.0 * width / 3.0 - 8.0, z + 3.0), key, largest, unit, longest=longest)
             network.draw_loaded_disk(axes, (x, z), float(radius[disk]))

@@ -14,7 +14,7 @@ from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 from granular_response_paper.captions import WEIGHT, Caption, Value, of_group, of_scene
-from granular_response_paper.panels import among, family, grey_limit, label_ends, titles, zero
+from granular_response_paper.panels import among, family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import Parameters
 
@@ -111,10 +111,8 @@ def _linear_range(response: xr.Dataset) -> Figure:
     panel.xaxis.set_major_formatter("{x:g}")
     panel.set(xlabel=style.FORCE, ylabel=style.RESPONSE_AT_CENTRE, ylim=(0.0, None))
     panel.set_xlim(right=2.0 * max(x for _, x, *_ in ends))
-    panel.annotate(
-        rf"$\pm${LINEAR:.0%}".replace("%", r" %"), (panel.get_xlim()[0], band[1]), (4.0, 3.0),
-        textcoords="offset points", va="bottom", fontsize=8, color=style.MUTED,
-    )  # fmt: skip
+    within = rf"$\pm${LINEAR:.0%}".replace("%", r" %")
+    note(panel, within, (panel.get_xlim()[0], band[1]), (4.0, 3.0), va="bottom", fontsize=8, color=style.MUTED)
     label_ends(panel, ends)
     for friction, force in PAPER_OPENINGS.items():
         last = force == max(PAPER_OPENINGS.values())

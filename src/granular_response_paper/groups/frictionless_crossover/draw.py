@@ -22,7 +22,7 @@ from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 from granular_response_paper.captions import Caption, of_group, of_scene, values
-from granular_response_paper.panels import family, grey_limit, label_ends, titles, zero
+from granular_response_paper.panels import family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import Parameters
 
@@ -118,11 +118,14 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
             centre.axvline(middle, color=style.MUTED, linewidth=0.6, linestyle=(0, (4, 2)), zorder=0)
             # the last one is close to the one before, so its name goes to the other side
             side, shift = ("left", 2.0) if at == events.sizes["event"] - 1 else ("right", -1.5)
-            centre.annotate(
-                f"{EVENTS[str(name)]}, {middle:.2f}", (middle, 1.0), (shift, -4.0),
-                xycoords=("data", "axes fraction"), textcoords="offset points",
-                rotation=90, ha=side, va="top", fontsize=7, color=style.MUTED,
-            )  # fmt: skip
+            upright: dict[str, Any] = {
+                "rotation": 90,
+                "ha": side,
+                "va": "top",
+                "xycoords": centre.get_xaxis_transform(),
+            }
+            text = f"{EVENTS[str(name)]}, {middle:.2f}"
+            note(centre, text, (middle, 1.0), (shift, -4.0), fontsize=7, color=style.MUTED, **upright)
     style.paper_value(centre, PAPER_OPENING, f"paper: {PAPER_OPENING:g}", side="behind")
     centre.set_ylim(0.0, 1.65 * highest)
     centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)
@@ -186,10 +189,8 @@ def _stiffness(data: xr.Dataset) -> Figure:
     centre.fill_between(
         [low, high], 1.0 - PAPER_CHANGE, 1.0 + PAPER_CHANGE, color=style.PAPER_BAND, linewidth=0.0, zorder=0
     )
-    centre.annotate(
-        f"paper: {PAPER_CHANGE:.0%}".replace("%", " %"), (high, 1.0 + PAPER_CHANGE), (0.0, 1.5),
-        textcoords="offset points", ha="right", fontsize=7, color=style.PAPER,
-    )  # fmt: skip
+    said = f"paper: {PAPER_CHANGE:.0%}".replace("%", " %")
+    note(centre, said, (high, 1.0 + PAPER_CHANGE), (0.0, 1.5), ha="right", fontsize=7, color=style.PAPER)
     centre.set_ylabel(f"{style.RESPONSE_AT_CENTRE},\nover that of the stiffest")
     centre.legend(title=style.FORCE)
 

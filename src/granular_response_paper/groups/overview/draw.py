@@ -15,7 +15,7 @@ from granular_response.plot.animation import FULL, Frames, animate
 from granular_response.plot.chains import draw_chains, draw_key, draw_response
 from granular_response.plot.pictures import Shown
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import packing, polarised
+from granular_response_paper.panels import note, packing, polarised
 
 from .parameters import Parameters
 
@@ -98,6 +98,5 @@ def _photoelastic(packings: list[xr.Dataset]) -> Figure:
         left, bar = axes.get_xlim()[0] + 0.05 * half, 5.0
         top = axes.get_ylim()[1] - 1.5
         axes.plot([left, left + bar], [top, top], color=style.BLACK, linewidth=2.0, linestyle="-", clip_on=False)
-        note = {"textcoords": "offset points", "va": "center", "fontsize": 8}
-        axes.annotate(f"${bar:g}\\,{style.RADIUS}$", (left + bar, top), (4.0, 0.0), **note)
+        note(axes, f"${bar:g}\\,{style.RADIUS}$", (left + bar, top), (4.0, 0.0), va="center", fontsize=8)
     return figure

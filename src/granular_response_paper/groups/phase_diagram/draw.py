@@ -15,7 +15,7 @@ from granular_response.plot import style
 from granular_response.scene.lattice import touching_largest
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, of_group
-from granular_response_paper.panels import DASHED, DOTTED, different, family, label_ends, packing, titles
+from granular_response_paper.panels import DASHED, DOTTED, different, family, label_ends, note, packing, titles
 from granular_response_paper.survey.crossover import ABOVE, FOUND
 
 from .parameters import Parameters
@@ -151,11 +151,9 @@ def _bounds(axes: Axes, crossovers: xr.Dataset, looks: Iterable[tuple[float, dic
             above = what == ABOVE
             row = rows[friction, above] = rows.get((friction, above), -1) + 1
             inwards = (10.0 * row + 4.0) * (-1) ** above
-            axes.annotate(
-                f"{'>' if above else '≤'} {bound:g}", (friction, float(above)), (-5.0, inwards),
-                xycoords=axes.get_xaxis_transform(), textcoords="offset points", ha="right" if above else "left",
-                va="top" if above else "bottom", fontsize=8, color=look["color"],
-            )  # fmt: skip
+            text, (ha, va) = (f"> {bound:g}", ("right", "top")) if above else (f"≤ {bound:g}", ("left", "bottom"))
+            at_edge = {"xycoords": axes.get_xaxis_transform(), "ha": ha, "va": va, "color": look["color"]}
+            note(axes, text, (friction, float(above)), (-5.0, inwards), fontsize=8, **at_edge)
 
 
 def _certainty(crossovers: xr.Dataset, shapes: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:

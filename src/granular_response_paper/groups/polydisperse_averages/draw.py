@@ -17,6 +17,7 @@ from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
 from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.panels import (
     Contacts,
+    banded,
     different,
     family,
     force_key,
@@ -139,8 +140,7 @@ def _forces(data: xr.Dataset) -> Figure:
     )
     for axes, where, vector, largest, key, unit, limits in drawn:
         state = 0 if axes is wide else 1
-        look: dict[str, Any] = {"facecolor": style.DISKS, "edgecolor": "none"}
-        network.draw_disks(axes, position[state], radius, **look)
+        network.draw_disks(axes, position[state], radius, facecolor=style.DISKS, edgecolor="none")
         marks = {"color": "white", "linewidth": 0.4 if axes is wide else 0.9, "zorder": 1.5}
         network.draw_rotations(axes, position[state], radius, data["angle"].values[state], **marks)
         network.draw_box(axes, Box(width), top)
@@ -323,8 +323,7 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
         mean, error = one["mean"].values[step], one["standard_error"].values[step]
         count = int(one["count_at_rest"][step])
         label = f"{float(one['force'][step]):g}" + (f" ({count})" if count < total else "")
-        axes.fill_between(x, mean - error, mean + error, color=look["color"], alpha=0.25, linewidth=0.0)
-        axes.plot(x, mean, **look, linewidth=1.1, label=label)
+        banded(axes, x, mean, (mean - error, mean + error), look | {"linewidth": 1.1}, alpha=0.25, label=label)
     zero(axes)
     handles, names = axes.get_legend_handles_labels()
     axes.legend(handles[-len(steps) :], names[-len(steps) :], ncols=len(steps), **OVER)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family
+from granular_response_paper.panels import family, note
 
 from .parameters import Parameters
 
@@ -35,18 +35,8 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     axes.legend(loc="lower right", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
     peak = max(float(data["floor_response"].values[0].max()) for data in datasets.values())
     axes.axvline(peak, color=style.FAINT, linewidth=3.5, linestyle="-", zorder=0)
-    axes.annotate(
-        "peak of the response",
-        (peak, 0.5),
-        (-3.0, 0.0),
-        xycoords=("data", "axes fraction"),
-        textcoords="offset points",
-        rotation=90,
-        ha="right",
-        va="center",
-        fontsize=7,
-        color=style.MUTED,
-    )
+    look = {"xycoords": axes.get_xaxis_transform(), "rotation": 90, "ha": "right", "va": "center", "fontsize": 7}
+    note(axes, "peak of the response", (peak, 0.5), (-3.0, 0.0), color=style.MUTED, **look)
     return {"sensitivity": figure}
 
 

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.groups.stiffness_ratio_crossover.spring_model import draw_spring_model
-from granular_response_paper.panels import among, family, titles, zero
+from granular_response_paper.panels import among, family, note, titles, zero
 
 from .parameters import Parameters
 
@@ -102,5 +102,4 @@ def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr
     inset.tick_params(labelsize=7)
     for value, side in zip(PAPER, ("right", "left"), strict=True):
         style.paper_value(inset, value)
-        place: dict[str, Any] = {"ha": side, "textcoords": "offset points"}
-        inset.annotate(f"{value:g}", (value, inset.get_ylim()[1]), (0.0, 2.0), **place, fontsize=7, color=style.PAPER)
+        note(inset, f"{value:g}", (value, inset.get_ylim()[1]), (0.0, 2.0), ha=side, fontsize=7, color=style.PAPER)
