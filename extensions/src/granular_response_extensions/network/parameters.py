@@ -23,9 +23,8 @@ class Parameters(EnsembleGroup):
     @property
     def cases(self) -> dict[tuple[int, int], Case]:
         """By the places of polydispersity and friction."""
-        start = self.scene.packing.model_dump()["lattice_constant"]
         return {
-            (d, m): Case(delta, friction, start, (self.force,), self.realizations)
+            (d, m): Case(delta, friction, self.lattice_constant, (self.force,), self.realizations)
             for d, delta in enumerate(self.polydispersities)
             for m, friction in enumerate(self.frictions)
         }

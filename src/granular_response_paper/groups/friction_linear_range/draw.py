@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response.state import SLIDING
 from granular_response_paper.captions import WEIGHT, Caption, Value, of_group, of_scene
 from granular_response_paper.panels import among, family, grey_limit, label_ends, note, titles, zero
 
@@ -197,7 +196,7 @@ def _contacts(states: xr.Dataset, friction: float) -> Figure:
     handles: dict[str, Any] = {}
     for panel, force in zip(axes[0], shown, strict=True):
         loaded = states.isel(state=int(np.flatnonzero(stored == force)[0]))
-        handles |= draw_state_changes(panel, states.isel(state=0), loaded, loaded["contact_status"].values == SLIDING)
+        handles |= draw_state_changes(panel, states.isel(state=0), loaded)
     mu = style.equals(style.FRICTION, friction)
     titles(axes[0], [f"{mu}, {style.equals(style.F_EXT, force, style.WEIGHT)}" for force in shown])
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), columnspacing=1.2)

@@ -20,7 +20,6 @@ from matplotlib.ticker import FixedLocator
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response.state import SLIDING
 from granular_response_paper.captions import Caption, of_group, of_scene, values
 from granular_response_paper.panels import family, grey_limit, label_ends, note, titles, zero
 
@@ -140,8 +139,7 @@ def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
     figure, (panels,) = style.figure(1, len(chosen), height=2.05)
     handles: dict[str, LineCollection] = {}
     for axes, k in zip(panels, chosen, strict=True):
-        one = states.isel(force=k)
-        handles |= draw_state_changes(axes, rest.isel(state=0), one, one["contact_status"].values == SLIDING)
+        handles |= draw_state_changes(axes, rest.isel(state=0), states.isel(force=k))
     forces = states["force"].values[chosen]
     titles(panels, [style.equals(style.F_EXT, force, style.WEIGHT) for force in forces])
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))

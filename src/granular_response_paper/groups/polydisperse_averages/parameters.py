@@ -65,12 +65,11 @@ class Parameters(EnsembleGroup):
     @property
     def columns(self) -> list[Case]:
         """The cases, one polydispersity each."""
-        usual = self.scene.packing.model_dump()["lattice_constant"]
         return [
             Case(
                 delta,
                 entry.friction,
-                usual if entry.lattice_constant is None else entry.lattice_constant,
+                entry.lattice_constant or self.lattice_constant,
                 entry.forces,
                 1 if delta == 0.0 else entry.realizations or self.realizations,
             )
@@ -81,7 +80,7 @@ class Parameters(EnsembleGroup):
     def start(self, polydispersity: float) -> float | str:
         """The initial lattice of its first case, which the figures show; that of the scene without a case."""
         same = (case.lattice_constant for case in self.columns if case.polydispersity == polydispersity)
-        return next(same, self.scene.packing.model_dump()["lattice_constant"])
+        return next(same, self.lattice_constant)
 
     @property
     def pictured(self) -> list[int]:
