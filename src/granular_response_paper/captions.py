@@ -24,7 +24,12 @@ from granular_response.scene import text as yaml
 from .registry import group_path
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from granular_response.scene import Scene
+
+#: Of a figure group, by name.
+Datasets = Mapping[str, "xr.Dataset"]
 
 #: Name of the file beside the pictures, and of the templates beside their ``draw.py``.
 FILE, TEMPLATES = "captions.json", "captions.yaml"

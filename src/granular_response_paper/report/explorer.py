@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import base64
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,9 +19,8 @@ from granular_response.observe.peaks import asymmetry
 from granular_response.scene import Scene
 from granular_response.state import OPEN, FloatArray, contact_force
 
+from ..captions import Datasets
 from .typeset import typeset
-
-Datasets = Mapping[str, xr.Dataset]
 
 FRICTIONS = (0.0, 0.2, 1.0)
 

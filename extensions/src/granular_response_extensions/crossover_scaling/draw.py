@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from matplotlib.ticker import LogLocator
 from numpy.typing import ArrayLike
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import different, family, label_ends, titles
 
 from .parameters import Parameters, varied
@@ -45,7 +44,7 @@ APART = {
 }
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     slabs, paths, powers = datasets["slabs"], datasets["paths"], datasets["powers"]
     return {
         "crossover_scaling": _against_layers(slabs, powers),
@@ -54,7 +53,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     slabs, powers = datasets["slabs"], datasets["powers"]
     drawn = {
         "crossover_scaling": of_layers(powers),

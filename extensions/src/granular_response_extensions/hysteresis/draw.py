@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import different, family, material, note, titles, zero
 
 from .parameters import Parameters
@@ -31,14 +30,14 @@ NAMES = {
 }
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
         "hysteresis_loops": _loops(datasets["curves"], datasets["floor"]),
         "hysteresis_ranges": _ranges(datasets["loops"], datasets["events"]),
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     curves = datasets["curves"]
     cases, one = looped(curves["polydispersity"].values, curves["friction"].values)
     lattices = [parameters.cases[case] for case in cases]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 from matplotlib.collections import PatchCollection
@@ -13,7 +11,7 @@ from matplotlib.patches import Circle
 
 from granular_response.plot import style
 from granular_response_extensions.panels import materials
-from granular_response_paper.captions import Caption, lettered, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, lettered, of_group, of_scene
 from granular_response_paper.panels import note, titles, zero
 
 from .parameters import Parameters
@@ -24,11 +22,11 @@ REACH = 30.0
 LEAST = 0.8
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {"influence_map": _maps(datasets["packings"]), "influence_saint_venant": _decay(datasets["saint_venant"])}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     maps = [case for case in parameters.cases if case.polydispersity == parameters.cases[-1].polydispersity]
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None)
     return of_group(

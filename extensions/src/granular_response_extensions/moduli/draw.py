@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from matplotlib.lines import Line2D
 from granular_response.plot import network, style
 from granular_response.theory.moduli import bulk_and_shear
 from granular_response_extensions.panels import materials
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import banded, outer, titles, zero
 
 from .parameters import Parameters
@@ -30,7 +29,7 @@ REACH = 20.0
 RANGE = -0.5, 1.0
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     packings = datasets["packings"]
     return {
         "moduli_packings": _moduli(packings),
@@ -39,7 +38,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     packing = f"slabs with periodic sides, {parameters.disks_per_layer} disks in a row for each layer"
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None, packing=packing)
     loaded = of_scene(parameters.lattice, friction=[slab.friction for slab in parameters.loaded.slabs])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import family, outer, titles
 
 from .parameters import Parameters
@@ -41,7 +40,7 @@ TAPPED = "v*X"
 LEAST_PART = 0.03
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
         "preparation": _onsets(datasets["events"]), "preparation_mobilized": _against_mobilized(datasets["mobilized"])
     }  # fmt: skip
@@ -110,7 +109,7 @@ def _against_mobilized(data: xr.Dataset) -> Figure:
     return figure
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     frictions = sorted({part.friction for part in parameters.parts})
     said = of_scene(parameters.scene, force=parameters.forces, friction=frictions, wall_friction=None)
     disorder = sorted({part.polydispersity for part in parameters.parts if part.polydispersity})

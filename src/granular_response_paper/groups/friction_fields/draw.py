@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -12,7 +10,7 @@ from scipy.special import erfc
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box, FloatArray
-from granular_response_paper.captions import Caption, lettered, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, lettered, of_group, of_scene
 from granular_response_paper.panels import Contacts, family, force_key, forces, titles
 
 from .parameters import Parameters
@@ -28,7 +26,7 @@ LEVELS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7)
 DIFFERENCE_LEVELS = (0.05, 0.3)
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
         "fig13_force_chains": _force_chains(datasets["forces"]),
         "fig14_vertical_stress": _vertical_stress(datasets["stress"]),
@@ -36,7 +34,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     scene, width = parameters.scene, parameters.stress_width
     frictions, profiles = list(parameters.frictions), list(parameters.profiles.frictions)
     given = of_scene(scene, force=parameters.force, frictions=frictions)

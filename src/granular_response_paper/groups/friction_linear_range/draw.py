@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response_paper.captions import WEIGHT, Caption, Value, of_group, of_scene
+from granular_response_paper.captions import WEIGHT, Caption, Datasets, Value, of_group, of_scene
 from granular_response_paper.panels import among, family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import Parameters
@@ -44,7 +44,7 @@ PAPER_OPENINGS = {0.0: 0.75, 0.2: 4.0, 1.0: 6.0}
 PAPER_CROSSOVER, PAPER_THIRD_PEAK, PAPER_SYMMETRIC = 20.0, 40.0, 91.0
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     response = datasets["response"]
     figures = {
         "fig06_linear_range": _linear_range(response),
@@ -62,7 +62,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return figures
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     response = datasets["response"]
     frictions = response["friction"].values.tolist()
 

@@ -7,7 +7,7 @@ region of opened contacts reaches the floor (open marker). The band of ``fig05b_
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from matplotlib.ticker import FixedLocator
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response_paper.captions import Caption, of_group, of_scene, values
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene, values
 from granular_response_paper.panels import family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import Parameters
@@ -46,7 +46,7 @@ EVENTS = {
 PAPER_OPENING, PAPER_CHANGE, PAPER_STIFFNESSES, PAPER_SATURATION = 0.75, 0.02, (1e3, 1e5), 2e3
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
         "fig03_frictionless_response": _response(datasets["response"], datasets["events"]),
         "fig04_frictionless_contacts": _contacts(datasets["rest"], datasets["states"]),
@@ -56,7 +56,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     def drawn(wanted: tuple[float, ...], dataset: str) -> list[float]:
         stored = datasets[dataset]["force"].values
         return stored[nearest(stored, wanted)].tolist()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 from matplotlib.animation import FuncAnimation
@@ -14,7 +12,7 @@ from granular_response.plot import style
 from granular_response.plot.animation import FULL, Frames, animate
 from granular_response.plot.chains import draw_chains, draw_key, draw_response
 from granular_response.plot.pictures import Shown
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import note, packing, polarised
 
 from .parameters import Parameters
@@ -25,7 +23,7 @@ HALF_WIDTH = 30.0
 PIXELS = 680
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     frames = Frames(_slabs(datasets), half_width=HALF_WIDTH, figure=Figure())
     frames.draw(-1)
     return {
@@ -35,11 +33,11 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def animations(datasets: Mapping[str, xr.Dataset]) -> dict[str, FuncAnimation]:
+def animations(datasets: Datasets) -> dict[str, FuncAnimation]:
     return {"growing_force": animate(_slabs(datasets), half_width=HALF_WIDTH, figure=Figure())}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     forces, experiment = parameters.forces, parameters.experiment
     given = of_scene(parameters.scene, friction=parameters.frictions)
     return of_group(
@@ -55,13 +53,13 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     )  # fmt: skip
 
 
-def _slabs(datasets: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+def _slabs(datasets: Datasets) -> dict[str, xr.Dataset]:
     """Those under a growing force, by their titles."""
     slabs = [slab for name, slab in datasets.items() if name.startswith("slab")]
     return {style.equals(style.FRICTION, float(slab["friction"])): slab for slab in slabs}
 
 
-def _overview(slabs: Mapping[str, xr.Dataset]) -> Figure:
+def _overview(slabs: Datasets) -> Figure:
     """A column for each friction; for the smallest and the largest force the chains above the response."""
     figure, panels = style.figure(4, len(slabs), width=6.2, height=4.9, height_ratios=[1.1, 0.85, 1.1, 0.85])
     curves = np.stack([np.atleast_2d(slab["floor_response"].values)[[0, -1]] for slab in slabs.values()])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from granular_response.plot import style
 from granular_response.scene.lattice import touching_largest
 from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, Value, of_group
+from granular_response_paper.captions import Caption, Datasets, Value, of_group
 from granular_response_paper.panels import DASHED, DOTTED, different, family, label_ends, note, packing, titles
 from granular_response_paper.survey.crossover import ABOVE, FOUND
 
@@ -42,7 +42,7 @@ MARKERS = ("o", "s", "D", "P")
 UPWARDS, DOWNWARDS = r"$\uparrow$", r"$\downarrow$"
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     shown, shapes, others, realizations = (
         _usual(datasets[name]) for name in ("crossovers", "shapes", "definitions", "realizations")
     )
@@ -63,7 +63,7 @@ def _disorders(data: xr.Dataset) -> list[float]:
     return [delta for delta in different(data["polydispersity"]) if delta]
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     crossovers = _usual(datasets["crossovers"])
     frictions, deltas = (different(crossovers[name]) for name in ("friction", "polydispersity"))
     realizations = different(crossovers["realizations"][crossovers["polydispersity"].values > 0.0])

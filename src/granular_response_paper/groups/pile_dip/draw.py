@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -16,7 +14,7 @@ from scipy.special import erfc
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field
 from granular_response.state import FLOOR, Box
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import Contacts, force_key, forces, titles
 
 from .parameters import Parameters
@@ -33,12 +31,12 @@ DRAWN = ["frictionless", "frictional"]
 KEY = 5.0
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     piles, stress = datasets["piles"], datasets["stress"]
     return {"fig17_pile": _pile(piles, stress), "fig17_pile_profiles": _profiles(piles, stress)}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     said = {**of_scene(parameters.scene), "width": parameters.stress_width}
     opened = datasets["piles"]["central_open_contacts"].sel(case=DRAWN).values.astype(int).tolist()
     return of_group("pile_dip", {"fig17_pile": said, "fig17_pile_profiles": said}, p=parameters, open=opened)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import (
     Contacts,
     banded,
@@ -59,7 +59,7 @@ START_NAMES = {
 PAPER_CONTACTS = 4.25
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
         "fig02_polydisperse_forces": _forces(datasets["forces"]),
         "fig19_disordered_response": _response(datasets["individual"], datasets["averages"]),
@@ -69,7 +69,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     scene, averages = parameters.scene, datasets["averages"]
     picture, single, linear = parameters.forces_picture, parameters.individual, parameters.linear_range
     disordered = sorted({case.polydispersity for case in parameters.columns if case.polydispersity})

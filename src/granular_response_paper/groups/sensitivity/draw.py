@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 
 import numpy as np
-import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import family, note
 
 from .parameters import Parameters
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     """Largest difference of the floor response from the reference, for every variant and friction."""
     figure, ((axes,),) = style.figure(height=3.2)
     # powers of ten as such
@@ -40,6 +38,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return {"sensitivity": figure}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     said = of_scene(parameters.scene, force=parameters.force, friction=parameters.friction)
     return of_group("sensitivity", {"sensitivity": said})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import note, titles, zero
 from granular_response_paper.records import alike
 
@@ -29,7 +28,7 @@ _KEYS = ("friction", "floor", "gravity", "disks_per_layer")
 _BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 2, "columnspacing": 1.4}
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     data = datasets["slabs"]
     figure, ((profiles, distances),) = style.figure(1, 2, height=3.5)
     _profiles(profiles, data)
@@ -38,7 +37,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return {STEM: figure}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     cases = parameters.cases
     layers = sorted({n for case in cases for n in case.layers})
     said = of_scene(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.groups.stiffness_ratio_crossover.spring_model import draw_spring_model
 from granular_response_paper.panels import among, family, note, titles, zero
 
@@ -25,7 +24,7 @@ ELASTIC = (0.1, 0.3, 0.6)
 PAPER = 0.2915, 0.3
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     """``fig10_stiffness_ratio`` from the datasets of the study of the same name, and ``fig11_spring_model``.
 
     Fig. 10: (a) simulated profiles; (b) profiles of elastic bodies without horizontal springs; (c) how far the
@@ -71,7 +70,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return {"fig10_stiffness_ratio": figure, **draw_spring_model()}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     events = datasets["events"]
     said = of_scene(parameters.scene, force=parameters.force, stiffness_ratio=parameters.ratios)
     return of_group(

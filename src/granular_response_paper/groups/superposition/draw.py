@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
 from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, lettered, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, lettered, of_group, of_scene
 from granular_response_paper.panels import banded, family, titles, zero
 
 from .parameters import FORCES, Parameters
@@ -27,13 +26,13 @@ LINEAR_UNTIL = 0.4
 HALF_WIDTH = 48.0
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     figures = {stem: _responses(datasets["responses"], force) for stem, force in FORCES.items()}
     figures["fig24b_superposition_error"] = _errors(datasets)
     return figures
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     diameters = [2 * offset for offset in parameters.offsets]
     scene, distance = parameters.scene, [2.0 * d for d in diameters]
     given = {stem: of_scene(scene, force=force, distance=distance) for stem, force in FORCES.items()}
@@ -85,7 +84,7 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
     return figure
 
 
-def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
+def _errors(datasets: Datasets) -> Figure:
     """Errors against force on the floor and at all contacts, and against depth; means over realizations."""
     figure, panels = style.figure(1, 3, height=3.0, sharey=True)
     floor, contacts, deep = panels[0]

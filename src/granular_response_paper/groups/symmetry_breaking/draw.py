@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import family, titles, zero
 
 from .parameters import Parameters
@@ -35,7 +34,7 @@ OVER: dict[str, Any] = {
 }
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     states, copies = datasets["states"], datasets["copies"]
     with_states = states.sizes["state"] == 3
     rows = 2 if with_states else 1
@@ -53,7 +52,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return {"fig16s_symmetry_breaking": figure}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     steps = {step for protocol in parameters.protocols for step in protocol.time_steps}
     contacts = (
         " (e), (f) Contact network at the last symmetric and the first asymmetric force, ramp of "

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import Contacts, force_key, forces, titles
 
 from .parameters import Parameters
@@ -18,11 +16,11 @@ from .parameters import Parameters
 KEY = 5.0
 
 
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {"fig18_torque": _chains(datasets["torques"])}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     given = of_scene(parameters.scene, force=parameters.force, angle=parameters.angle, torque=parameters.torques)
     return of_group("torque", {"fig18_torque": given}, last=chr(ord("a") - 1 + len(parameters.torques)))
 
