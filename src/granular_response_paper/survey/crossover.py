@@ -176,11 +176,6 @@ def crossover(force: FloatArray, shapes: FloatArray, tolerance: float = 0.0) -> 
     return float(value), int(kind)
 
 
-def ranked(force: FloatArray, kind: NDArray[np.int8]) -> FloatArray:
-    """Crossovers as numbers in their order: a bound lies beyond every force, -inf or inf."""
-    return np.where(kind == FOUND, force, np.where(kind == BELOW, -np.inf, np.inf))
-
-
 def weights(realizations: int, draws: int, seed: int) -> FloatArray:
     """(draws, realizations) how often each is drawn, with replacement; alike for cases of as many realizations."""
     return counted(np.random.default_rng(seed).integers(0, realizations, (draws, realizations)), realizations)
@@ -297,7 +292,8 @@ def cross(
     fits = grown(drawn)
 
     def at(limit: float) -> Crossover:
-        found = ranked(*passed(ensemble.force, fits, limit))
+        each, kinds = passed(ensemble.force, fits, limit)
+        found = np.where(kinds == FOUND, each, np.where(kinds == BELOW, -np.inf, np.inf))  # bounds beyond every force
         force, kind = crossover(ensemble.force, shapes, limit)
         return Crossover(force, np.int8(kind), quantiles(found), found)
 
