@@ -1,9 +1,4 @@
-"""Figs. 3, 4 and 5 and the stiffness study: ordered slabs without friction under a growing force.
-
-Profiles are drawn in the interior of the slab, ten radii from its side walls. The curves of Fig. 5 end where the
-region of opened contacts reaches the floor (open marker). The band of ``fig05b_stiffness`` is the change of
-2 % that Sec. IV.C speaks of; stiffnesses for which gravity alone rearranges the lattice are left out there.
-"""
+"""Figs. 3, 4 and 5 and the stiffness study: ordered slabs without friction under a growing force."""
 
 from __future__ import annotations
 
@@ -96,7 +91,7 @@ def _stiffness_is(value: float) -> str:
 
 def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     figure, ((profiles, centre),) = style.figure(1, 2, height=2.7, width_ratios=[1.45, 1.0])
-    data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
+    data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))  # ten radii from the side walls and more
     x = data["x"].values
     chosen = nearest(data["force"].values, PROFILE_FORCES)
     grey_limit(profiles, x, data["floor_response"].values[0])

@@ -157,11 +157,7 @@ def _bounds(axes: Axes, crossovers: xr.Dataset, looks: Iterable[tuple[float, dic
 
 
 def _certainty(crossovers: xr.Dataset, shapes: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:
-    """How well each crossover force is known: a column for each polydispersity.
-
-    Above, 68 and 95 % of the draws, other definitions of two peaks, and medians of realizations; below, how often the
-    mean of a few realizations has as many peaks as that of all. The lattice has one realization: keys stand there.
-    """
+    """How well each crossover force is known: a column for each polydispersity; keys stand below the lattice."""
     applied = shapes["applied_force"].values
     limits = FORCES[0], 2.0 * float(np.nanmax(applied))
     columns = _by_disorder(crossovers)

@@ -25,12 +25,6 @@ PAPER = 0.2915, 0.3
 
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
-    """``fig10_stiffness_ratio`` from the datasets of the study of the same name, and ``fig11_spring_model``.
-
-    Fig. 10: (a) simulated profiles; (b) profiles of elastic bodies without horizontal springs; (c) how far the
-    profile at x = 0 is below the peaks beside it, with the ratios between which the simulated one changes its
-    form.
-    """
     response, elastic, events = datasets["response"], datasets["elastic"], datasets["events"]
     figure, ((simulated, bodies, dips),) = style.figure(1, 3, height=3.1)
     force = float(response["force"])
