@@ -282,7 +282,7 @@ def _range_ends(axes: Axes, data: xr.Dataset, look: dict[str, Any], name: str) -
 
 
 def _averages(data: xr.Dataset) -> Figure:
-    """Fig. 21: a panel for each polydispersity and friction, one scale in each row, forces growing from dark to light."""
+    """Fig. 21: a panel for each polydispersity and friction, one scale in each row, forces from dark to light."""
     disordered = data.isel(case=data["polydispersity"].values > 0.0)
     deltas, frictions = different(disordered["polydispersity"]), different(disordered["friction"])
     figure, panels = style.figure(
