@@ -76,7 +76,7 @@ def _points(panel: Axes, rows: Rows, x: str, y: str, method: str, label: str, *,
 @style.context()
 def precision(metrics: Metrics) -> Figure:
     """Run time against error of the floor response."""
-    figure, axes = style.figure(1, 2, width="double", height=3.1)
+    figure, axes = style.figure(1, 2, height=3.1)
     for panel, reference in zip(axes[0], metrics["references"], strict=True):
         known = reference["reference_change"]  # errors below it, that of the reference itself too, are drawn there
         runs = [{**r, "error": max(r["error"], known)} for r in pick(metrics["runs"], scene=reference["scene"])]
@@ -110,7 +110,7 @@ def precision(metrics: Metrics) -> Figure:
 @style.context()
 def kernel(metrics: Metrics) -> Figure:
     """Disk-steps per second against the number of disks."""
-    figure, axes = style.figure(1, 2, width="double", height=2.6, sharey=True)
+    figure, axes = style.figure(1, 2, height=2.6, sharey=True)
     for panel, friction in zip(axes[0], sorted({row["friction"] for row in metrics["runs"]}), strict=True):
         runs = pick(metrics["runs"], friction=friction)
         rate = [row["disk_steps_per_second"] for row in runs]
@@ -129,7 +129,7 @@ def kernel(metrics: Metrics) -> Figure:
 @style.context()
 def trajectory(metrics: Metrics) -> Figure:
     """Error of trajectories against the time step, with the order of each integrator."""
-    figure, axes = style.figure(1, 2, width="double", height=2.7)
+    figure, axes = style.figure(1, 2, height=2.7)
     titles = {"swing": "a disk swings on the floor", "fall": "a slab with friction falls"}
     for panel, (problem, title) in zip(axes[0], titles.items(), strict=True):
         for method in dict.fromkeys(row["integrator"] for row in metrics["runs"]):
@@ -195,7 +195,7 @@ def _codes(rows: Rows) -> dict[str, dict[str, Any]]:
 @style.context()
 def arena(metrics: Metrics) -> Figure:
     """Processor time of a step, and peak memory, against the number of disks."""
-    figure, axes = style.figure(1, 2, width="double", height=3.2)
+    figure, axes = style.figure(1, 2, height=3.2)
     drawn = _codes(metrics["runs"])
     for panel, key in zip(axes[0], ("processor_microseconds", "peak_mebibytes"), strict=True):
         for code, look in drawn.items():
@@ -213,7 +213,7 @@ def arena(metrics: Metrics) -> Figure:
 def responses(metrics: Metrics) -> Figure:
     """Error of the floor response against processor time."""
     scenes = list(dict.fromkeys(row["scene"] for row in metrics["runs"]))
-    figure, axes = style.figure(1, len(scenes), width="double", height=3.2, sharey=True)
+    figure, axes = style.figure(1, len(scenes), height=3.2, sharey=True)
     drawn = _codes(metrics["runs"])
     for panel, scene in zip(axes[0], scenes, strict=True):
         for code, look in drawn.items():
@@ -244,7 +244,7 @@ LEAST_DRAWN = 1e-7
 def bounces(metrics: Metrics) -> Figure:
     """Energy that a disk keeps in a bounce against its angle from the normal."""
     dashpots = list(dict.fromkeys(row["damping_ratio"] for row in metrics["runs"]))
-    figure, axes = style.figure(1, len(dashpots), width="double", height=3.2, sharey=True)
+    figure, axes = style.figure(1, len(dashpots), height=3.2, sharey=True)
     drawn = _codes(metrics["runs"])
     for panel, damping in zip(axes[0], dashpots, strict=True):
         for place, (code, look) in enumerate(drawn.items()):
@@ -270,7 +270,7 @@ def bounces(metrics: Metrics) -> Figure:
 @style.context()
 def skipping(metrics: Metrics) -> Figure:
     """How much longer a step takes when an unneeded part is forced on."""
-    figure, axes = style.figure(1, 1, width="double", height=2.3)
+    figure, axes = style.figure(1, 1, height=2.3)
     panel = axes[0, 0]
     again = [{**row, "part": "a second relaxation of a state at rest"} for row in metrics["second_relaxation"]]
     rows = []
@@ -292,7 +292,7 @@ def skipping(metrics: Metrics) -> Figure:
 @style.context()
 def scale(metrics: Metrics) -> Figure:
     """Processor time, which other work on the machine disturbs less, and memory of whole runs against their disks."""
-    figure, axes = style.figure(1, 3, width="double", height=2.7)
+    figure, axes = style.figure(1, 3, height=2.7)
     labels = {
         "minimise": "no friction, minimisation",
         "path": "friction 0.2, load path",
@@ -323,7 +323,7 @@ def scale(metrics: Metrics) -> Figure:
 @style.context()
 def depth(metrics: Metrics) -> Figure:
     """Depth and width of the teardrop against the force, a curve for each slab; open where it reaches the floor."""
-    figure, axes = style.figure(1, 2, width="double", height=2.7)
+    figure, axes = style.figure(1, 2, height=2.7)
     slabs = list(dict.fromkeys(row["layers"] for row in metrics["runs"]))
     for place, (layers, colour) in enumerate(zip(slabs, style.ordered_colours(len(slabs), of="length"), strict=True)):
         runs = [row for row in pick(metrics["runs"], layers=layers) if row["depth"] > 0.0]

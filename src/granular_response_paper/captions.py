@@ -24,7 +24,12 @@ from granular_response.scene import text as yaml
 from .registry import group_path
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from granular_response.scene import Scene
+
+#: Of a figure group, by name.
+Datasets = Mapping[str, "xr.Dataset"]
 
 #: Name of the file beside the pictures, and of the templates beside their ``draw.py``.
 FILE, TEMPLATES = "captions.json", "captions.yaml"
@@ -90,10 +95,11 @@ class Caption:
 
 
 class _Fields(string.Formatter):
-    """Those of ``str.format``, and ``{name!v}`` for one value or several in words."""
+    """Those of ``str.format``; ``{name!v}`` for one value or several in words, ``{force!p}`` for that of each panel."""
 
     def convert_field(self, value: Any, conversion: str | None) -> Any:
-        return values(value) if conversion == "v" else super().convert_field(value, conversion)
+        own = {"v": values, "p": panels}
+        return own[conversion](value) if conversion in own else super().convert_field(value, conversion)
 
 
 @cache
@@ -104,12 +110,13 @@ def _templates(group: str) -> dict[str, Any]:
 def of_group(group: str, parameters: Mapping[str, Mapping[str, Value]], **fields: Any) -> dict[str, Caption]:
     """The captions of those pictures of a group that have ``parameters``, by file stem, from the group's templates.
 
-    Raises KeyError for a picture without a template, or a field that is not given.
+    Fields of a template are ``fields``, and the parameters of its picture. Raises KeyError for a picture without a
+    template, or a field that is not given.
     """
     templates = _templates(group)
 
     def filled(stem: str, name: str) -> str:
-        return _Fields().vformat(templates[stem][name], (), fields)
+        return _Fields().vformat(templates[stem][name], (), {**parameters[stem], **fields})
 
     return {stem: Caption(filled(stem, "text"), filled(stem, "alternative"), of) for stem, of in parameters.items()}
 

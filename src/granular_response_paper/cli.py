@@ -35,6 +35,7 @@ CollectionName = Annotated[
     ),
 ]
 #: Folders and files that several commands take.
+Root = Annotated[Path, typer.Option(help="Folder of the checkout.")]
 LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
 GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
 
@@ -178,10 +179,7 @@ def summary(
 
 
 @commands.command("groups", "groups --collection extensions")
-def groups(
-    name: CollectionName = PAPER.name,
-    root: Annotated[Path, typer.Option(help="Folder of the checkout.")] = Path("."),
-) -> None:
+def groups(name: CollectionName = PAPER.name, root: Root = Path(".")) -> None:
     """List the figure groups of a collection: figures, stored seconds on two cores, the question that each answers."""
     from granular_response.inputs import read_json
 
@@ -201,10 +199,7 @@ def groups(
 
 
 @commands.command("stages", "stages --collection extensions")
-def stages(
-    name: CollectionName = PAPER.name,
-    root: Annotated[Path, typer.Option(help="Folder of the checkout.")] = Path("."),
-) -> None:
+def stages(name: CollectionName = PAPER.name, root: Root = Path(".")) -> None:
     """Write the pipeline (dvc.yaml) of a collection from its figure groups and what their modules import."""
     from .pipeline import stages as made
 
@@ -214,7 +209,7 @@ def stages(
 @commands.command("reproduce", "reproduce --collection extensions", "reproduce --force")
 def reproduce(
     name: CollectionName = PAPER.name,
-    root: Annotated[Path, typer.Option(help="Folder of the checkout.")] = Path("."),
+    root: Root = Path("."),
     force: Annotated[bool, typer.Option("--force", help="Run every stage, up to date or not.")] = False,
     keep_times: Annotated[
         bool, typer.Option("--keep-times", help="Store the seconds of all stages in benchmarks/pipeline.json.")

@@ -130,7 +130,6 @@ def panels_of(figure: Figure) -> dict[str, Axes]:
     return dict(sorted(lettered.items())) or {str(k): axes for k, axes in enumerate(plain, start=1)}
 
 
-@style.context()
 def _drawn(curve: Curve, figure: Figure) -> str:
     """Draw a curve; returns the letter of its panel as a caption has it, if panels have letters."""
     panels = panels_of(figure)

@@ -121,8 +121,12 @@ def force_key(
     along = np.array([[1.0, 0.0]])
     forces(axes, Contacts(np.array([at]), along), size * along, largest, longest=longest)
     end = at[0] + 0.5 * longest * size / largest, at[1]
-    note = f"${size:g}\\,{unit}$" if unit else f"${size:g}$"
-    axes.annotate(note, end, (5.0, 0.0), textcoords="offset points", va="center", fontsize=8)
+    note(axes, f"${size:g}\\,{unit}$" if unit else f"${size:g}$", end, (5.0, 0.0), va="center", fontsize=8)
+
+
+def note(axes: Axes, text: str, at: tuple[float, float], shift: tuple[float, float], **look: Any) -> None:
+    """Write a text ``shift`` points from a place."""
+    axes.annotate(text, at, shift, textcoords="offset points", **look)
 
 
 def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap: float = 9.0, **text: Any) -> None:
@@ -142,9 +146,7 @@ def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap
     look |= {"path_effects": [withStroke(linewidth=1.5, foreground="white")], **text}
     beside, over = 6.0 if look["ha"] == "left" else 0.0, {"bottom": 3.0, "top": -3.0}.get(look["va"], 0.0)
     for place, (height, name, x, y, colour) in zip(places, at, strict=True):
-        axes.annotate(
-            name, (x, y), (beside, place - shift - height + over), textcoords="offset points", color=colour, **look
-        )
+        note(axes, name, (x, y), (beside, place - shift - height + over), color=colour, **look)
 
 
 def grey_limit(axes: Axes, x: FloatArray, response: FloatArray) -> None:

@@ -8,10 +8,11 @@ name is that of the group's own base, so one key of it can be tried alone
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import reduce
 from itertools import pairwise
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from granular_response.scene import Scene, SceneError
 from granular_response.scene.base import Count, Description, Positive, Ratio, allowed
@@ -73,7 +74,38 @@ Integrators = Annotated[
 Path = Annotated[str, Field(strict=True, min_length=1), allowed("must be the path of a file")]
 
 
-class Common(Description):
+#: Of parameters that must agree: the dotted key that a message names, whether all is well, else what is allowed.
+Checks = Iterator[tuple[str, bool, str]]
+
+
+class Checked(Description):
+    """A description whose parameters must agree."""
+
+    def checks(self) -> Checks:
+        """In turn; the first that fails is the mistake."""
+        yield from ()
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for key, holds, rule in self.checks():
+            if not holds:
+                path = [int(part) if part.isdigit() else part for part in key.split(".")]
+                raise Problem(rule, key=path, value=_shown(reduce(_part, path, self)))
+        return self
+
+
+def _part(of: Any, name: str | int) -> Any:
+    return of[name] if isinstance(name, int) else getattr(of, name)
+
+
+def _shown(value: Any) -> Any:
+    """A parameter as its file has it."""
+    if isinstance(value, tuple):
+        return [_shown(one) for one in value]
+    return value.model_dump() if isinstance(value, Description) else value
+
+
+class Common(Checked):
     """What ``common`` holds for every group that solves scenes; a group's own section may have it too."""
 
     method: Method = Field(description="protocol.method of the scenes.")

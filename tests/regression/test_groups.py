@@ -55,7 +55,8 @@ def test_numbers_are_the_stored_ones_and_states_certified(group, num_regression,
 
 def test_figures_look_as_stored_and_have_captions(group, looks_as_stored, tmp_path_factory):
     datasets = reduced.datasets(group, tmp_path_factory)
-    drawn = group_member(group, "draw", "draw")(datasets)
+    with style.context():
+        drawn = group_member(group, "draw", "draw")(datasets)
     parameters = group_member(group, "parameters", "Parameters")(**reduced.parameters(group))
     assert set(group_member(group, "draw", "captions")(datasets, parameters)) == set(drawn)
     looks_as_stored(drawn)

@@ -44,7 +44,7 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"layers": [1]}, r"layers\[0\] = 1: must be a whole number from 2 on"),
     ],
     "experiments": [
-        ({"packings": {}}, r"cases = 'nearly equal': must have packings among"),
+        ({"packings": {}}, r"cases\[0\]\.packing = 'nearly equal': must be one of packings \(\)"),
         ({"pictures": [9]}, r"pictures = \[9\]: must be below 3"),
     ],
     "influence": [({"fitted": [6.0, 1.0]}, r"fitted = \[6.0, 1.0\]: must be two growing numbers")],
@@ -72,11 +72,14 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"individual": reduced.parameters("polydisperse_averages")["individual"] | {"force": 7.0}}, "individual = "),
     ],
     "preparation": [
-        ({"ways": [WAY | {"changes": {"contact.friction": 1.0}}]}, "must be one of preparation.gravity"),
+        ({"ways": [WAY | {"changes": {"contact.friction": 1.0}}]}, "must have keys among preparation.gravity"),
         ({"ways": [WAY, WAY]}, "must have different names"),
-        ({"parts": [{"friction": 0.2, "ways": ["none"], "to": 4.0}]}, "must be one of the names in ways"),
+        (
+            {"parts": [{"friction": 0.2, "ways": ["none"], "to": 4.0}]},
+            r"parts\[0\]\.ways = .*: must be among the names in ways",
+        ),
         ({"parts": [{"friction": 0.2, "to": 0.01}]}, "must not be below the first of forces"),
-        ({"parts": [{"friction": 0.2, "to": 4.0, "taps": TAPS}]}, r"parts\.0\.taps = .*: must be left out"),
+        ({"parts": [{"friction": 0.2, "to": 4.0, "taps": TAPS}]}, r"parts\[0\]\.taps = .*: must be left out"),
     ],
     "slab_comparison": [
         ({"cases": [{"friction": 0.2}]}, r"cases\[0\]\.floor: missing"),

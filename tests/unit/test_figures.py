@@ -19,7 +19,7 @@ from granular_response_paper import panels
 
 @style.context()
 def _drawn():
-    drawn, axes = style.figure(1, 2, width="double", height=2.0)
+    drawn, axes = style.figure(1, 2, height=2.0)
     for index in range(3):
         axes[0, 0].plot([0.0, 1.0], [index, index + 1.0], label=f"$F = {index}\\,mg$")
     axes[0, 0].legend()
@@ -86,7 +86,6 @@ def test_ordered_colours_darken_to_one_side_and_are_seen_on_white(of: str) -> No
 
 test_settings_and_arrays_that_do_not_fit_are_named = refusals(
     ValueError,
-    (lambda: style.figure(width="triple"), "width = 'triple'"),
     (lambda: style.ordered_colours(0), "count = 0"),
     (lambda: style.render(_drawn(), "bmp"), "file_format = 'bmp'"),
     (lambda: nd.draw_disks(style.figure()[1][0, 0], [1.0, 2.0], 1.0), r"position: must have shape \(n, 2\)"),

@@ -1,5 +1,7 @@
 """The shape of a response, the crossover of a path, and their statistics on hand-made ensembles."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -93,11 +95,16 @@ def make_ensemble(spread: float, size: int = 40) -> Ensemble:
     rng = np.random.default_rng(1)
     scatter = rng.normal(0.0, spread, size)
     response = np.stack([[bumps(max(0.0, 3.0 + 2.0 * np.log2(f) + s)) for f in force] for s in scatter])
-    return Ensemble(force, response)
+    return Ensemble(force, response, X, 6.0)
+
+
+def alone(responses) -> Ensemble:
+    """Responses (r, x) to one force."""
+    return Ensemble(np.array([1.0]), responses[:, None], X, 6.0)
 
 
 def test_bootstrap_interval_narrows_with_the_scatter_and_holds_the_crossover() -> None:
-    wide, narrow = (cross(make_ensemble(spread), X, 6.0, numbers=(5,), draws=300, seed=0) for spread in (2.0, 0.2))
+    wide, narrow = (cross(make_ensemble(spread), numbers=(5,), draws=300, seed=0) for spread in (2.0, 0.2))
     for found in (wide, narrow):
         assert found.kind == FOUND
         assert found.interval[0] <= found.force <= found.interval[-1]
@@ -108,7 +115,7 @@ def test_mean_leaves_out_what_is_not_at_rest() -> None:
     ensemble = make_ensemble(1.0, 4)
     ensemble.response[1, 3] = np.nan
     np.testing.assert_allclose(ensemble.mean()[3], ensemble.response[[0, 2, 3], 3].mean(axis=0))
-    strict = Ensemble(ensemble.force, ensemble.response, 4)
+    strict = replace(ensemble, least=4)
     assert np.isnan(strict.mean()[3]).all()
     assert np.isfinite(strict.mean()[:3]).all()
 
@@ -120,7 +127,7 @@ def test_weights_count_a_realization_as_often_as_it_is_drawn() -> None:
 
 
 def test_means_of_a_few_are_alike_far_from_the_crossover() -> None:
-    part = two_peaked_means(make_ensemble(1.5), X, 6.0, 5, draws=200, seed=0)
+    part = two_peaked_means(make_ensemble(1.5), 5, draws=200, seed=0)
     assert part[0] == 0.0
     assert part[-1] == 1.0
     assert 0.0 < part[1:-1].max() < 1.0 or 0.0 < part[1:-1].min() < 1.0
@@ -129,11 +136,11 @@ def test_means_of_a_few_are_alike_far_from_the_crossover() -> None:
 def test_a_large_ensemble_knows_better_how_far_its_means_dip() -> None:
     """Means of fifteen alike dip as each does; of a mixed ensemble by something between, known the better the more."""
     for place in (0.0, 12.0):
-        alike = shapes_of_samples(np.tile(bumps(place), (40, 1)), X, 6.0, 15, seed=0)
+        alike = shapes_of_samples(alone(np.tile(bumps(place), (40, 1))), 0, 15, seed=0)
         np.testing.assert_allclose(alike, shape(X, bumps(place), 6.0), atol=1e-12)
     # two thirds of the packings have one peak and the others two, so that means of fifteen have either
     whole = np.stack([bumps(4.0), bumps(4.0), bumps(11.0)])
-    shapes = [shapes_of_samples(np.tile(whole, (n, 1)), X, 6.0, 15, seed=0) for n in (5, 60)]
+    shapes = [shapes_of_samples(alone(np.tile(whole, (n, 1))), 0, 15, seed=0) for n in (5, 60)]
     assert 0.1 < np.mean(shapes[1] > 0.0) < 0.9
     few, many = (np.ptp(np.quantile(np.mean(one > 0.0, axis=1), [0.025, 0.975])) for one in shapes)
     assert many < 0.7 * few
@@ -144,14 +151,14 @@ def test_a_crossover_is_seen_in_samples_of_an_ensemble_that_has_one() -> None:
     force = np.array([1.0, 2.0, 4.0])
     path = np.stack([bumps(0.0), bumps(4.0), bumps(12.0)])
     for responses, expected in ((path, 1.0), (path[[0, 0, 0]], 0.0), (path[[2, 2, 2]], 0.0)):
-        alike = Ensemble(force, np.tile(responses, (20, 1, 1)), 10)
-        np.testing.assert_array_equal(seen_in_samples(alike, X, 6.0, 5, seed=0, draws=3, samples=4), expected)
+        alike = Ensemble(force, np.tile(responses, (20, 1, 1)), X, 6.0, 10)
+        np.testing.assert_array_equal(seen_in_samples(alike, 5, seed=0, draws=3, samples=4), expected)
     # half of the packings never split, and three of five must be at rest at the last force
     mixed = np.stack([path, path[[0, 0, 0]]] * 10)
-    few = seen_in_samples(Ensemble(force, mixed, 10), X, 6.0, 5, seed=0, draws=20)
+    few = seen_in_samples(Ensemble(force, mixed, X, 6.0, 10), 5, seed=0, draws=20)
     assert 0.0 < few.mean() <= 1.0
     mixed[:12, 2] = np.nan
-    fewer = seen_in_samples(Ensemble(force, mixed, 10), X, 6.0, 5, seed=0, draws=20)
+    fewer = seen_in_samples(Ensemble(force, mixed, X, 6.0, 10), 5, seed=0, draws=20)
     assert fewer.mean() < few.mean()
 
 
@@ -170,8 +177,8 @@ def test_one_peak_beside_the_middle_is_one() -> None:
 def test_crossing_counts_draws_beyond_the_path() -> None:
     """Where the crossover lies at the end of the path, some draws have none, and the interval is open."""
     whole = make_ensemble(3.0, 12)
-    ensemble = Ensemble(whole.force[:2], whole.response[:, :2])
-    found = cross(ensemble, X, 6.0, numbers=(5,), draws=200, seed=0)
+    ensemble = replace(whole, force=whole.force[:2], response=whole.response[:, :2])
+    found = cross(ensemble, numbers=(5,), draws=200, seed=0)
     assert 0.0 < np.mean(found.draws == np.inf) < 1.0
     assert found.interval[-1] == np.inf
     assert np.all(np.diff(found.shape_interval, axis=1) >= 0.0)
@@ -191,7 +198,7 @@ def test_read_ensemble_smooths_both_sides() -> None:
         },
         coords={"realizations": (("case",), [2])},
     )
-    ensemble = read_ensemble(source, 0, X, 2.0, 0.5)
+    ensemble = read_ensemble(source, 0, X, 2.0, Parameters.model_construct(least_part=0.5, tolerance=0.0))
     np.testing.assert_array_equal(ensemble.force, [1.0, 2.0])
     assert ensemble.least == 1
     np.testing.assert_allclose(ensemble.response[0, 0], ensemble.response[1, 0, ::-1])  # mirror images
@@ -225,8 +232,8 @@ def test_a_tolerance_moves_the_crossover() -> None:
 def test_cases_of_as_many_realizations_are_drawn_alike() -> None:
     """So the ratio of two crossovers that share their scatter has little of its own."""
     one = make_ensemble(1.5)
-    twice = Ensemble(2.0 * one.force, one.response)
-    first, second = (cross(e, X, 6.0, numbers=(5,), draws=100, seed=0).draws for e in (one, twice))
+    twice = replace(one, force=2.0 * one.force)
+    first, second = (cross(e, numbers=(5,), draws=100, seed=0).draws for e in (one, twice))
     known = np.isfinite(first) & np.isfinite(second)
     assert known.mean() > 0.9
     np.testing.assert_allclose(second[known] / first[known], 2.0)
@@ -270,7 +277,7 @@ def test_single_realizations_and_their_mean() -> None:
     middle = bumps(0.0)
     single = np.concatenate([middle[:0:-1], middle])
     response = np.array([[single, side], [single, side[::-1]], [single, np.full(side.size, np.nan)]])
-    found = singles(Ensemble(np.array([1.0, 4.0]), response, 2), X, 6.0, draws=50, seed=0)
+    found = singles(Ensemble(np.array([1.0, 4.0]), response, X, 6.0, 2), draws=50, seed=0)
     assert found.kind.tolist() == [FOUND, FOUND, ABOVE]
     assert found.crossover[2] == 1.0
     assert found.median == pytest.approx(found.crossover[0])

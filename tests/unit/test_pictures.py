@@ -24,7 +24,7 @@ def result() -> gr.Result:
 
 @pytest.fixture
 def ax():
-    return style.figure(width="double")[1][0, 0]
+    return style.figure()[1][0, 0]
 
 
 def lines(axes, colour) -> LineCollection:

@@ -6,7 +6,7 @@ from small_scenes import scene
 
 from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response.studies import LoadPath, Measures, happenings
-from granular_response_paper.groups.symmetry_breaking.simulate import copies
+from granular_response_paper.groups.symmetry_breaking import simulate as copies
 from granular_response_paper.slab_response import (
     locate,
     measured,

@@ -5,7 +5,7 @@ import pytest
 from refusals import refusals
 from scipy.integrate import quad
 
-from granular_response.theory import crossover, half_plane, lattice
+from granular_response.theory import half_plane, lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab, response_of_layers
@@ -111,31 +111,6 @@ def test_smoothing_keeps_the_total_and_reaches_the_top(floor: str) -> None:
     assert -slab.stress(x, 0.5, smoothing=0.2)[1].sum() * 0.01 == pytest.approx(1.0, rel=1e-6)
 
 
-@floors
-def test_curvature_is_that_of_the_pressure(floor: str) -> None:
-    for moduli in SOLIDS:
-        slab = Slab(2.0, moduli, floor)
-        pressure = slab.floor_pressure([-0.02, 0.0, 0.02])
-        numerical = (pressure[0] - 2.0 * pressure[1] + pressure[2]) / 0.02**2
-        assert slab.curvature_below_force() == pytest.approx(numerical, rel=2e-3)
-
-
-@pytest.mark.parametrize("rotations", ["suppressed", "free"])
-@pytest.mark.parametrize("body", ["half plane", "smooth floor", "rough floor"])
-def test_crossover_ratio_separates_one_peak_from_two(body: str, rotations: str) -> None:
-    ratio = crossover.stiffness_ratio(body, rotations)
-    if (body, rotations) == ("half plane", "suppressed"):  # the paper's
-        assert ratio == crossover.stiffness_ratio() == pytest.approx(2.0 * np.sqrt(7.0) - 5.0, abs=1e-12)
-    x = np.linspace(0.0, 1.5, 1501)
-    for factor, peaks in ((0.97, 2), (1.03, 1)):
-        moduli = lattice.moduli(Springs(0.0, 1.0, 0.0, factor * ratio), rotations)
-        if body == "half plane":
-            pressure = half_plane.pressure(x, 1.0, moduli)
-        else:
-            pressure = Slab(1.0, moduli, body.split()[0]).floor_pressure(x)
-        assert (np.argmax(pressure) > 0) == (peaks == 2)
-
-
 @pytest.mark.parametrize("width", [None, 61.0 * 2.0])
 def test_shares_of_the_floor_disks(width: float | None) -> None:
     x = 2.0 * np.arange(-30, 31)
@@ -158,5 +133,4 @@ test_bad_input_is_named = refusals(
     (lambda: Slab(1.0, ISOTROPIC).transform(-1.0), "wave_number: must be"),
     (lambda: response_of_layers([0.0], layers=0, moduli=ISOTROPIC), "layers = 0"),
     (lambda: Slab(1.0, ISOTROPIC).floor_force([1.0, 0.0]), r"edges"),
-    (lambda: crossover.stiffness_ratio("disk"), "body = 'disk'"),
 )

@@ -12,8 +12,9 @@ from granular_response.observe.floor import floor_force
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.energy import minimise
 from granular_response.solvers.settle import NotSettled
-from granular_response_paper.groups.stability.simulate import time_steps
-from granular_response_paper.groups.stability.simulate.time_steps import SETTLES, tried
+from granular_response_paper.groups.stability import simulate as time_steps
+from granular_response_paper.groups.stability.parameters import SETTLES
+from granular_response_paper.groups.stability.simulate import tried
 
 SEED = 20260101
 #: Of a system without dashpots: time step per limit of velocity Verlet, and the velocity of the kick, in mean overlaps

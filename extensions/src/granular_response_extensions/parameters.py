@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Self
+from pydantic import Field
 
-from pydantic import Field, model_validator
-
-from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import Path, SceneGroup
+from granular_response_paper.parameters import Checks, Path, SceneGroup
 
 
 class SurveyedGroup(SceneGroup):
@@ -20,8 +17,6 @@ class SurveyedGroup(SceneGroup):
         """Whether it leaves any."""
         raise NotImplementedError
 
-    @model_validator(mode="after")
-    def _check_survey(self) -> Self:
-        if self.survey_file is None and self.surveyed:
-            raise Problem("must be named where packings are left to the survey", key=("survey_file",), value=None)
-        return self
+    def checks(self) -> Checks:
+        named = self.survey_file is not None or not self.surveyed
+        yield "survey_file", named, "must be named where packings are left to the survey"

@@ -17,7 +17,7 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike
 
-from ..state import FLOOR, OPEN, Box, FloatArray
+from ..state import FLOOR, OPEN, SLIDING, Box, FloatArray
 from . import style
 
 #: Points; a thinner line is lost in print.
@@ -136,13 +136,14 @@ def _changes(before: ArrayLike, now: ArrayLike, sliding: ArrayLike = False) -> d
 
 
 def draw_state_changes(
-    axes: Axes, rest: xr.Dataset, loaded: xr.Dataset, sliding: ArrayLike
+    axes: Axes, rest: xr.Dataset, loaded: xr.Dataset, sliding: ArrayLike | None = None
 ) -> dict[str, LineCollection]:
     """Figs. 4, 8, 9 and 16: the central third of a slab, what a load changes in its contacts, the load and the floor.
 
-    ``rest`` and ``loaded`` are states of a study's dataset, ``sliding`` (m,) marks contacts. Contacts with the floor
-    are lines down to it. Returns what :func:`draw_contact_changes` does.
+    ``rest`` and ``loaded`` are states of a study's dataset, ``sliding`` (m,) marks contacts, by default by their
+    status. Contacts with the floor are lines down to it. Returns what :func:`draw_contact_changes` does.
     """
+    sliding = loaded["contact_status"].values == SLIDING if sliding is None else sliding
     position, disk = loaded["position"].values, int(rest["loaded_disk"])
     radius, width = float(rest["radius"].values[disk]), float(rest["width"])
     first, second = rest["contact_disk"].values, rest["contact_partner"].values

@@ -1,6 +1,6 @@
 """The one look of all figures: fonts, sizes, colours, panel letters, and files with reproducible bytes.
 
-A drawing function is decorated with ``@style.context()``, makes its figures with :func:`figure`, and they
+A drawing function is called within :func:`context`, makes its figures with :func:`figure`, and they
 are written with :func:`save`: then all of it happens under :data:`RC`. Only fonts that matplotlib itself
 ships are used, ``pyplot`` is not, and so neither the machine's fonts nor a display change a byte.
 """
@@ -131,7 +131,7 @@ def context() -> Iterator[None]:
     """Where matplotlib's defaults and then :data:`RC` hold, whatever the user's own settings.
 
     Legends, colour bars and texts take their looks when they are made, so the whole of a drawing function
-    belongs inside: decorate it with ``@style.context()``.
+    belongs inside: as a decorator, or around its call, as for those of the figure groups.
     """
     defaults = {key: one for key, one in mpl.rcParamsDefault.items() if key.partition(".")[0] not in _NOT_STYLE}
     settings: dict[Any, Any] = {**defaults, **RC}
@@ -146,24 +146,14 @@ def context() -> Iterator[None]:
 
 
 def figure(
-    rows: int = 1,
-    columns: int = 1,
-    *,
-    width: Literal["single", "double"] | float = "single",
-    height: float = 2.5,
-    **subplots: Any,
+    rows: int = 1, columns: int = 1, *, width: float = DOUBLE, height: float = 2.5, **subplots: Any
 ) -> tuple[Figure, np.ndarray]:
     """A figure with constrained layout and its (rows, columns) array of axes.
 
-    ``width`` is one of the journal's column widths or inches, ``height`` is in inches; ``subplots`` goes to
-    ``Figure.subplots`` (``sharex``, ``width_ratios``, ...).
+    ``width`` and ``height`` are in inches; ``subplots`` goes to ``Figure.subplots`` (``sharex``, ...).
     """
-    columns_wide: dict[Any, float] = {"single": SINGLE, "double": DOUBLE}
-    inches = columns_wide.get(width, width)
-    if isinstance(inches, str):
-        raise ValueError(f"width = {width!r}: must be 'single', 'double' or inches")
     with context():
-        made = Figure(figsize=(inches, height), layout="constrained")
+        made = Figure(figsize=(width, height), layout="constrained")
         return made, made.subplots(rows, columns, squeeze=False, **subplots)
 
 

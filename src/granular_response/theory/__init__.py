@@ -10,6 +10,6 @@ Examples
 array([0.0637])
 """
 
-from . import crossover, half_plane, lattice, moduli, rays, slab
+from . import half_plane, lattice, moduli, rays, slab
 
-__all__ = ["crossover", "half_plane", "lattice", "moduli", "rays", "slab"]
+__all__ = ["half_plane", "lattice", "moduli", "rays", "slab"]

@@ -133,7 +133,7 @@ def measured_moduli(springs: Springs, rotations: Rotations = "suppressed") -> ND
         ((1.0, np.sqrt(3.0)), (0, 1), springs.k2n, springs.k2t),
         ((-1.0, np.sqrt(3.0)), (-1, 1), springs.k2n, springs.k2t),
     )
-    elongations, affines, virials, stiffnesses = [], [], [], []
+    elongations, affines, stiffnesses = [], [], []
     for column in range(CELLS):
         for layer in range(CELLS):
             i = column * CELLS + layer
@@ -151,13 +151,13 @@ def measured_moduli(springs: Springs, rotations: Rotations = "suppressed") -> ND
                     row[2 * disks + j] -= arm
                     elongations.append(row)
                     affines.append((ex * bx, ez * bz, ex * bz + ez * bx))
-                    virials.append((ex * bx, ez * bz, 0.5 * (ex * bz + ez * bx)))
                     stiffnesses.append(stiffness)
     k = np.array(stiffnesses)[:, None]
     elongation = np.array(affines)  # (springs, 3), per unit of each strain
+    virial = elongation * [1.0, 1.0, 0.5]
     relaxing, weight = np.array(elongations)[:, : 3 * disks if rotations == "free" else 2 * disks], np.sqrt(k)
     # The minimum-norm solution leaves out the uniform translation and any floppy mode.
     response = np.linalg.lstsq(weight * relaxing, -weight * elongation, rcond=1e-12)[0]
     elongation = elongation + relaxing @ response
     area = disks * 2.0 * np.sqrt(3.0)
-    return np.array(virials).T @ (k * elongation) / area
+    return virial.T @ (k * elongation) / area

@@ -164,14 +164,6 @@ class Slab:
         x = fine[:-1, None] + half[:, None] * (1.0 + node)
         return ((self.floor_pressure(x, force) @ weight) * half).reshape(-1, pieces).sum(axis=1)
 
-    def curvature_below_force(self) -> float:
-        """Second x-derivative of the floor pressure under a unit force in an unbounded slab.
-
-        Negative where one peak stands below the force, positive where a dip does. Walls are left out.
-        """
-        k, amplitude = self._amplitudes(np.pi / (32.0 * self.height), 0.0, 0.0)
-        return float((k**2 * amplitude[1]).sum() * k[1] / np.pi)
-
     def _amplitudes(self, step: float, z: float, smoothing: float) -> tuple[FloatArray, FloatArray]:
         """Wave numbers ``0, step, 2 step, ...`` and their amplitudes, until those fall below rounding."""
         rate = np.min(np.linalg.eigvals(self._modes[3]).real)  # the slowest decay, the same both ways

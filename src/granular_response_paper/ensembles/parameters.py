@@ -36,3 +36,8 @@ class EnsembleGroup(SceneGroup):
     time_step_part: Part = Field(description="Time step over the stability limit of the lightest disk.")
     longest_time_step: Positive = Field(description="Without friction the limit is far beyond what the fall needs.")
     collapse_depth: Positive = Field(description="Of the loaded disk, beyond which a packing counts as collapsed.")
+
+    @property
+    def lattice_constant(self) -> float | str:
+        """That of the scene."""
+        return self.scene.packing.model_dump()["lattice_constant"]

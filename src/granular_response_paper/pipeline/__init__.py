@@ -12,8 +12,3 @@ from pathlib import Path
 def data_path(group: str) -> Path:
     """Where the datasets of a group are kept."""
     return Path("data") / f"{group}.nc"
-
-
-def figures_folder(group: str) -> Path:
-    """Where the figures of a group are kept."""
-    return Path("figures") / group

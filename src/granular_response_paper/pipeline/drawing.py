@@ -14,7 +14,7 @@ from granular_response.scene import SceneError, text
 from granular_response.store import atomic
 from granular_response.store import files as store
 from granular_response_paper import TOO_LITTLE, captions
-from granular_response_paper.pipeline import data_path, figures_folder
+from granular_response_paper.pipeline import data_path
 from granular_response_paper.registry import GroupError, group_member
 
 
@@ -38,14 +38,16 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None, forma
         raise GroupError(f"formats: {', '.join(sorted(unknown))} is unknown, must be among {', '.join(style.FORMATS)}")
     path = data or data_path(group)
     datasets, described = _stored(group, path)
-    target = folder or figures_folder(group)
+    target = folder or Path("figures") / group
     paths: list[Path] = []
     try:
-        figures = function(datasets)
+        with style.context():
+            figures = function(datasets)
+            grey = digitised.add(figures, group)
         panels = {stem: style.drawn_letters(figure) for stem, figure in figures.items()}
         told = group_member(group, "draw", "captions")(datasets, described)
-        for stem, grey in digitised.add(figures, group).items():
-            told[stem] = replace(told[stem], text=f"{told[stem].text} {grey}")
+        for stem, sources in grey.items():
+            told[stem] = replace(told[stem], text=f"{told[stem].text} {sources}")
         said = captions.document(told, panels, captions.question(group))
         for stem, figure in figures.items():
             paths += style.save(figure, stem, target, wanted, inputs=[path])

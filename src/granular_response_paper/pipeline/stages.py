@@ -62,7 +62,10 @@ def judging(collection: Collection) -> list[str]:
 def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
     base = (root / collection.folder).resolve()
     groups = collection.groups
-    group_folder = Path(os.path.relpath(collection.path, base)).as_posix()
+
+    def near(path: Path) -> str:
+        """A path as the pipeline names it."""
+        return Path(os.path.relpath(path, base)).as_posix()
 
     def code(modules: Iterable[str], own: Iterable[str] = ()) -> list[str]:
         """Files of modules as the pipeline names them; what stands inside a figure group is ``own``."""
@@ -72,18 +75,16 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
         named += [
             data for path in named if path.is_file() for data in path.parent.glob(f"{path.stem}.*") if data != path
         ]
-        return sorted([*(Path(os.path.relpath(path, base)).as_posix() for path in named), *own])
+        return sorted([*map(near, named), *own])
 
     simulated = [name for group in groups for name in starts(collection, "simulate", group)]
     drawn = [name for group in groups for name in starts(collection, "draw", group)]
-    item = f"{group_folder}/${{item}}"
-    survey = (
-        [] if not _surveyed(root, collection) else [Path(os.path.relpath(root / "survey" / "data", base)).as_posix()]
-    )
+    item = f"{near(collection.path)}/${{item}}"
+    reads_survey = "survey/data" in (root / collection.folder / "params.yaml").read_text(encoding="utf-8")
     judged = [f"data/{group}.nc" for group in table.groups_read(collection)]
     judged += [preparations.OUTPUT.as_posix()] if collection == PAPER else []
     pictures = [f"figures/{group}" for group in groups]
-    documents = Path(os.path.relpath(root / "docs" / "_generated", base)).as_posix()
+    documents = near(root / "docs" / "_generated")
     written = [f"{documents}/{name}" for name in report.fragments(root, collection)]
     tables = [name for group in groups if file_of(name := f"{collection.package}.{group}.tables")]
     stages: dict[str, Any] = {
@@ -94,7 +95,7 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
                 "cmd": "granular-response-paper simulate ${item}",
                 "deps": [
                     *code(simulated, [f"{item}/__init__.py", f"{item}/parameters.py", f"{item}/simulate"]),
-                    *survey,
+                    *([near(root / "survey" / "data")] if reads_survey else []),
                 ],
                 "params": ["common", "${item}"],
                 "outs": ["data/${item}.nc"],
@@ -112,7 +113,7 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
         "claims": {
             "desc": "What is claimed against the datasets",
             "cmd": f"granular-response-paper claims{option}",
-            "deps": [*judged, *code(judging(collection)), group_folder],
+            "deps": [*judged, *code(judging(collection)), near(collection.path)],
             "metrics": [{"figures/claims.json": {"cache": False}}],
         },
         "report": {
@@ -121,7 +122,7 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
             "deps": [
                 *(f"data/{group}.nc" for group in report.datasets_read(collection)),
                 "figures/claims.json",
-                Path(os.path.relpath(root / "requirements.lock", base)).as_posix(),
+                near(root / "requirements.lock"),
                 *pictures,
                 *code([f"{_PAPER}.report", *tables]),
             ],
@@ -136,11 +137,6 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
             "deps": ["data/preparation.nc", *code([f"{_PAPER}.claims.preparations"])],
         }
     return {"stages": stages}
-
-
-def _surveyed(root: Path, collection: Collection) -> bool:
-    """Whether a group of the collection reads the survey."""
-    return "survey/data" in (root / collection.folder / "params.yaml").read_text(encoding="utf-8")
 
 
 def _folded(files: set[Path]) -> list[Path]:

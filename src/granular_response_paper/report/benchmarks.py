@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -16,22 +16,13 @@ from . import pictures
 SUMMARY, PICTURES = "summary", "figures"
 
 
-@dataclass(frozen=True)
-class Benchmark:
-    """One benchmark that is drawn."""
-
-    title: str
-    caption: str
-    picture: pictures.Picture
-
-
-def collect(folder: Path, page: Path, *, embedded: bool = False) -> list[Benchmark]:
-    """One for each ``folder/figures/*.png``, as the page in a folder shows it."""
+def collect(folder: Path, page: Path, *, embedded: bool = False) -> list[dict[str, Any]]:
+    """Records ``title``, ``caption``, ``picture`` for each ``folder/figures/*.png``, as a page in a folder shows it."""
     found, captions = [], text.read(resources.files(__package__).joinpath("benchmarks.yaml").read_text("utf-8"))
     for drawn in sorted((folder / PICTURES).glob("*.png")):
         said = captions.get(drawn.stem, {"title": drawn.stem.replace("_", " ").capitalize(), "caption": ""})
         picture = replace(pictures.shown(drawn, page, embedded=embedded), alternative=said["caption"])
-        found.append(Benchmark(**said, picture=picture))
+        found.append({**said, "picture": picture})
     return found
 
 

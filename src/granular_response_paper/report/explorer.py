@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import base64
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,11 +19,13 @@ from granular_response.observe.peaks import asymmetry
 from granular_response.scene import Scene
 from granular_response.state import OPEN, FloatArray, contact_force
 
+from ..captions import Datasets
 from .typeset import typeset
 
-Datasets = Mapping[str, xr.Dataset]
-
 FRICTIONS = (0.0, 0.2, 1.0)
+
+#: What is shown of the measurements.
+MEASURED = ["floor_response", "response_at_centre", "peak_count"]
 
 #: Half of the part of a slab that is shown, in radii.
 REACH = 30.0
@@ -63,24 +65,10 @@ class Slab:
 
     states: tuple[xr.Dataset, ...]  #: with one list of contacts; rest is the first state of each
     chosen: list[tuple[int, int]]  #: for each force, which of ``states``, and which state of it
-    rows: list[xr.Dataset]  #: for each force, what is measured
+    measured: xr.Dataset  #: along ``force``
     friction: float
     scene: Scene  #: with all else
     motion: float | None = None  #: smallest force whose state dynamics from rest reached; below it lies the load path
-
-    def measured(self, name: str) -> NDArray[Any]:
-        """(k, ...) a variable of ``rows``."""
-        return np.stack([row[name].values for row in self.rows])
-
-    @property
-    def x(self) -> FloatArray:
-        """(floor_disk,)"""
-        return self.rows[0]["x"].values
-
-    @property
-    def response(self) -> FloatArray:
-        """(k, floor_disk) floor force per applied force."""
-        return self.measured("floor_response")
 
 
 def payload(friction: Datasets, phase: Datasets | None = None) -> dict[str, Any] | None:
@@ -108,19 +96,21 @@ def payload(friction: Datasets, phase: Datasets | None = None) -> dict[str, Any]
 
 def _described(slab: Slab, contacts: _Contacts, study: Datasets) -> dict[str, Any]:
     """A slab as the page has it; ``study`` has the stored events."""
-    shown = np.abs(slab.x) <= REACH + 0.5
+    measured = slab.measured
+    x, response = measured["x"].values, measured["floor_response"].values
+    shown = np.abs(x) <= REACH + 0.5
     return {
         "friction": slab.friction,
         "about": _about(slab),
         "about_set": typeset(_about(slab)),
         "contacts": len(contacts.lines),
-        "forces": slab.measured("force").tolist(),
+        "forces": measured["force"].values.tolist(),
         "height": round(contacts.height, 2),
-        "x": _rounded(slab.x[shown], 2),
-        "response": [_rounded(row, 4) for row in slab.response[:, shown]],
-        "centre": _rounded(slab.measured("response_at_centre"), 6),
-        "peaks": slab.measured("peak_count").astype(int).tolist(),
-        "symmetric": [asymmetry(slab.x, row) <= ASYMMETRY for row in slab.response],
+        "x": _rounded(x[shown], 2),
+        "response": [_rounded(row, 4) for row in response[:, shown]],
+        "centre": _rounded(measured["response_at_centre"].values, 6),
+        "peaks": measured["peak_count"].values.astype(int).tolist(),
+        "symmetric": [asymmetry(x, row) <= ASYMMETRY for row in response],
         "walls": slab.scene.resolved_wall.friction,
         "motion": slab.motion,
         "paper": [
@@ -179,9 +169,10 @@ def _slabs(datasets: Datasets) -> Iterator[Slab]:
                 replaced = source == 0 and motion is not None and force >= motion
                 if force > 0.0 and here.size and not replaced:
                     chosen.append((source, k))
-                    rows.append(measured.isel(force=int(here[0])))
+                    rows.append(measured[MEASURED].isel(force=int(here[0])))
         scene = Scene.from_text(datasets[name].attrs["scene"])
-        yield Slab(tuple(states for states, _ in sources), chosen, rows, friction, scene, motion)
+        shown = xr.concat(rows, "force", coords="minimal", compat="override")
+        yield Slab(tuple(states for states, _ in sources), chosen, shown, friction, scene, motion)
 
 
 @dataclass(frozen=True)
@@ -219,7 +210,7 @@ class _Contacts:
             found.append((added[chosen], (touching[0] & ~touching)[chosen], slides[chosen]))
         added, opened, sliding = map(np.concatenate, zip(*found, strict=True))
         lines = np.rint(10.0 * np.concatenate([place[first], place[second]], axis=1)).astype(np.int16)
-        strength = added / slab.measured("force").astype(float)[:, None]
+        strength = added / slab.measured["force"].values[:, None]
         return cls(lines, strength, opened, sliding, float(place[:, 1].max()) + 1.0)
 
     def bytes(self, strongest: float) -> bytes:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from importlib import resources
 from typing import Any
 
@@ -13,44 +12,27 @@ from granular_response.scene import text
 
 from . import markdown as tables
 
-
-@dataclass(frozen=True)
-class Reading:
-    """Where the paper leaves a choice: what is chosen, and one of the other options."""
-
-    question: str
-    choice: str
-    option: str
+#: Where the paper leaves a choice: ``question``, ``choice`` and another ``option``, by the variant that tries the
+#: latter; the order is that of the table.
+READINGS: Mapping[str, Mapping[str, str]] = text.read(
+    resources.files(__package__).joinpath("readings.yaml").read_text("utf-8")
+)
 
 
-#: By the variant that tries the other option; the order is that of the table.
-READINGS: Mapping[str, Reading] = {
-    variant: Reading(**said)
-    for variant, said in text.read(resources.files(__package__).joinpath("readings.yaml").read_text("utf-8")).items()
-}
+def table(datasets: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """The ``slabs`` of the study ``sensitivity``, and ``rows`` of the readings that its datasets hold.
 
-
-@dataclass(frozen=True)
-class Table:
-    """All readings that were tried."""
-
-    slabs: tuple[str, ...]
-    #: each with the largest difference of the floor response in each slab, empty where it was not tried
-    rows: tuple[tuple[Reading, tuple[str, ...]], ...]
-
-
-def table(datasets: Mapping[str, xr.Dataset]) -> Table:
-    """The readings that the datasets of the study ``sensitivity`` hold.
-
-    A variant that has no words here is shown with those of the study.
+    Each has the largest difference of the floor response in each slab, empty where it was not tried. A variant that
+    has no words here is shown with those of the study.
     """
     values = _columns(datasets, "largest_difference")
     words = {variant: str(text) for column in _columns(datasets, "text").values() for variant, text in column.items()}
     rows = []
     for variant in sorted(words, key=[*READINGS, *words].index):
-        differences = (_short(column[variant]) if variant in column else "" for column in values.values())
-        rows.append((READINGS.get(variant, Reading(words[variant], "", "")), tuple(differences)))
-    return Table(tuple(name.replace("mu_", "µ = ") for name in values), tuple(rows))
+        differences = [_short(column[variant]) if variant in column else "" for column in values.values()]
+        said = READINGS.get(variant, {"question": words[variant], "choice": "", "option": ""})
+        rows.append((said, differences))
+    return {"slabs": [name.replace("mu_", "µ = ") for name in values], "rows": rows}
 
 
 def _short(value: float) -> str:
@@ -72,17 +54,17 @@ def _columns(datasets: Mapping[str, xr.Dataset], name: str) -> dict[str, dict[st
 def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
     """The table in Markdown, and below it what else the notes quote of the study. Equal data give equal text."""
     shown = table(datasets)
-    heads = ["interpretation", "choice", "other option", *(f"change, {slab}" for slab in shown.slabs)]
+    heads = ["interpretation", "choice", "other option", *(f"change, {slab}" for slab in shown["slabs"])]
     rows, before = [], ""
-    for reading, differences in shown.rows:
-        said = ("", "") if reading.question == before else (reading.question, reading.choice)
-        rows.append([*said, reading.option, *differences])
-        before = reading.question
+    for reading, differences in shown["rows"]:
+        said = ("", "") if reading["question"] == before else (reading["question"], reading["choice"])
+        rows.append([*said, reading["option"], *differences])
+        before = reading["question"]
     quoted = []
     for variant, name, form, what in _QUOTED:
         values = [form(column[variant]) for column in _columns(datasets, name).values() if variant in column]
         if values:
-            quoted.append(f"* {what}: {', '.join(values)} ({', '.join(shown.slabs)})")
+            quoted.append(f"* {what}: {', '.join(values)} ({', '.join(shown['slabs'])})")
     return "\n".join([tables.table(heads, rows), *([""] if quoted else []), *quoted])
 
 

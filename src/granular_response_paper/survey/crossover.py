@@ -30,7 +30,7 @@ the mean hangs on a few and leaves out the weakest.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -51,15 +51,18 @@ LEVELS = (CONFIDENCE[0], 0.16, 0.5, 0.84, CONFIDENCE[1])
 
 @dataclass(frozen=True)
 class Ensemble:
-    """Smoothed responses of the realizations of one case.
+    """Smoothed responses of the realizations of one case, and how they are judged.
 
-    ``force`` (k,); ``response`` (r, k, x), nan where a realization is not at rest; ``least``, how many realizations a
-    mean needs.
+    ``force`` (k,); ``response`` (r, k, x), nan where a realization is not at rest, on ``x`` from 0 to the reach, and to
+    its left too unless they were made symmetric; ``width`` of smoothing; ``least``, how many realizations a mean needs.
     """
 
     force: FloatArray
     response: FloatArray
+    x: FloatArray
+    width: float
     least: int = 1
+    tolerance: float = 0.0
 
     def means(self, weights: FloatArray) -> FloatArray:
         """(d, k, x) weighted means for ``weights`` (d, r); nan where less than ``least`` of the weight is at rest."""
@@ -79,6 +82,14 @@ class Ensemble:
     def mean(self) -> FloatArray:
         """(k, x) mean over all realizations."""
         return self.means(np.ones((1, len(self.response))))[0]
+
+    def at_rest(self, step: int) -> FloatArray:
+        """(r, x) responses of the realizations that are at rest at one step."""
+        return self.response[np.isfinite(self.response[:, step, 0]), step]
+
+    def shape(self, response: FloatArray) -> FloatArray:
+        """The :func:`shape` of symmetric responses (..., x)."""
+        return shape(self.x, response, self.width)
 
 
 def folded(response: FloatArray) -> FloatArray:
@@ -165,11 +176,6 @@ def crossover(force: FloatArray, shapes: FloatArray, tolerance: float = 0.0) -> 
     return float(value), int(kind)
 
 
-def ranked(force: FloatArray, kind: NDArray[np.int8]) -> FloatArray:
-    """Crossovers as numbers in their order: a bound lies beyond every force, -inf or inf."""
-    return np.where(kind == FOUND, force, np.where(kind == BELOW, -np.inf, np.inf))
-
-
 def weights(realizations: int, draws: int, seed: int) -> FloatArray:
     """(draws, realizations) how often each is drawn, with replacement; alike for cases of as many realizations."""
     return counted(np.random.default_rng(seed).integers(0, realizations, (draws, realizations)), realizations)
@@ -181,9 +187,7 @@ def counted(picked: NDArray[np.int64], realizations: int) -> FloatArray:
     return np.bincount(places.ravel(), minlength=len(picked) * realizations).reshape(-1, realizations).astype(float)
 
 
-def two_peaked_means(
-    ensemble: Ensemble, x: FloatArray, width: float, number: int, *, draws: int, seed: int, tolerance: float = 0.0
-) -> FloatArray:
+def two_peaked_means(ensemble: Ensemble, number: int, *, draws: int, seed: int) -> FloatArray:
     """(k,) part of the ``draws`` of ``number`` different realizations whose mean has two peaks.
 
     nan where fewer than ``number`` realizations are at rest.
@@ -191,10 +195,10 @@ def two_peaked_means(
     rng = np.random.default_rng(seed)
     result = np.full(len(ensemble.force), np.nan)
     for k in range(len(ensemble.force)):
-        rows = ensemble.response[np.isfinite(ensemble.response[:, k, 0]), k]
+        rows = ensemble.at_rest(k)
         if len(rows) >= max(number, ensemble.least):
             picked = rng.permuted(np.tile(np.arange(len(rows)), (draws, 1)), axis=1)[:, :number]
-            result[k] = np.mean(shape(x, rows[picked].mean(axis=1), width) > tolerance)
+            result[k] = np.mean(ensemble.shape(rows[picked].mean(axis=1)) > ensemble.tolerance)
     return result
 
 
@@ -206,34 +210,25 @@ def _samples(realizations: int, number: int, seed: int, draws: int, samples: int
         yield drawn[rng.integers(0, realizations, (samples, number))]
 
 
-def shapes_of_samples(responses: FloatArray, x: FloatArray, width: float, number: int, *, seed: int) -> FloatArray:
-    """(200, 400) shapes of means of ``number`` of symmetric responses (r, x), each row from a draw of these."""
+def shapes_of_samples(ensemble: Ensemble, step: int, number: int, *, seed: int) -> FloatArray:
+    """(200, 400) shapes of means of ``number`` of symmetric responses at a step, each row from a draw of these."""
+    responses = ensemble.at_rest(step)
     picked = _samples(len(responses), number, seed, draws=200, samples=400)
-    return np.stack([shape(x, responses[one].mean(axis=1), width) for one in picked])
+    return np.stack([ensemble.shape(responses[one].mean(axis=1)) for one in picked])
 
 
-def seen_in_samples(
-    ensemble: Ensemble,
-    x: FloatArray,
-    width: float,
-    number: int,
-    *,
-    seed: int,
-    tolerance: float = 0.0,
-    draws: int = 100,
-    samples: int = 400,
-) -> FloatArray:
+def seen_in_samples(ensemble: Ensemble, number: int, *, seed: int, draws: int = 100, samples: int = 400) -> FloatArray:
     """(draws,) parts of samples of ``number`` realizations whose mean has a crossover, each from a draw of them.
 
     As :func:`shapes_of_samples` draws them, but each with its whole load path. A mean needs as large a part of its
     realizations at rest as that of the ensemble.
     """
     count = len(ensemble.response)
-    few = Ensemble(ensemble.force, ensemble.response, int(np.ceil(number * ensemble.least / count)))
+    few = replace(ensemble, least=int(np.ceil(number * ensemble.least / count)))
 
     def part(picked: NDArray[np.int64]) -> float:
-        shapes = shape(x, few.means(counted(picked, count)), width)
-        return float(np.mean(passed(ensemble.force, grown(shapes), tolerance)[1] == FOUND))
+        shapes = few.shape(few.means(counted(picked, count)))
+        return float(np.mean(passed(few.force, grown(shapes), few.tolerance)[1] == FOUND))
 
     return np.array([part(picked) for picked in _samples(count, number, seed, draws, samples)])
 
@@ -289,31 +284,24 @@ def quantiles(draws: FloatArray) -> FloatArray:
 
 
 def cross(
-    ensemble: Ensemble,
-    x: FloatArray,
-    width: float,
-    *,
-    numbers: Sequence[int],
-    draws: int,
-    seed: int,
-    tolerance: float = 0.0,
-    others: Sequence[float] = (),
+    ensemble: Ensemble, *, numbers: Sequence[int], draws: int, seed: int, others: Sequence[float] = ()
 ) -> Crossing:
-    """The crossover of an ensemble of symmetric responses, by this tolerance and by others."""
-    shapes = shape(x, ensemble.mean(), width)
-    drawn = shape(x, ensemble.means(weights(len(ensemble.response), draws, seed)), width)
+    """The crossover of an ensemble of symmetric responses, by its tolerance and by others."""
+    shapes = ensemble.shape(ensemble.mean())
+    drawn = ensemble.shape(ensemble.means(weights(len(ensemble.response), draws, seed)))
     fits = grown(drawn)
 
     def at(limit: float) -> Crossover:
-        found = ranked(*passed(ensemble.force, fits, limit))
+        each, kinds = passed(ensemble.force, fits, limit)
+        found = np.where(kinds == FOUND, each, np.where(kinds == BELOW, -np.inf, np.inf))  # bounds beyond every force
         force, kind = crossover(ensemble.force, shapes, limit)
         return Crossover(force, np.int8(kind), quantiles(found), found)
 
     used = ensemble.force[np.isfinite(shapes)]
-    parts = [two_peaked_means(ensemble, x, width, n, draws=draws, seed=seed, tolerance=tolerance) for n in numbers]
-    seen = seen_in_samples(ensemble, x, width, min(numbers), seed=seed, tolerance=tolerance)
+    parts = [two_peaked_means(ensemble, number, draws=draws, seed=seed) for number in numbers]
+    seen = seen_in_samples(ensemble, min(numbers), seed=seed)
     return Crossing(
-        **vars(at(tolerance)),
+        **vars(at(ensemble.tolerance)),
         limits=(float(used[0]), float(used[-1])) if used.size else (float("nan"), float("nan")),
         shape=shapes,
         shape_interval=np.quantile(drawn, LEVELS, axis=0).T,  # nan where a draw has none
@@ -360,28 +348,26 @@ class Singles:
         return Crossover(force, np.int8(kind), self.median_interval, self.median_draws)
 
 
-def singles(
-    ensemble: Ensemble, x: FloatArray, width: float, *, draws: int, seed: int, tolerance: float = 0.0
-) -> Singles:
-    """What the realizations of an ensemble do, on a grid that is symmetric about x = 0; ``x`` is its right half."""
-    shapes = shape_of_single(x, ensemble.response, width)
+def singles(ensemble: Ensemble, *, draws: int, seed: int) -> Singles:
+    """What the realizations of an ensemble do that were not made symmetric."""
+    shapes = shape_of_single(ensemble.x, ensemble.response, ensemble.width)
     drawn = weights(len(shapes), draws, seed)
     mean, means = ensemble.mean(), ensemble.means(drawn)
     off = np.sqrt(((ensemble.response - mean) ** 2).mean(axis=-1) / (mean**2).mean(axis=-1))
-    square = Ensemble(ensemble.force, ensemble.response**2, ensemble.least)
+    square = replace(ensemble, response=ensemble.response**2)
 
     def deviation(squares: FloatArray, mean: FloatArray) -> FloatArray:
         return np.asarray(np.sqrt(np.maximum(squares - mean**2, 0.0)).mean(axis=-1))
 
-    force, kind = passed(ensemble.force, grown(shapes), tolerance)
+    force, kind = passed(ensemble.force, grown(shapes), ensemble.tolerance)
     value = np.where(kind == BELOW, -np.inf, np.nan_to_num(force, nan=ensemble.force[0]))
     censored = kind == ABOVE
     medians = censored_medians(value, censored, drawn)
     return Singles(
         spread=deviation(square.mean(), mean),
         spread_interval=quantiles(deviation(square.means(drawn), means)).T,
-        largest_step=float(largest_step(shape(x, folded(mean), width), lean(mean))),
-        largest_step_interval=quantiles(largest_step(shape(x, folded(means), width), lean(means))),
+        largest_step=float(largest_step(ensemble.shape(folded(mean)), lean(mean))),
+        largest_step_interval=quantiles(largest_step(ensemble.shape(folded(means)), lean(means))),
         shape=shapes,
         asymmetry=lean(ensemble.response),
         difference=off,

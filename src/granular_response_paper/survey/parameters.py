@@ -35,18 +35,10 @@ class Parameters(EnsembleGroup):
 
     def cases(self, block: str) -> list[Case]:
         """The cases of a block. Raises KeyError if there is no such block."""
-        usual = self.scene.packing.model_dump()["lattice_constant"]
-        return [
-            Case(
-                delta,
-                mu,
-                start,
-                entry.forces,
-                (entry.realizations or self.realizations) if delta else 1,
-                entry.wall_friction,
-            )
-            for entry in self.blocks[block]
-            for delta, mu, start in product(
-                entry.polydispersities, entry.frictions, entry.lattice_constants or (usual,)
-            )
-        ]
+        found = []
+        for entry in self.blocks[block]:
+            starts = entry.lattice_constants or (self.lattice_constant,)
+            number = entry.realizations or self.realizations
+            for delta, mu, start in product(entry.polydispersities, entry.frictions, starts):
+                found.append(Case(delta, mu, start, entry.forces, number if delta else 1, entry.wall_friction))
+        return found

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from matplotlib.ticker import LogLocator
 from numpy.typing import ArrayLike
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import different, family, label_ends, titles
 
 from .parameters import Parameters, varied
@@ -45,9 +44,7 @@ APART = {
 }
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``crossover_scaling``, ``crossover_scaling_regions`` and ``crossover_scaling_apart``."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     slabs, paths, powers = datasets["slabs"], datasets["paths"], datasets["powers"]
     return {
         "crossover_scaling": _against_layers(slabs, powers),
@@ -56,7 +53,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     slabs, powers = datasets["slabs"], datasets["powers"]
     drawn = {
         "crossover_scaling": of_layers(powers),
@@ -113,7 +110,7 @@ def _brackets(one: xr.Dataset, event: str) -> tuple[np.ndarray, np.ndarray]:
 
 def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     """(a) crossover, (b) region at the floor, (c) first opening against layers, with power laws; names beside them."""
-    figure, panels = style.figure(2, 2, width="double", height=5.6)
+    figure, panels = style.figure(2, 2, height=5.6)
     titles(panels.flat, NAMES.values())
     for event, axes in zip(NAMES, panels.flat, strict=False):
         exponents = []
@@ -168,7 +165,7 @@ def apart(layers: ArrayLike) -> list[int]:
 def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure:
     """Depth of the region of open contacts over that of the slab, against the scaled force, for each friction."""
     chosen = regions_of(powers)
-    figure, panels = style.figure(1, max(1, len(chosen)), width="double", height=2.7, sharey=True)
+    figure, panels = style.figure(1, max(1, len(chosen)), height=2.7, sharey=True)
     titles(panels[0], [name(powers, series) for series in chosen])
     for axes, series in zip(panels[0], chosen, strict=False):
         rows = _slabs_of(slabs, powers, series)
@@ -203,7 +200,7 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     """Crossover over its value at the smallest entry, against width, stiffness and confinement."""
     differs = powers["varied"].values
     kinds = [kind for kind in APART if (differs == kind).any()]
-    figure, panels = style.figure(1, max(1, len(kinds)), width="double", height=2.7)
+    figure, panels = style.figure(1, max(1, len(kinds)), height=2.7)
     titles(panels[0, : len(kinds)])
     for axes, kind in zip(panels[0], kinds, strict=False):
         for series, look in family(np.flatnonzero(differs == kind).tolist(), of="friction"):

@@ -6,14 +6,13 @@ from typing import Annotated, Literal
 
 import numpy as np
 import xarray as xr
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Description, Positive, Ratio, Sides, allowed
-from granular_response.scene.errors import Problem
+from granular_response.scene.base import Positive, Ratio, Sides, allowed
 from granular_response.state import FloatArray
 from granular_response_extensions.parameters import SurveyedGroup
-from granular_response_paper.parameters import SIZE, UNIT_LOAD, Growing, growing, over, some
+from granular_response_paper.parameters import SIZE, UNIT_LOAD, Checked, Checks, Growing, growing, over, some
 
 #: Rest without friction is found by statics at every size, and is the same preparation for all.
 _SLAB = UNIT_LOAD.updated({"preparation.gravity": "frictionless", "contact.stiffness_ratio": 0.8})
@@ -33,7 +32,7 @@ Layers = Annotated[
 ]
 
 
-class Series(Description):
+class Series(Checked):
     """Slabs that differ in one quantity: the list that has several entries."""
 
     name: Annotated[str, Field(strict=True, min_length=1), allowed("must be a name")]
@@ -55,19 +54,12 @@ class Series(Description):
         "constant", description="as weight: this force is that of 15 layers, and in proportion to layers."
     )
 
-    @model_validator(mode="after")
-    def _check(self) -> Series:
-        for key, numbers in (("layers", self.layers), ("surveyed", self.heights)):
-            if any(layers % 2 == 0 for layers in numbers):
-                raise Problem("must be odd", key=(key,), value=list(getattr(self, key)))
-        try:
-            growing(self.heights)
-        except Problem:
-            raise Problem("must be growing numbers", key=("surveyed",), value=list(self.surveyed)) from None
-        several = [name for name in VARIED if self._several(name)]
-        if len(several) != 1:
-            raise Problem(f"must have several entries in one of {', '.join(VARIED)}", key=("name",), value=self.name)
-        return self
+    def checks(self) -> Checks:
+        yield "layers", all(layers % 2 for layers in self.layers), "must be odd"
+        yield "surveyed", all(layers % 2 for layers in self.surveyed), "must be odd"
+        yield "surveyed", self.heights == tuple(sorted({*self.heights})), "must be growing numbers"
+        several = sum(map(self._several, VARIED))
+        yield "name", several == 1, f"must have several entries in one of {', '.join(VARIED)}"
 
     @property
     def varied(self) -> str:
@@ -90,20 +82,11 @@ def varied(slabs: xr.Dataset, name: str) -> FloatArray:
     return np.asarray(found / slabs["layers"].values if name in per else found, float)
 
 
-def _different_names(series: tuple[Series, ...]) -> tuple[Series, ...]:
-    names = [one.name for one in series]
-    if len(set(names)) < len(names):
-        raise Problem("must have different names")
-    return series
-
-
 class Parameters(SurveyedGroup):
     scene: Annotated[Scene, over(_SLAB, *SIZE, *_DECIDED)] = Field(
         _SLAB, description="Base scene; walls are twice as stiff as the disks."
     )
-    series: Annotated[tuple[Series, ...], AfterValidator(some), AfterValidator(_different_names)] = Field(
-        description="Slabs that are compared."
-    )
+    series: Annotated[tuple[Series, ...], AfterValidator(some)] = Field(description="Slabs that are compared.")
     visible: Positive = Field(description="Dip of the floor response at x = 0, per largest value, that is two peaks.")
     first_force: Positive = Field(description="Least force, over the force of horizontal contacts at rest.")
     factor: Annotated[float, Field(strict=True, gt=1, le=2), allowed("must be a number above 1, at most 2")] = Field(
@@ -118,3 +101,7 @@ class Parameters(SurveyedGroup):
     @property
     def surveyed(self) -> bool:
         return any(one.surveyed for one in self.series)
+
+    def checks(self) -> Checks:
+        yield from super().checks()
+        yield "series", len({one.name for one in self.series}) == len(self.series), "must have different names"

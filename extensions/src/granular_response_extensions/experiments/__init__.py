@@ -1,4 +1,2 @@
-"""Figure group ``experiments``."""
-
 #: Direction of the lattice below the horizontal, in degrees.
 LATTICE = 60.0

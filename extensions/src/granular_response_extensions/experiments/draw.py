@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -12,7 +10,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response_extensions.panels import GUIDE
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import DOTTED, banded, family, polarised, titles
 
 from . import LATTICE
@@ -26,11 +24,9 @@ TITLES = "vertical force", "oblique force", "widths", "moved disks"
 DOTS = GUIDE | {"linestyle": DOTTED}
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``experiments`` from ``means`` and ``packings``, ``experiments_images`` from ``picture_K`` and ``means``."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     means, packings = datasets["means"], datasets["packings"]
-    figure, panels = style.figure(2, 3, width="double", height=5.2)
+    figure, panels = style.figure(2, 3, height=5.2)
     force, straight = means["force_applied"].values, means["angle_applied"].values == 90.0
     known = straight & np.isfinite(means["contrast"].values[:, 0])
     _, starts = np.unique(means["packing"].values[known], return_index=True)
@@ -50,7 +46,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return {"experiments": figure, "experiments_images": _images(datasets)}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     p = parameters
     said = of_scene(p.base, polydispersity=None, packing=None, width=p.width)
     sizes = ", ".join(f"{name}: {packing.build().n} disks" for name, packing in p.packings.items())
@@ -114,11 +110,11 @@ def _moves(axes: Axes, packings: xr.Dataset, cases: list[int]) -> None:
     axes.legend(fontsize=6, loc="upper left", handlelength=1.6)
 
 
-def _images(datasets: Mapping[str, xr.Dataset]) -> Figure:
+def _images(datasets: Datasets) -> Figure:
     """Above one packing between crossed polarisers, below the mean force of all."""
     pictures = {int(name.removeprefix("picture_")): one for name, one in datasets.items() if name.startswith("picture")}
     means, number = datasets["means"], max(1, len(pictures))
-    figure, panels = style.figure(2, number, width="double", height=3.9)
+    figure, panels = style.figure(2, number, height=3.9)
     for (case, one), (above, below) in zip(pictures.items(), panels.T, strict=False):
         half = polarised(above, one, float(one["total_force"].max()), pixels=PIXELS)
         field = means["force"].isel(case=case).sel(estimate="mean", x=slice(-half, half)).dropna("depth", how="all")

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from granular_response.scene import Load, PouredPacking, Scene, SlabPacking
 from granular_response.scene.base import Count, Description, Index, Positive
-from granular_response.scene.errors import Problem
 from granular_response.state import FloatArray
-from granular_response_paper.parameters import UNIT_LOAD, SceneGroup, over, some
+from granular_response_paper.parameters import UNIT_LOAD, Checks, SceneGroup, over, some
 
 Packing = Annotated[SlabPacking | PouredPacking, Field(discriminator="kind")]
 Ends = tuple[Positive, Positive]
@@ -45,15 +44,12 @@ class Parameters(SceneGroup):
     seed: Index = Field(description="Of the draws.")
     pictures: tuple[Index, ...] = Field(description="Cases of which the first packing that holds is drawn.")
 
-    @model_validator(mode="after")
-    def _check_cases(self) -> Parameters:
-        for case in self.cases:
-            if case.packing not in self.packings:
-                rule = f"must have packings among {', '.join(self.packings)}"
-                raise Problem(rule, key=("cases",), value=case.packing)
-        if self.pictures and max(self.pictures) >= len(self.cases):
-            raise Problem(f"must be below {len(self.cases)}", key=("pictures",), value=list(self.pictures))
-        return self
+    def checks(self) -> Checks:
+        for k, case in enumerate(self.cases):
+            known = case.packing in self.packings
+            yield f"cases.{k}.packing", known, f"must be one of packings ({', '.join(self.packings)})"
+        below = max(self.pictures, default=0) < len(self.cases)
+        yield "pictures", below, f"must be below {len(self.cases)}"
 
     @property
     def x(self) -> FloatArray:

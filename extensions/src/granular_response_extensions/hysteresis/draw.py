@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import different, family, material, titles, zero
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
+from granular_response_paper.panels import different, family, material, note, titles, zero
 
 from .parameters import Parameters
 
@@ -31,16 +30,14 @@ NAMES = {
 }
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``hysteresis_loops`` from ``curves`` and ``floor``, ``hysteresis_ranges`` from ``loops`` and ``events``."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
         "hysteresis_loops": _loops(datasets["curves"], datasets["floor"]),
         "hysteresis_ranges": _ranges(datasets["loops"], datasets["events"]),
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     curves = datasets["curves"]
     cases, one = looped(curves["polydispersity"].values, curves["friction"].values)
     lattices = [parameters.cases[case] for case in cases]
@@ -72,7 +69,7 @@ def looped(polydispersity: np.ndarray, friction: np.ndarray) -> tuple[list[int],
 
 def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
     """(a) loops of the lattices, (b) the floor under one of them."""
-    figure, ((loops, below),) = style.figure(1, 2, width="double", height=2.9)
+    figure, ((loops, below),) = style.figure(1, 2, height=2.9)
     friction = curves["friction"].values
     cases, one = looped(curves["polydispersity"].values, friction)
     colours = dict(family(different(friction[cases]), of="friction"))
@@ -83,7 +80,7 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
             again = DOTS | {"marker": style.MARKERS[k]} if branch == 2 else {}
             loops.plot(1e3 * x[branch], load[branch], **look | again)
         end, text = (1e3 * np.nanmax(x[0]), np.nanmax(load[0])), style.equals(style.FRICTION, friction[case])
-        loops.annotate(text, end, (3, 0), textcoords="offset points", va="center")
+        note(loops, text, end, (3, 0), va="center")
     loops.set(xlabel=rf"displacement of the loaded disk$\,/\,10^{{-3}}{style.RADIUS}$", ylabel=style.FORCE)
     loops.set_xlim(0.0, 1.16e3 * float(np.nanmax(curves["displacement"].values[cases])))
     loops.set_ylim(bottom=0.0)
@@ -103,7 +100,7 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
 
 def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
     """(a) what is left, (b), (c) what the first and the second loop lose, by force; (d) where ranges end."""
-    figure, panels = style.figure(2, 3, width="double", height=5.2, sharex="row", sharey="row")
+    figure, panels = style.figure(2, 3, height=5.2, sharex="row", sharey="row")
     grid = panels[0, 0].get_gridspec()
     for axes in panels[1]:
         axes.remove()

@@ -8,9 +8,8 @@ from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Part, Positive, Ratio
-from granular_response.scene.errors import Problem
 from granular_response_extensions.parameters import SurveyedGroup
-from granular_response_paper.parameters import UNIT_LOAD, Growing, over, some
+from granular_response_paper.parameters import UNIT_LOAD, Checks, Growing, over, some
 
 #: Keys of the scenes that cases decide.
 OF_CASES = ("packing.polydispersity", "packing.realization", "contact.friction", "loads")
@@ -29,16 +28,10 @@ class Case(Description):
     increments: Count = Field(description="States from each of these forces to the next one.")
 
 
-def _once(cases: tuple[Case, ...]) -> tuple[Case, ...]:
-    if len({(case.polydispersity, case.friction) for case in cases}) < len(cases):
-        raise Problem("must have each material once")
-    return cases
-
-
 class Parameters(SurveyedGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of the lattices.")
     disordered: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of all others.")
-    cases: Annotated[tuple[Case, ...], AfterValidator(some), AfterValidator(_once)] = Field(description="Materials.")
+    cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials.")
     left: Part = Field(
         description="A loop is reversible if it leaves no floor force changed by more than this part of the largest "
         "change under the load."
@@ -49,6 +42,11 @@ class Parameters(SurveyedGroup):
     @property
     def surveyed(self) -> bool:
         return any(case.surveyed for case in self.cases)
+
+    def checks(self) -> Checks:
+        yield from super().checks()
+        materials = {(case.polydispersity, case.friction) for case in self.cases}
+        yield "cases", len(materials) == len(self.cases), "must have each material once"
 
     def of(self, case: Case, realization: int) -> Scene:
         """The scene of one packing."""

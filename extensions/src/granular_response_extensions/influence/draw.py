@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 from matplotlib.collections import PatchCollection
@@ -13,8 +11,8 @@ from matplotlib.patches import Circle
 
 from granular_response.plot import style
 from granular_response_extensions.panels import materials
-from granular_response_paper.captions import Caption, lettered, of_group, of_scene
-from granular_response_paper.panels import titles, zero
+from granular_response_paper.captions import Caption, Datasets, lettered, of_group, of_scene
+from granular_response_paper.panels import note, titles, zero
 
 from .parameters import Parameters
 
@@ -24,13 +22,11 @@ REACH = 30.0
 LEAST = 0.8
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``influence_map`` from the dataset ``packings``, ``influence_saint_venant`` from ``saint_venant``."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {"influence_map": _maps(datasets["packings"]), "influence_saint_venant": _decay(datasets["saint_venant"])}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     maps = [case for case in parameters.cases if case.polydispersity == parameters.cases[-1].polydispersity]
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None)
     return of_group(
@@ -45,7 +41,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 def _maps(data: xr.Dataset) -> Figure:
     """A panel for each case with the polydispersity of the last one; disks that bear nothing stay white."""
     data = data.isel(case=data["polydispersity"].values == data["polydispersity"].values[-1])
-    figure, (panels,) = style.figure(1, data.sizes["case"], width="double", height=2.4, sharey=True)
+    figure, (panels,) = style.figure(1, data.sizes["case"], height=2.4, sharey=True)
     # the weight of a unit force is 1 where no floor disk is relieved; what exceeds that is pushed up and down
     largest = float(np.nanquantile(data["total"].values, 0.995))
     medians = np.nanmedian(data["total"].values, axis=1)
@@ -73,7 +69,7 @@ def _maps(data: xr.Dataset) -> Figure:
 
 def _decay(data: xr.Dataset) -> Figure:
     """(a) the difference against height over separation, (b) its power for each case."""
-    figure, ((falls, powers),) = style.figure(1, 2, width="double", height=3.2)
+    figure, ((falls, powers),) = style.figure(1, 2, height=3.2)
     cases = materials(data["polydispersity"], data["friction"])
     for case, (name, look) in enumerate(cases):
         one = data.isel(case=case, separation=0)
@@ -96,7 +92,7 @@ def _decay(data: xr.Dataset) -> Figure:
             powers.errorbar([case], [mean], error, capsize=3, **look | {"linestyle": "none", "markersize": 5})
     ends = np.array(data.attrs["fitted"], float)
     falls.plot(ends, 0.5 * (ends / ends[0]) ** -2.0, color=style.BLACK, linewidth=0.9, linestyle=(0, (4, 2)))
-    falls.annotate("elastic: power 2", (ends[0], 0.5), (2, 3), textcoords="offset points")
+    note(falls, "elastic: power 2", (ends[0], 0.5), (2, 3))
     style.logarithmic(falls)
     falls.set(xlabel="height / distance of the halves", ylabel="difference on the floor")
     falls.legend(loc="lower left")

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Positive, Ratio
-from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import MATERIAL, UNIT_LOAD, Counts, Positives, SceneGroup, over, some
+from granular_response_paper.parameters import MATERIAL, UNIT_LOAD, Checks, Counts, Positives, SceneGroup, over, some
 
 
 class Case(Description):
@@ -27,11 +26,7 @@ class Parameters(SceneGroup):
     margin: Positive = Field(description="From the side walls, within which no load is looked at, in radii.")
     fitted: Positives = Field(description="Least and largest height over distance of the halves that are fitted.")
 
-    @model_validator(mode="after")
-    def _check_fitted(self) -> Parameters:
-        if len(self.fitted) != 2 or self.fitted[0] >= self.fitted[1]:
-            raise Problem("must be two growing numbers", key=("fitted",), value=list(self.fitted))
+    def checks(self) -> Checks:
+        yield "fitted", len(self.fitted) == 2 and self.fitted[0] < self.fitted[1], "must be two growing numbers"
         half = 0.5 * self.scene.packing.build().width
-        if self.margin >= half:
-            raise Problem(f"must be below {half:g}, half the width of the slab", key=("margin",), value=self.margin)
-        return self
+        yield "margin", self.margin < half, f"must be below {half:g}, half the width of the slab"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from matplotlib.lines import Line2D
 from granular_response.plot import network, style
 from granular_response.theory.moduli import bulk_and_shear
 from granular_response_extensions.panels import materials
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import banded, outer, titles, zero
 
 from .parameters import Parameters
@@ -30,9 +29,7 @@ REACH = 20.0
 RANGE = -0.5, 1.0
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``moduli_packings`` and ``moduli_response`` from ``packings``, ``moduli_loaded`` from ``slabs``."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     packings = datasets["packings"]
     return {
         "moduli_packings": _moduli(packings),
@@ -41,7 +38,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     packing = f"slabs with periodic sides, {parameters.disks_per_layer} disks in a row for each layer"
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None, packing=packing)
     loaded = of_scene(parameters.lattice, friction=[slab.friction for slab in parameters.loaded.slabs])
@@ -67,7 +64,7 @@ def _mean_and_spread(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
 
 def _moduli(data: xr.Dataset) -> Figure:
     """(a) bulk and (b) shear modulus against coordination, affine and relaxed; (c) horizontal over vertical."""
-    figure, (panels,) = style.figure(1, 3, width="double", height=3.2)
+    figure, (panels,) = style.figure(1, 3, height=3.2)
     a, b, c, d = (data["moduli"].sel(modulus=name) for name in "abcd")
     bulk, shear = bulk_and_shear(a, b, c, d)
     shown = {
@@ -103,7 +100,7 @@ def _responses(data: xr.Dataset) -> Figure:
     """Mean response of the largest packings of each case over that of the slabs of their moduli."""
     cases = materials(data["polydispersity"], data["friction"])
     rows = -(-len(cases) // 3)
-    figure, panels = style.figure(rows, 3, width="double", height=0.5 + 1.9 * rows, sharex=True, sharey=True)
+    figure, panels = style.figure(rows, 3, height=0.5 + 1.9 * rows, sharex=True, sharey=True)
     place, texts = data["place"].values, []
     for case, ((name, _), axes) in enumerate(zip(cases, panels.flat, strict=False)):
         one = data.isel(case=case, size=int(np.nanargmax(data["layers"].values[case])), smoothing=0)
@@ -125,7 +122,7 @@ def _responses(data: xr.Dataset) -> Figure:
 
 def _maps(slabs: xr.Dataset) -> Figure:
     """r and sliding contacts of each slab at the force to be shown: the first at it or above, or the last one."""
-    figure, (panels,) = style.figure(1, slabs.sizes["slab"], width="double", height=2.2, sharey=True)
+    figure, (panels,) = style.figure(1, slabs.sizes["slab"], height=2.2, sharey=True)
     texts = []
     for k, axes in enumerate(panels):
         slab = slabs.isel(slab=k, step=np.isfinite(slabs["force"].values[k]))

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio, allowed
-from granular_response.scene.errors import Problem
 from granular_response_extensions.parameters import SurveyedGroup
-from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Growing, over, some
+from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Checked, Checks, Growing, over, some
 
 Rows = Annotated[int, Field(strict=True, ge=5), allowed("must be a whole number from 5 on")]
 Margin = Annotated[float, Field(strict=True, ge=0, lt=0.4), allowed("must be from 0 to below 0.4")]
@@ -21,7 +20,7 @@ _OF_A_LATTICE = (
 )  # fmt: skip
 
 
-class Case(Description):
+class Case(Checked):
     """Packings of one material."""
 
     polydispersity: Fraction = Field(description="delta.")
@@ -35,15 +34,11 @@ class Case(Description):
         """Realizations of the survey for each size."""
         return self.surveyed or (0,) * len(self.layers)
 
-    @model_validator(mode="after")
-    def _check_realizations(self) -> Case:
+    def checks(self) -> Checks:
         for key, counts in (("realizations", self.realizations), ("surveyed", self.further)):
-            if len(counts) != len(self.layers):
-                raise Problem("must have a number for each of the layers", key=(key,), value=list(counts))
-        if not all(map(sum, zip(self.realizations, self.further, strict=True))):
-            rule = "must be 1 or more for each of the layers, with those of the survey"
-            raise Problem(rule, key=("realizations",), value=list(self.realizations))
-        return self
+            yield key, len(counts) == len(self.layers), "must have a number for each of the layers"
+        some = all(map(sum, zip(self.realizations, self.further, strict=True)))
+        yield "realizations", some, "must be 1 or more for each of the layers, with those of the survey"
 
 
 class Slab(Description):
@@ -54,7 +49,7 @@ class Slab(Description):
     shown: Positive = Field(description="The force whose map is drawn, or the next one above it.")
 
 
-class Loaded(Description):
+class Loaded(Checked):
     """Incremental moduli of lattices under load."""
 
     scene: Annotated[Scene, over(UNIT_LOAD, *_OF_A_LATTICE)] = Field(default=UNIT_LOAD, description="A lattice.")
@@ -64,11 +59,9 @@ class Loaded(Description):
     horizontal_waves: Count = Field(description="Highest half waves of body forces along x.")
     vertical_waves: Count = Field(description="Highest half waves of body forces along z.")
 
-    @model_validator(mode="after")
-    def _check_rows(self) -> Loaded:
-        if self.scene.packing.model_dump()["layers"] < 2:
-            raise Problem("must be 2 or more: one row has no triangles", key=("scene", "packing", "layers"), value=1)
-        return self
+    def checks(self) -> Checks:
+        layers = self.scene.packing.model_dump()["layers"]
+        yield "scene.packing.layers", layers >= 2, "must be 2 or more: one row has no triangles"
 
 
 class Parameters(SurveyedGroup):

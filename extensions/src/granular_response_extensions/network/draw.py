@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_extensions.panels import GUIDE
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import DASHED, DOTTED, among, family, packing, titles
 
 from .parameters import Parameters
@@ -21,14 +20,12 @@ from .parameters import Parameters
 POLYDISPERSITY, FRICTION = 0.1, 0.2
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``network_statistics`` from the dataset ``statistics``."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     data = datasets["statistics"]
     rest = data.sel(state="rest")
     delta, mu = among(data["polydispersity"], [POLYDISPERSITY])[0], among(data["friction"], [FRICTION])[0]
     one = rest.sel(polydispersity=delta).mean("realization")
-    figure, panels = style.figure(2, 3, width="double", height=5.2)
+    figure, panels = style.figure(2, 3, height=5.2)
     (forces, spreads, limits), (fabric, contacts, excess) = panels
     for value, look in family(data["friction"].values, of="friction", marked=False):
         by = one.sel(friction=value)
@@ -81,7 +78,7 @@ def _against_friction(axes: Axes, values: xr.DataArray, **look: Any) -> None:
     axes.plot(friction, values.sel(state="loaded").mean("realization"), **look | open_)
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     said = of_scene(
         parameters.base, friction=None, wall_friction=None, polydispersity=None,
         realizations=parameters.realizations, force=parameters.force,

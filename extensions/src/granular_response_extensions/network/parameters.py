@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from granular_response.scene.base import Count, Part, Positive
-from granular_response.scene.errors import Problem
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
-from granular_response_paper.parameters import Coefficients
+from granular_response_paper.parameters import Checks, Coefficients
 
 #: Contacts are those that lie at least this far from the floor and from the highest disk, in radii.
 VERTICAL_MARGIN = 4.0
@@ -24,20 +23,14 @@ class Parameters(EnsembleGroup):
     @property
     def cases(self) -> dict[tuple[int, int], Case]:
         """By the places of polydispersity and friction."""
-        start = self.scene.packing.model_dump()["lattice_constant"]
         return {
-            (d, m): Case(delta, friction, start, (self.force,), self.realizations)
+            (d, m): Case(delta, friction, self.lattice_constant, (self.force,), self.realizations)
             for d, delta in enumerate(self.polydispersities)
             for m, friction in enumerate(self.frictions)
         }
 
-    @model_validator(mode="after")
-    def _check(self) -> Parameters:
-        if min(self.polydispersities) <= 0.0:
-            rule = "must be above 0: a lattice has one realization"
-            raise Problem(rule, key=("polydispersities",), value=list(self.polydispersities))
-        heights = self.scene.packing.build().position[:, 1]
-        if heights.max() <= 2.0 * VERTICAL_MARGIN:
-            rule = f"must be more: contacts nearer than {VERTICAL_MARGIN:g} radii to floor or top are left out"
-            raise Problem(rule, key=("scene", "packing", "layers"), value=self.scene.packing.model_dump()["layers"])
-        return self
+    def checks(self) -> Checks:
+        yield "polydispersities", min(self.polydispersities) > 0.0, "must be above 0: a lattice has one realization"
+        high = bool(self.scene.packing.build().position[:, 1].max() > 2.0 * VERTICAL_MARGIN)
+        rule = f"must be more: contacts nearer than {VERTICAL_MARGIN:g} radii to floor or top are left out"
+        yield "scene.packing.layers", high, rule

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import family, outer, titles
 
 from .parameters import Parameters
@@ -41,9 +40,7 @@ TAPPED = "v*X"
 LEAST_PART = 0.03
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``preparation`` from the brackets of the events, ``preparation_mobilized`` from the dataset ``mobilized``."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
         "preparation": _onsets(datasets["events"]), "preparation_mobilized": _against_mobilized(datasets["mobilized"])
     }  # fmt: skip
@@ -52,7 +49,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def _onsets(events: xr.Dataset) -> Figure:
     """A panel for each event, a row for each slab."""
     slabs = sorted(set(zip(events["wall_friction"].values.tolist(), events["friction"].values.tolist(), strict=True)))
-    figure, panels = style.figure(2, 3, width="double", height=4.8, sharex=True, sharey=True)
+    figure, panels = style.figure(2, 3, height=4.8, sharex=True, sharey=True)
     titles(panels.flat, PANELS.values())
     for axes, name in zip(panels.flat, PANELS, strict=True):
         _event(axes, events.isel(event=np.flatnonzero(events["name"].values == name)), slabs)
@@ -72,7 +69,7 @@ def _onsets(events: xr.Dataset) -> Figure:
 def _against_mobilized(data: xr.Dataset) -> Figure:
     """A panel for each event: its force against the part of the contacts that are fully mobilized at rest."""
     names = data["name"].values.tolist()
-    figure, (panels,) = style.figure(1, len(names), width="double", height=3.2, sharex=True, sharey=True)
+    figure, (panels,) = style.figure(1, len(names), height=3.2, sharex=True, sharey=True)
     titles(panels, [PANELS[name] for name in names])
     part, delta = 100.0 * data["mobilized_part"].isel(margin=0).values, data["polydispersity"].values
     taps, gravity = data["tap_amplitude"].values, data["gravity"].values
@@ -112,7 +109,7 @@ def _against_mobilized(data: xr.Dataset) -> Figure:
     return figure
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     frictions = sorted({part.friction for part in parameters.parts})
     said = of_scene(parameters.scene, force=parameters.forces, friction=frictions, wall_friction=None)
     disorder = sorted({part.polydispersity for part in parameters.parts if part.polydispersity})

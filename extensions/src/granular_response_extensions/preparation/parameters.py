@@ -5,29 +5,25 @@ from __future__ import annotations
 from itertools import product
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from granular_response.scene import Scene, SceneError
 from granular_response.scene.base import Count, Description, Fraction, Positive, Ratio
 from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, over
+from granular_response_paper.parameters import UNIT_LOAD, Checked, Checks, Growing, SceneGroup, over
 
 #: Keys of a scene that say how it came to rest.
 PREPARES = ("preparation.gravity", "preparation.ramp_time", "contact.damping_ratio")
 
 
-class Way(Description):
+class Way(Checked):
     """A way to prepare the slab."""
 
     name: Annotated[str, Field(strict=True, min_length=1)]
     changes: dict[str, Any] = Field(description="To the base scene, by dotted key.")
 
-    @model_validator(mode="after")
-    def _check(self) -> Way:
-        unknown = [key for key in self.changes if key not in PREPARES]
-        if unknown:
-            raise Problem(f"must be one of {', '.join(PREPARES)}", key=("changes", unknown[0]))
-        return self
+    def checks(self) -> Checks:
+        yield "changes", set(self.changes) <= set(PREPARES), f"must have keys among {', '.join(PREPARES)}"
 
 
 class Taps(Description):
@@ -66,25 +62,17 @@ class Parameters(SceneGroup):
     parts: tuple[Part, ...] = Field(min_length=1, description="The first one is ordered and untapped.")
     asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
 
-    @model_validator(mode="after")
-    def _check(self) -> Parameters:
+    def checks(self) -> Checks:
         names = [way.name for way in self.ways]
-        if len(set(names)) < len(names):
-            raise Problem("must have different names", key=("ways",), value=names)
+        yield "ways", len(set(names)) == len(names), "must have different names"
         for k, way in enumerate(self.ways):
             try:
                 self.scene.updated(way.changes)
             except SceneError as error:
-                raise Problem(str(error), key=("ways", str(k))) from None
-        if self.parts[0].polydispersity:
-            raise Problem("must be 0", key=("parts", "0", "polydispersity"), value=self.parts[0].polydispersity)
-        if self.parts[0].taps:
-            raise Problem("must be left out", key=("parts", "0", "taps"), value=self.parts[0].taps.model_dump())
+                raise Problem(str(error), key=("ways", k)) from None
+        yield "parts.0.polydispersity", not self.parts[0].polydispersity, "must be 0"
+        yield "parts.0.taps", self.parts[0].taps is None, "must be left out"
         for k, part in enumerate(self.parts):
-            for name in part.ways:
-                if name not in names:
-                    rule = f"must be one of the names in ways ({', '.join(names)})"
-                    raise Problem(rule, key=("parts", str(k), "ways"), value=name)
-            if part.to < self.forces[0]:
-                raise Problem("must not be below the first of forces", key=("parts", str(k), "to"), value=part.to)
-        return self
+            known = set(part.ways) <= set(names)
+            yield f"parts.{k}.ways", known, f"must be among the names in ways ({', '.join(names)})"
+            yield f"parts.{k}.to", part.to >= self.forces[0], "must not be below the first of forces"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import family, grey_limit, titles
 
 from .parameters import Parameters
@@ -23,11 +22,9 @@ REACH = 20.0
 PILES = {"supported": "side walls", "free": "none", "resisting": f"none, ${ROLLING}$"}
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``rolling_resistance`` and ``rolling_resistance_torque`` from the datasets of the study."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     thresholds, piles, slabs = (datasets[name] for name in ("thresholds", "piles", "slabs"))
-    figure, panels = style.figure(2, 3, width="double", height=5.2)
+    figure, panels = style.figure(2, 3, height=5.2)
     (least, floor, events), (*responses, couples) = panels
     _least(least, thresholds)
     _floor(floor, piles, thresholds)
@@ -43,7 +40,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return {"rolling_resistance": figure, "rolling_resistance_torque": turned}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     p = parameters
     said = of_scene(p.scene, friction=[slab.friction for slab in p.slabs])
     layers = ", ".join(map(str, p.layers))
@@ -124,7 +121,7 @@ def _couples(axes: Axes, slab: xr.Dataset) -> None:
 
 def _torques(slab: xr.Dataset) -> Figure:
     """What the antisymmetric stress takes at each row, and what couples hand on below it."""
-    figure, panels = style.figure(1, 2, width="double", height=2.8, sharex=True, sharey=True)
+    figure, panels = style.figure(1, 2, height=2.8, sharex=True, sharey=True)
     rows = np.arange(slab.sizes["line"])
     shares = {"antisymmetric": rows, "couple": rows + 0.5}
     for axes, (name, below) in zip(panels[0], shares.items(), strict=True):

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from granular_response.scene import PilePacking, Scene
 from granular_response.scene.base import Count, Description, NonNegative, Positive
-from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Growing, Rows, SceneGroup, over, some
+from granular_response_paper.parameters import UNIT_LOAD, Checks, Coefficients, Growing, Rows, SceneGroup, over, some
 
 _ROLLING = ("contact.rolling_friction", "wall.rolling_friction")
 _PILE = Scene(packing=PilePacking(), loads=())
@@ -46,9 +45,6 @@ class Parameters(SceneGroup):
     stress_width: Positive = Field(description="w of the Gaussian, in radii.")
     heights: Count = Field(description="Number of heights at which stresses are taken.")
 
-    @model_validator(mode="after")
-    def _check_range(self) -> Parameters:
-        if self.least_friction >= self.most_friction:
-            rule = f"must be above least_friction = {self.least_friction:g}"
-            raise Problem(rule, key=("most_friction",), value=self.most_friction)
-        return self
+    def checks(self) -> Checks:
+        least = self.least_friction
+        yield "most_friction", self.most_friction > least, f"must be above least_friction = {least:g}"

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -13,7 +10,7 @@ from scipy.special import erfc
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box, FloatArray
-from granular_response_paper.captions import Caption, lettered, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, lettered, of_group, of_scene
 from granular_response_paper.panels import Contacts, family, force_key, forces, titles
 
 from .parameters import Parameters
@@ -29,9 +26,7 @@ LEVELS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7)
 DIFFERENCE_LEVELS = (0.05, 0.3)
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig13_force_chains``, ``fig14_vertical_stress`` and ``fig15_force_profiles``."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
         "fig13_force_chains": _force_chains(datasets["forces"]),
         "fig14_vertical_stress": _vertical_stress(datasets["stress"]),
@@ -39,7 +34,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     scene, width = parameters.scene, parameters.stress_width
     frictions, profiles = list(parameters.frictions), list(parameters.profiles.frictions)
     given = of_scene(scene, force=parameters.force, frictions=frictions)
@@ -63,7 +58,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 def _force_chains(data: xr.Dataset) -> Figure:
     """The central third of the slab: the forces, and below them the forces times depth, which undoes their decay."""
     frictions = data["friction"].values
-    figure, panels = style.figure(2, len(frictions), width="double", height=4.2)
+    figure, panels = style.figure(2, len(frictions), height=4.2)
     width, disk, load = float(data["width"]), int(data["loaded_disk"]), float(data["force"])
     radius = data["radius"].values
     added = np.concatenate([data["contact_added_force"].values, data["wall_added_force"].values], axis=1)
@@ -78,8 +73,7 @@ def _force_chains(data: xr.Dataset) -> Figure:
             (panels[0, index], added[index], strongest, _round(load / 5.0), style.WEIGHT, LONGEST),
             (panels[1, index], deep, DEEP, 0.5, style.RADIUS, LONGEST_DEEP),
         ):
-            look: dict[str, Any] = {"facecolor": style.DISKS, "edgecolor": "none"}
-            network.draw_disks(axes, position[inside], radius[inside], **look)
+            network.draw_disks(axes, position[inside], radius[inside], facecolor=style.DISKS, edgecolor="none")
             forces(axes, contacts, vector, largest, shown=near, longest=longest)
             force_key(axes, (2.0 * width / 3.0 - 8.0, z + 3.0), key, largest, unit, longest=longest)
             network.draw_loaded_disk(axes, (x, z), float(radius[disk]))
@@ -99,7 +93,7 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
     fields = to_floor(data["stress_zz"].values, z, float(data["stress_width"]))
     names = list(map(_friction, data["friction"].values))
     rows, last = len(names) + 1, "abcdefgh"[len(names)]
-    figure, panels = style.figure(rows, 2, width="double", height=1.62 * rows + 0.3, sharex=True, sharey=True)
+    figure, panels = style.figure(rows, 2, height=1.62 * rows + 0.3, sharex=True, sharey=True)
     half = min(MAP_HALF_WIDTH, float(x.max()))
     largest = float(max(fields.max(), lattice.max()))
     furthest = float(np.abs(fields - lattice)[..., np.abs(x) <= half].max())
@@ -149,7 +143,7 @@ def to_floor(stress: FloatArray, z: FloatArray, width: float) -> FloatArray:
 def _force_profiles(data: xr.Dataset) -> Figure:
     """Fig. 15: a panel for each friction with a curve for each depth, over all contacts between two rows."""
     frictions, depths = data["friction"].values, data["depth"].values
-    figure, panels = style.figure(1, len(frictions), width="double", height=3.0, sharex=True)
+    figure, panels = style.figure(1, len(frictions), height=3.0, sharex=True)
     for column, axes in enumerate(panels[0]):
         for row, look in family(range(len(depths)), of="length", dashed=True):
             x, magnitude = (data[name].values[column, row] for name in ("contact_x", "magnitude"))

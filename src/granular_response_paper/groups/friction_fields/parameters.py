@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Description, Positive
-from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Positives, SceneGroup, over
+from granular_response_paper.parameters import UNIT_LOAD, Checks, Coefficients, Positives, SceneGroup, over
 
 
 class Profiles(Description):
@@ -29,12 +28,11 @@ class Parameters(SceneGroup):
     stress_half_width: Positive = Field(description="Of the grid, in radii.")
     profiles: Profiles
 
-    @model_validator(mode="after")
-    def _check_profiles(self) -> Parameters:
-        if not set(self.profiles.frictions) <= set(self.frictions):
-            rule = f"must be among frictions = {list(self.frictions)}"
-            raise Problem(rule, key=("profiles", "frictions"), value=list(self.profiles.frictions))
-        if self.stress_half_width < self.stress_spacing:
-            rule = f"must be at least stress_spacing = {self.stress_spacing:g}"
-            raise Problem(rule, key=("stress_half_width",), value=self.stress_half_width)
-        return self
+    def checks(self) -> Checks:
+        every, spacing = self.frictions, self.stress_spacing
+        yield (
+            "profiles.frictions",
+            set(self.profiles.frictions) <= set(every),
+            f"must be among frictions = {list(every)}",
+        )
+        yield "stress_half_width", self.stress_half_width >= spacing, f"must be at least stress_spacing = {spacing:g}"

@@ -1,1 +1,0 @@
-"""Figure group ``friction_linear_range``."""

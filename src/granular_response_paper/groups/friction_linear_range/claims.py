@@ -125,23 +125,23 @@ def reorganized(data: Data) -> Numbers:
     yield "", parts[0], parts[1] / parts[0]
 
 
-def _jump(data: Data) -> tuple[xr.Dataset, xr.Dataset]:
-    """Of the dynamic runs at large forces the last one before symmetry is lost, and those after it."""
+def _jump(data: Data, asymmetric: float) -> tuple[xr.Dataset, xr.Dataset]:
+    """Of the dynamic runs at large forces the last one before the asymmetry exceeds this, and those after it."""
     runs = data.get(GROUP, "large_forces").sortby("force")
-    lost = np.flatnonzero(runs["asymmetry"].values > 0.1)
+    lost = np.flatnonzero(runs["asymmetry"].values > asymmetric)
     needs(lost[:1].any(), "large_forces holds no forces on both sides of the loss of symmetry")
     return runs.isel(force=lost[0] - 1), runs.isel(force=slice(lost[0], None))
 
 
-def sharp(data: Data) -> Numbers:  # R5b
-    before, after = (runs["asymmetry"].values for runs in _jump(data))
+def sharp(data: Data, asymmetric: float) -> Numbers:  # R5b
+    before, after = (runs["asymmetry"].values for runs in _jump(data, asymmetric))
     yield "", after[0] - before
 
 
-def network_changes(data: Data) -> Numbers:  # R6c
+def network_changes(data: Data, asymmetric: float) -> Numbers:  # R6c
     states = data.get(GROUP, "large_force_states")
     states = states.assign_coords(force=states["force"])
-    forces = (float(runs["force"].values.flat[0]) for runs in _jump(data))
+    forces = (float(runs["force"].values.flat[0]) for runs in _jump(data, asymmetric))
     before, after = (at(states, force=force)["contact_status"].values != OPEN for force in forces)
     yield "", (before != after).sum() / before.sum()
 
@@ -155,9 +155,9 @@ def by_sliding(data: Data) -> Numbers:  # R6d
     yield "", (last == SLIDING).sum() / opened
 
 
-def mirror_images(data: Data) -> Numbers:
+def mirror_images(data: Data, asymmetric: float) -> Numbers:
     """R7. The paper's pair lies between 91 and 95 mg."""
-    _, after = _jump(data)
+    _, after = _jump(data, asymmetric)
     response, force, sign = (after[name].values for name in ("floor_response", "force", "asymmetry_sign"))
     apart = [
         float(np.abs(response[a] - response[b][::-1]).max() / response[a].max())

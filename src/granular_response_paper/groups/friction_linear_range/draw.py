@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -12,9 +12,8 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response.state import SLIDING
-from granular_response_paper.captions import WEIGHT, Caption, Value, of_group, of_scene, panels
-from granular_response_paper.panels import among, family, grey_limit, label_ends, titles, zero
+from granular_response_paper.captions import WEIGHT, Caption, Datasets, Value, of_group, of_scene
+from granular_response_paper.panels import among, family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import Parameters
 
@@ -45,9 +44,7 @@ PAPER_OPENINGS = {0.0: 0.75, 0.2: 4.0, 1.0: 6.0}
 PAPER_CROSSOVER, PAPER_THIRD_PEAK, PAPER_SYMMETRIC = 20.0, 40.0, 91.0
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """Figures by file stem, from the datasets of the study of the same name."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     response = datasets["response"]
     figures = {
         "fig06_linear_range": _linear_range(response),
@@ -65,7 +62,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return figures
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     response = datasets["response"]
     frictions = response["friction"].values.tolist()
 
@@ -91,18 +88,15 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         beyond, left = drawn(dynamic, DYNAMIC_FORCES), drawn(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
         given["fig16_large_forces"] = said(sorted({*left, *beyond}), [0.2, float(dynamic["friction"])])
         fields |= {"left": left, "beyond": beyond}
-    found = of_group("friction_linear_range", given, **fields)
     for friction, stem in CONTACTS:
         if f"states_mu_{friction:g}" in datasets:
-            shown = contact_forces(datasets[f"states_mu_{friction:g}"])
-            of_contacts = {"friction": friction, "panels": panels(shown)}
-            found |= of_group("friction_linear_range", {stem: said(shown, friction)}, **of_contacts)
-    return found
+            given[stem] = said(contact_forces(datasets[f"states_mu_{friction:g}"]), friction)
+    return of_group("friction_linear_range", given, **fields)
 
 
 def _linear_range(response: xr.Dataset) -> Figure:
     """Fig. 6."""
-    figure, ((panel,),) = style.figure(width="double", height=3.2)
+    figure, ((panel,),) = style.figure(height=3.2)
     ends = []
     elastic = float(response["response_at_centre"].isel(friction=-1).dropna("force")[0])
     band = elastic * (1.0 - LINEAR), elastic * (1.0 + LINEAR)
@@ -116,10 +110,8 @@ def _linear_range(response: xr.Dataset) -> Figure:
     panel.xaxis.set_major_formatter("{x:g}")
     panel.set(xlabel=style.FORCE, ylabel=style.RESPONSE_AT_CENTRE, ylim=(0.0, None))
     panel.set_xlim(right=2.0 * max(x for _, x, *_ in ends))
-    panel.annotate(
-        rf"$\pm${LINEAR:.0%}".replace("%", r" %"), (panel.get_xlim()[0], band[1]), (4.0, 3.0),
-        textcoords="offset points", va="bottom", fontsize=8, color=style.MUTED,
-    )  # fmt: skip
+    within = rf"$\pm${LINEAR:.0%}".replace("%", r" %")
+    note(panel, within, (panel.get_xlim()[0], band[1]), (4.0, 3.0), va="bottom", fontsize=8, color=style.MUTED)
     label_ends(panel, ends)
     for friction, force in PAPER_OPENINGS.items():
         last = force == max(PAPER_OPENINGS.values())
@@ -130,7 +122,7 @@ def _linear_range(response: xr.Dataset) -> Figure:
 
 def _profiles(response: xr.Dataset) -> Figure:
     """Fig. 7."""
-    figure, axes = style.figure(1, 2, width="double", height=3.0, sharey=True)
+    figure, axes = style.figure(1, 2, height=3.0, sharey=True)
     notes = {0.2: f"; paper: two peaks near {PAPER_CROSSOVER:g}", 1.0: ""}
     titles(axes[0], [style.equals(style.FRICTION, friction) + notes[friction] for friction in PROFILE_FRICTIONS])
     for panel, friction in zip(axes[0], PROFILE_FRICTIONS, strict=True):
@@ -144,7 +136,7 @@ def _profiles(response: xr.Dataset) -> Figure:
 
 def _friction_axis(axis: xr.Dataset, response: xr.Dataset) -> Figure:
     """Fig. 12."""
-    figure, ((panel,),) = style.figure(height=2.6)
+    figure, ((panel,),) = style.figure(width=style.SINGLE, height=2.6)
     curves = axis.sel(friction=among(axis["friction"], AXIS_FRICTIONS))
     _plot_profiles(panel, curves, "friction", response.isel(friction=-1, force=0))
     panel.set(ylabel=style.RESPONSE, ylim=(0.0, None))
@@ -154,7 +146,7 @@ def _friction_axis(axis: xr.Dataset, response: xr.Dataset) -> Figure:
 
 def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     """Fig. 16; the profile at the largest symmetric force of (b) is followed by those beyond the instability."""
-    figure, axes = style.figure(1, 2, width="double", height=2.9)
+    figure, axes = style.figure(1, 2, height=2.9)
     left, right = axes[0]
     one = response.sel(friction=LARGE_FRICTION)
     _plot_profiles(left, at_forces(one, LARGE_FORCES), "force", one.isel(force=0))
@@ -200,11 +192,11 @@ def _plot_profiles(panel: Axes, curves: xr.Dataset, along: Literal["force", "fri
 def _contacts(states: xr.Dataset, friction: float) -> Figure:
     """Figs. 8 and 9: the central third, one panel for each force."""
     stored, shown = states["force"].values, contact_forces(states)
-    figure, axes = style.figure(1, len(shown), width="double", height=2.1)
+    figure, axes = style.figure(1, len(shown), height=2.1)
     handles: dict[str, Any] = {}
     for panel, force in zip(axes[0], shown, strict=True):
         loaded = states.isel(state=int(np.flatnonzero(stored == force)[0]))
-        handles |= draw_state_changes(panel, states.isel(state=0), loaded, loaded["contact_status"].values == SLIDING)
+        handles |= draw_state_changes(panel, states.isel(state=0), loaded)
     mu = style.equals(style.FRICTION, friction)
     titles(axes[0], [f"{mu}, {style.equals(style.F_EXT, force, style.WEIGHT)}" for force in shown])
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), columnspacing=1.2)

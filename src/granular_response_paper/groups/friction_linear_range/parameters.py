@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, NonNegative, Positive, Ratio
-from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Growing, SceneGroup, over
+from granular_response_paper.parameters import UNIT_LOAD, Checks, Coefficients, Growing, SceneGroup, over
 
 
 class Extra(Description):
@@ -64,9 +63,6 @@ class Parameters(SceneGroup):
     dynamics: LargeForces
     equal_rows: EqualRows
 
-    @model_validator(mode="after")
-    def _check_frictions(self) -> Parameters:
-        if self.dynamics.friction not in self.frictions:
-            rule = f"must be one of frictions = {list(self.frictions)}"
-            raise Problem(rule, key=("dynamics", "friction"), value=self.dynamics.friction)
-        return self
+    def checks(self) -> Checks:
+        every = self.frictions
+        yield "dynamics.friction", self.dynamics.friction in every, f"must be one of frictions = {list(every)}"

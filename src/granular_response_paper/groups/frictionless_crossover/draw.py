@@ -1,13 +1,8 @@
-"""Figs. 3, 4 and 5 and the stiffness study: ordered slabs without friction under a growing force.
-
-Profiles are drawn in the interior of the slab, ten radii from its side walls. The curves of Fig. 5 end where the
-region of opened contacts reaches the floor (open marker). The band of ``fig05b_stiffness`` is the change of
-2 % that Sec. IV.C speaks of; stiffnesses for which gravity alone rearranges the lattice are left out there.
-"""
+"""Figs. 3, 4 and 5 and the stiffness study: ordered slabs without friction under a growing force."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -20,9 +15,8 @@ from matplotlib.ticker import FixedLocator
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response.state import SLIDING
-from granular_response_paper.captions import Caption, of_group, of_scene, panels, values
-from granular_response_paper.panels import family, grey_limit, label_ends, titles, zero
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene, values
+from granular_response_paper.panels import family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import Parameters
 
@@ -47,9 +41,7 @@ EVENTS = {
 PAPER_OPENING, PAPER_CHANGE, PAPER_STIFFNESSES, PAPER_SATURATION = 0.75, 0.02, (1e3, 1e5), 2e3
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """The figures of Sec. IV from the datasets of the study of the same name."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
         "fig03_frictionless_response": _response(datasets["response"], datasets["events"]),
         "fig04_frictionless_contacts": _contacts(datasets["rest"], datasets["states"]),
@@ -59,25 +51,24 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     def drawn(wanted: tuple[float, ...], dataset: str) -> list[float]:
         stored = datasets[dataset]["force"].values
         return stored[nearest(stored, wanted)].tolist()
 
     depths, stiffnesses = [n for n, _ in parameters.sizes], parameters.size_stiffnesses
-    slab, shown = of_scene(parameters.scene), drawn(NETWORK_FORCES, "states")
+    slab = of_scene(parameters.scene)
     deep = {**slab, "normal_stiffness": stiffnesses, "packing": f"slabs of {values(depths)} layers"}
     of_stiffness = {"force": drawn(STIFFNESS_FORCES, "stiffness"), "normal_stiffness": parameters.stiffnesses}
     return of_group(
         "frictionless_crossover",
         {
             "fig03_frictionless_response": {**slab, "force": drawn(PROFILE_FORCES, "response")},
-            "fig04_frictionless_contacts": {**slab, "force": shown},
+            "fig04_frictionless_contacts": {**slab, "force": drawn(NETWORK_FORCES, "states")},
             "fig05_teardrop": deep,
             "fig05b_stiffness": slab | of_stiffness,
             "fig05c_depth": {**deep, "force": parameters.size_forces},
         },
-        panels=panels(shown),
         stiffnesses=stiffnesses,
         compared=drawn((COMPARED_FORCE,), "sizes"),
     )
@@ -99,8 +90,8 @@ def _stiffness_is(value: float) -> str:
 
 
 def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
-    figure, ((profiles, centre),) = style.figure(1, 2, width="double", height=2.7, width_ratios=[1.45, 1.0])
-    data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
+    figure, ((profiles, centre),) = style.figure(1, 2, height=2.7, width_ratios=[1.45, 1.0])
+    data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))  # ten radii from the side walls and more
     x = data["x"].values
     chosen = nearest(data["force"].values, PROFILE_FORCES)
     grey_limit(profiles, x, data["floor_response"].values[0])
@@ -121,11 +112,14 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
             centre.axvline(middle, color=style.MUTED, linewidth=0.6, linestyle=(0, (4, 2)), zorder=0)
             # the last one is close to the one before, so its name goes to the other side
             side, shift = ("left", 2.0) if at == events.sizes["event"] - 1 else ("right", -1.5)
-            centre.annotate(
-                f"{EVENTS[str(name)]}, {middle:.2f}", (middle, 1.0), (shift, -4.0),
-                xycoords=("data", "axes fraction"), textcoords="offset points",
-                rotation=90, ha=side, va="top", fontsize=7, color=style.MUTED,
-            )  # fmt: skip
+            upright: dict[str, Any] = {
+                "rotation": 90,
+                "ha": side,
+                "va": "top",
+                "xycoords": centre.get_xaxis_transform(),
+            }
+            text = f"{EVENTS[str(name)]}, {middle:.2f}"
+            note(centre, text, (middle, 1.0), (shift, -4.0), fontsize=7, color=style.MUTED, **upright)
     style.paper_value(centre, PAPER_OPENING, f"paper: {PAPER_OPENING:g}", side="behind")
     centre.set_ylim(0.0, 1.65 * highest)
     centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)
@@ -137,11 +131,10 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
 
 def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
     chosen = nearest(states["force"].values, NETWORK_FORCES)
-    figure, (panels,) = style.figure(1, len(chosen), width="double", height=2.05)
+    figure, (panels,) = style.figure(1, len(chosen), height=2.05)
     handles: dict[str, LineCollection] = {}
     for axes, k in zip(panels, chosen, strict=True):
-        one = states.isel(force=k)
-        handles |= draw_state_changes(axes, rest.isel(state=0), one, one["contact_status"].values == SLIDING)
+        handles |= draw_state_changes(axes, rest.isel(state=0), states.isel(force=k))
     forces = states["force"].values[chosen]
     titles(panels, [style.equals(style.F_EXT, force, style.WEIGHT) for force in forces])
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
@@ -150,7 +143,7 @@ def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
 
 def _teardrop(sizes: xr.Dataset) -> Figure:
     each = _by_stiffness(sizes)
-    figure, panels = style.figure(len(each), 2, width="double", height=0.3 + 2.2 * len(each), sharex=True)
+    figure, panels = style.figure(len(each), 2, height=0.3 + 2.2 * len(each), sharex=True)
     for (deep, wide), slabs in zip(panels, each.values(), strict=True):
         for axes, name, label in ((deep, "teardrop_depth", style.DEPTH), (wide, "teardrop_width", style.WIDTH)):
             _growth(axes, slabs, name)
@@ -178,7 +171,7 @@ def _growth(axes: Axes, slabs: xr.Dataset, name: str) -> None:
 
 
 def _stiffness(data: xr.Dataset) -> Figure:
-    figure, ((centre, size, events),) = style.figure(1, 3, width="double", height=2.5)
+    figure, ((centre, size, events),) = style.figure(1, 3, height=2.5)
     k = data["normal_stiffness"].values
     held = data["new_neighbours"].values == 0
 
@@ -189,10 +182,8 @@ def _stiffness(data: xr.Dataset) -> Figure:
     centre.fill_between(
         [low, high], 1.0 - PAPER_CHANGE, 1.0 + PAPER_CHANGE, color=style.PAPER_BAND, linewidth=0.0, zorder=0
     )
-    centre.annotate(
-        f"paper: {PAPER_CHANGE:.0%}".replace("%", " %"), (high, 1.0 + PAPER_CHANGE), (0.0, 1.5),
-        textcoords="offset points", ha="right", fontsize=7, color=style.PAPER,
-    )  # fmt: skip
+    said = f"paper: {PAPER_CHANGE:.0%}".replace("%", " %")
+    note(centre, said, (high, 1.0 + PAPER_CHANGE), (0.0, 1.5), ha="right", fontsize=7, color=style.PAPER)
     centre.set_ylabel(f"{style.RESPONSE_AT_CENTRE},\nover that of the stiffest")
     centre.legend(title=style.FORCE)
 
@@ -226,7 +217,7 @@ def _stiffness(data: xr.Dataset) -> Figure:
 
 
 def _slabs(sizes: xr.Dataset) -> Figure:
-    figure, ((profiles, events),) = style.figure(1, 2, width="double", height=2.9)
+    figure, ((profiles, events),) = style.figure(1, 2, height=2.9)
     each = _by_stiffness(sizes)
     softest, slabs = next(iter(each.items()))
     at_force = slabs.isel(force=nearest(slabs["force"].values, [COMPARED_FORCE])[0])

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Positive, allowed
-from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, over
+from granular_response_paper.parameters import UNIT_LOAD, Checks, Growing, SceneGroup, over
 
 _FRICTIONLESS = UNIT_LOAD.updated({"contact.friction": 0.0})
 
@@ -35,8 +34,6 @@ class Parameters(SceneGroup):
     stiffnesses: Growing = Field(description="Normal stiffnesses of the first slab.")
     stiffness_forces: Growing = Field(description="On it at each of them.")
 
-    @model_validator(mode="after")
-    def _check(self) -> Parameters:
-        if self.region_layers < min(layers for layers, _ in self.sizes):
-            raise Problem("must be layers of one of sizes", key=("region_layers",), value=self.region_layers)
-        return self
+    def checks(self) -> Checks:
+        least = min(layers for layers, _ in self.sizes)
+        yield "region_layers", self.region_layers >= least, "must be layers of one of sizes"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import xarray as xr
@@ -10,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import family, titles
 
 from .parameters import Parameters
@@ -22,10 +21,8 @@ FORCE_ERROR, RESTART_ENERGY, PAPER_RATIO = 1e-2, 1e-22, 0.5
 BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.2), "handlelength": 2.4}
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """One figure with three panels."""
-    figure, axes = style.figure(1, 3, width="double", height=2.9)
+def draw(datasets: Datasets) -> dict[str, Figure]:
+    figure, axes = style.figure(1, 3, height=2.9)
     stop, restart, damping = axes[0]
     _stop_energy(stop, datasets["stop_energy"])
     _restart(restart, datasets["restart"])
@@ -34,7 +31,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return {"numerics": figure}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     return of_group("numerics", {"numerics": of_scene(parameters.scene, friction=None)}, p=parameters)
 
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, NonNegative, Positive, Ratio, allowed
-from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import Coefficients, Integrators, Positives, over, some
+from granular_response_paper.parameters import Checked, Checks, Coefficients, Integrators, Positives, over, some
 
 
 class Restart(Description):
@@ -27,17 +26,14 @@ class Damping(Description):
     stop_kinetic_energy: Positive
 
 
-class Swing(Description):
+class Swing(Checked):
     """What a run that has stopped would do next, with friction ``friction``."""
 
     steps: Count = Field(description="Time steps of the paper's size after the stop, about one slow oscillation.")
     read_every: Count = Field(description="Time steps between two readings.")
 
-    @model_validator(mode="after")
-    def _check(self) -> Swing:
-        if self.read_every > self.steps:
-            raise Problem(f"must be at most steps = {self.steps}", key=("read_every",), value=self.read_every)
-        return self
+    def checks(self) -> Checks:
+        yield "read_every", self.read_every <= self.steps, f"must be at most steps = {self.steps}"
 
 
 class Disorder(Description):

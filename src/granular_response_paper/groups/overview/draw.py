@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 from matplotlib.animation import FuncAnimation
@@ -14,8 +12,8 @@ from granular_response.plot import style
 from granular_response.plot.animation import FULL, Frames, animate
 from granular_response.plot.chains import draw_chains, draw_key, draw_response
 from granular_response.plot.pictures import Shown
-from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import packing, polarised
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
+from granular_response_paper.panels import note, packing, polarised
 
 from .parameters import Parameters
 
@@ -25,9 +23,7 @@ HALF_WIDTH = 30.0
 PIXELS = 680
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``overview``, the last frame of ``growing_force``, and ``photoelastic``."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     frames = Frames(_slabs(datasets), half_width=HALF_WIDTH, figure=Figure())
     frames.draw(-1)
     return {
@@ -37,12 +33,11 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def animations(datasets: Mapping[str, xr.Dataset]) -> dict[str, FuncAnimation]:
-    """``growing_force``."""
+def animations(datasets: Datasets) -> dict[str, FuncAnimation]:
     return {"growing_force": animate(_slabs(datasets), half_width=HALF_WIDTH, figure=Figure())}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     forces, experiment = parameters.forces, parameters.experiment
     given = of_scene(parameters.scene, friction=parameters.frictions)
     return of_group(
@@ -58,13 +53,13 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     )  # fmt: skip
 
 
-def _slabs(datasets: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+def _slabs(datasets: Datasets) -> dict[str, xr.Dataset]:
     """Those under a growing force, by their titles."""
     slabs = [slab for name, slab in datasets.items() if name.startswith("slab")]
     return {style.equals(style.FRICTION, float(slab["friction"])): slab for slab in slabs}
 
 
-def _overview(slabs: Mapping[str, xr.Dataset]) -> Figure:
+def _overview(slabs: Datasets) -> Figure:
     """A column for each friction; for the smallest and the largest force the chains above the response."""
     figure, panels = style.figure(4, len(slabs), width=6.2, height=4.9, height_ratios=[1.1, 0.85, 1.1, 0.85])
     curves = np.stack([np.atleast_2d(slab["floor_response"].values)[[0, -1]] for slab in slabs.values()])
@@ -101,6 +96,5 @@ def _photoelastic(packings: list[xr.Dataset]) -> Figure:
         left, bar = axes.get_xlim()[0] + 0.05 * half, 5.0
         top = axes.get_ylim()[1] - 1.5
         axes.plot([left, left + bar], [top, top], color=style.BLACK, linewidth=2.0, linestyle="-", clip_on=False)
-        note = {"textcoords": "offset points", "va": "center", "fontsize": 8}
-        axes.annotate(f"${bar:g}\\,{style.RADIUS}$", (left + bar, top), (4.0, 0.0), **note)
+        note(axes, f"${bar:g}\\,{style.RADIUS}$", (left + bar, top), (4.0, 0.0), va="center", fontsize=8)
     return figure

@@ -1,1 +1,0 @@
-"""Figure group ``phase_diagram``."""

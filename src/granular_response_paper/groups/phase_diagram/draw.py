@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from granular_response.plot import style
 from granular_response.scene.lattice import touching_largest
 from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, Value, of_group
-from granular_response_paper.panels import DASHED, DOTTED, different, family, label_ends, packing, titles
+from granular_response_paper.captions import Caption, Datasets, Value, of_group
+from granular_response_paper.panels import DASHED, DOTTED, different, family, label_ends, note, packing, titles
 from granular_response_paper.survey.crossover import ABOVE, FOUND
 
 from .parameters import Parameters
@@ -42,9 +42,7 @@ MARKERS = ("o", "s", "D", "P")
 UPWARDS, DOWNWARDS = r"$\uparrow$", r"$\downarrow$"
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """Fig. 22 and what stands behind it, from the datasets of the study of the same name."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     shown, shapes, others, realizations = (
         _usual(datasets[name]) for name in ("crossovers", "shapes", "definitions", "realizations")
     )
@@ -65,7 +63,7 @@ def _disorders(data: xr.Dataset) -> list[float]:
     return [delta for delta in different(data["polydispersity"]) if delta]
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     crossovers = _usual(datasets["crossovers"])
     frictions, deltas = (different(crossovers[name]) for name in ("friction", "polydispersity"))
     realizations = different(crossovers["realizations"][crossovers["polydispersity"].values > 0.0])
@@ -95,7 +93,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 def _diagram(crossovers: xr.Dataset) -> Figure:
     """Fig. 22: the crossover force of every polydispersity in one plane, beside the forces of experiments."""
-    figure, ((axes,),) = style.figure(width="double", height=3.9)
+    figure, ((axes,),) = style.figure(height=3.9)
     axes.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel=f"crossover force {style.FORCE}", **_FRICTION_AXES)
     axes.set(xlim=(-0.07, 1.16), ylim=FORCES)
     axes.yaxis.set_major_formatter("{x:g}")
@@ -153,23 +151,17 @@ def _bounds(axes: Axes, crossovers: xr.Dataset, looks: Iterable[tuple[float, dic
             above = what == ABOVE
             row = rows[friction, above] = rows.get((friction, above), -1) + 1
             inwards = (10.0 * row + 4.0) * (-1) ** above
-            axes.annotate(
-                f"{'>' if above else '≤'} {bound:g}", (friction, float(above)), (-5.0, inwards),
-                xycoords=axes.get_xaxis_transform(), textcoords="offset points", ha="right" if above else "left",
-                va="top" if above else "bottom", fontsize=8, color=look["color"],
-            )  # fmt: skip
+            text, (ha, va) = (f"> {bound:g}", ("right", "top")) if above else (f"≤ {bound:g}", ("left", "bottom"))
+            at_edge = {"xycoords": axes.get_xaxis_transform(), "ha": ha, "va": va, "color": look["color"]}
+            note(axes, text, (friction, float(above)), (-5.0, inwards), fontsize=8, **at_edge)
 
 
 def _certainty(crossovers: xr.Dataset, shapes: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:
-    """How well each crossover force is known: a column for each polydispersity.
-
-    Above, 68 and 95 % of the draws, other definitions of two peaks, and medians of realizations; below, how often the
-    mean of a few realizations has as many peaks as that of all. The lattice has one realization: keys stand there.
-    """
+    """How well each crossover force is known: a column for each polydispersity; keys stand below the lattice."""
     applied = shapes["applied_force"].values
     limits = FORCES[0], 2.0 * float(np.nanmax(applied))
     columns = _by_disorder(crossovers)
-    figure, panels = style.figure(2, len(columns), width="double", height=4.2, sharey="row")
+    figure, panels = style.figure(2, len(columns), height=4.2, sharey="row")
     handles: dict[str, Any] = {}
     for (delta, look), axes in zip(columns, panels[0], strict=True):
         here = _of(crossovers, delta)
@@ -284,7 +276,7 @@ def _starts(starts: xr.Dataset) -> Figure:
     """The dip under one force and the contacts at rest against the start; a column for each polydispersity."""
     deltas = different(starts["polydispersity"])
     frictions = [mu for mu in different(starts["friction"]) if mu <= 0.2 and mu != 0.05]
-    figure, panels = style.figure(2, len(deltas), width="double", height=4.0, sharex="col", sharey="row")
+    figure, panels = style.figure(2, len(deltas), height=4.0, sharex="col", sharey="row")
     names: list[str] = []
     for column, delta in enumerate(deltas):
         touching = touching_largest(delta)

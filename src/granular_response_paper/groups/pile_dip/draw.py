@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -16,7 +14,7 @@ from scipy.special import erfc
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field
 from granular_response.state import FLOOR, Box
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import Contacts, force_key, forces, titles
 
 from .parameters import Parameters
@@ -33,21 +31,19 @@ DRAWN = ["frictionless", "frictional"]
 KEY = 5.0
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig17_pile`` and ``fig17_pile_profiles`` from the datasets of the study of the same name."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     piles, stress = datasets["piles"], datasets["stress"]
     return {"fig17_pile": _pile(piles, stress), "fig17_pile_profiles": _profiles(piles, stress)}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     said = {**of_scene(parameters.scene), "width": parameters.stress_width}
     opened = datasets["piles"]["central_open_contacts"].sel(case=DRAWN).values.astype(int).tolist()
     return of_group("pile_dip", {"fig17_pile": said, "fig17_pile_profiles": said}, p=parameters, open=opened)
 
 
 def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
-    figure, panels = style.figure(3, 2, width="double", height=3.9)
+    figure, panels = style.figure(3, 2, height=3.9)
     shown = piles.sel(case=DRAWN)
     strongest = float(np.linalg.norm(shown["contact_force"].values, axis=-1).max())
     fields = stress["stress_zz"].sel(case=DRAWN) + _wall_part(shown, stress)
@@ -120,7 +116,7 @@ def _network(axes: Axes, one: xr.Dataset) -> None:
 
 def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     """Not in the paper: the stress at one height, and the floor forces, of all three states."""
-    figure, ((line, floor),) = style.figure(1, 2, width="double", height=2.5)
+    figure, ((line, floor),) = style.figure(1, 2, height=2.5)
     for index, (case, name) in enumerate(NAMES.items()):
         one = stress["profile_zz"].sel(case=case)
         line.plot(stress["x"], one, **style.line(index), label=name)

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import (
     Contacts,
+    banded,
     different,
     family,
     force_key,
@@ -58,10 +59,7 @@ START_NAMES = {
 PAPER_CONTACTS = 4.25
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig02_polydisperse_forces``, ``fig19_disordered_response``, ``fig20_disordered_linear_range``,
-    ``fig21_disordered_forces`` and ``packings`` from the datasets of the study of the same name."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
         "fig02_polydisperse_forces": _forces(datasets["forces"]),
         "fig19_disordered_response": _response(datasets["individual"], datasets["averages"]),
@@ -71,7 +69,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     }
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     scene, averages = parameters.scene, datasets["averages"]
     picture, single, linear = parameters.forces_picture, parameters.individual, parameters.linear_range
     disordered = sorted({case.polydispersity for case in parameters.columns if case.polydispersity})
@@ -120,7 +118,7 @@ def _shown(data: xr.Dataset) -> NDArray[np.intp]:
 
 def _forces(data: xr.Dataset) -> Figure:
     """Fig. 2: the slab under gravity, and in the middle third the incremental forces, and these times the depth."""
-    figure, panels = style.figure(2, 2, width="double", height=4.4, height_ratios=(1.0, 1.6))
+    figure, panels = style.figure(2, 2, height=4.4, height_ratios=(1.0, 1.6))
     grid = panels[0, 0].get_gridspec()
     for axes in panels[0]:
         axes.remove()
@@ -142,8 +140,7 @@ def _forces(data: xr.Dataset) -> Figure:
     )
     for axes, where, vector, largest, key, unit, limits in drawn:
         state = 0 if axes is wide else 1
-        look: dict[str, Any] = {"facecolor": style.DISKS, "edgecolor": "none"}
-        network.draw_disks(axes, position[state], radius, **look)
+        network.draw_disks(axes, position[state], radius, facecolor=style.DISKS, edgecolor="none")
         marks = {"color": "white", "linewidth": 0.4 if axes is wide else 0.9, "zorder": 1.5}
         network.draw_rotations(axes, position[state], radius, data["angle"].values[state], **marks)
         network.draw_box(axes, Box(width), top)
@@ -180,7 +177,7 @@ def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     frictions = different(data["friction"])
     starts = [name for name in START_NAMES if name in data["lattice_constant"].values]
     figure, panels = style.figure(
-        len(starts), len(frictions), width="double", height=0.5 + 1.95 * len(starts), sharex=True, sharey="col"
+        len(starts), len(frictions), height=0.5 + 1.95 * len(starts), sharex=True, sharey="col"
     )
     x = data["x"].values
     for row, start in enumerate(starts):
@@ -225,7 +222,7 @@ def _linear_range(data: xr.Dataset) -> Figure:
     deltas, frictions = different(data["polydispersity"])[::-1], different(data["friction"])
     looks = {friction: look | {"markersize": 3.0} for friction, look in family(frictions, of="friction")}
     wide = [1.0] * len(deltas) + [1.2]
-    figure, panels = style.figure(1, len(deltas) + 1, width="double", height=3.1, width_ratios=wide)
+    figure, panels = style.figure(1, len(deltas) + 1, height=3.1, width_ratios=wide)
     *responses, ends = panels[0]
     for axes, delta in zip(responses, deltas, strict=True):
         for friction in frictions:
@@ -285,14 +282,11 @@ def _range_ends(axes: Axes, data: xr.Dataset, look: dict[str, Any], name: str) -
 
 
 def _averages(data: xr.Dataset) -> Figure:
-    """Fig. 21: a panel for each polydispersity and friction, one scale in each row, forces growing from dark to light.
-
-    A number in brackets is that of the realizations at rest, where not all of them are.
-    """
+    """Fig. 21: a panel for each polydispersity and friction, one scale in each row, forces from dark to light."""
     disordered = data.isel(case=data["polydispersity"].values > 0.0)
     deltas, frictions = different(disordered["polydispersity"]), different(disordered["friction"])
     figure, panels = style.figure(
-        len(frictions), len(deltas), width="double", height=0.5 + 1.35 * len(frictions), sharex=True, sharey="row"
+        len(frictions), len(deltas), height=0.5 + 1.35 * len(frictions), sharex=True, sharey="row"
     )
     w = smoothed_by(data)
     x = data["x"].values
@@ -326,8 +320,7 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
         mean, error = one["mean"].values[step], one["standard_error"].values[step]
         count = int(one["count_at_rest"][step])
         label = f"{float(one['force'][step]):g}" + (f" ({count})" if count < total else "")
-        axes.fill_between(x, mean - error, mean + error, color=look["color"], alpha=0.25, linewidth=0.0)
-        axes.plot(x, mean, **look, linewidth=1.1, label=label)
+        banded(axes, x, mean, (mean - error, mean + error), look | {"linewidth": 1.1}, alpha=0.25, label=label)
     zero(axes)
     handles, names = axes.get_legend_handles_labels()
     axes.legend(handles[-len(steps) :], names[-len(steps) :], ncols=len(steps), **OVER)
@@ -339,7 +332,7 @@ def _packings(data: xr.Dataset) -> Figure:
     deltas = different(data["polydispersity"])
     colours = dict(zip(deltas, style.ordered_colours(len(deltas), of="polydispersity"), strict=True))
     disordered = [delta for delta in deltas if delta]
-    figure, panels = style.figure(2, max(len(disordered), 2), width="double", height=4.6)
+    figure, panels = style.figure(2, max(len(disordered), 2), height=4.6)
     grid = panels[0, 0].get_gridspec()
     for axes in panels.flat:
         axes.remove()

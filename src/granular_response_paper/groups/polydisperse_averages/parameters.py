@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio
-from granular_response.scene.errors import Problem
 from granular_response.scene.lattice import LatticeConstant
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
-from granular_response_paper.parameters import Coefficients, Growing, Positives, some
+from granular_response_paper.parameters import Checks, Coefficients, Growing, Positives, some
 
 
 class Cases(Description):
@@ -66,12 +65,11 @@ class Parameters(EnsembleGroup):
     @property
     def columns(self) -> list[Case]:
         """The cases, one polydispersity each."""
-        usual = self.scene.packing.model_dump()["lattice_constant"]
         return [
             Case(
                 delta,
                 entry.friction,
-                usual if entry.lattice_constant is None else entry.lattice_constant,
+                entry.lattice_constant or self.lattice_constant,
                 entry.forces,
                 1 if delta == 0.0 else entry.realizations or self.realizations,
             )
@@ -82,7 +80,7 @@ class Parameters(EnsembleGroup):
     def start(self, polydispersity: float) -> float | str:
         """The initial lattice of its first case, which the figures show; that of the scene without a case."""
         same = (case.lattice_constant for case in self.columns if case.polydispersity == polydispersity)
-        return next(same, self.scene.packing.model_dump()["lattice_constant"])
+        return next(same, self.lattice_constant)
 
     @property
     def pictured(self) -> list[int]:
@@ -96,22 +94,10 @@ class Parameters(EnsembleGroup):
             and picture.force in case.forces
         ]
 
-    @model_validator(mode="after")
-    def _check(self) -> Parameters:
-        shown = self.individual
-        if not any(case.polydispersity for case in self.columns):
-            raise Problem(
-                "must have a polydispersity above 0", key=("cases",), value=[c.model_dump() for c in self.cases]
-            )
-        if not self.pictured:
-            rule = "must be a realization and a force of one of the cases"
-            raise Problem(rule, key=("forces_picture",), value=self.forces_picture.model_dump())
-        if not any(
-            case.polydispersity == shown.polydispersity
-            and case.friction in shown.frictions
-            and shown.force in case.forces
-            for case in self.columns
-        ):
-            rule = "must be a polydispersity, frictions and a force of the cases"
-            raise Problem(rule, key=("individual",), value=shown.model_dump())
-        return self
+    def checks(self) -> Checks:
+        cases, shown = self.columns, self.individual
+        yield "cases", any(case.polydispersity for case in cases), "must have a polydispersity above 0"
+        yield "forces_picture", bool(self.pictured), "must be a realization and a force of one of the cases"
+        alike = [case for case in cases if case.polydispersity == shown.polydispersity and shown.force in case.forces]
+        there = any(case.friction in shown.frictions for case in alike)
+        yield "individual", there, "must be a polydispersity, frictions and a force of the cases"

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 
 import numpy as np
-import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
+from granular_response_paper.panels import family, note
 
 from .parameters import Parameters
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+def draw(datasets: Datasets) -> dict[str, Figure]:
     """Largest difference of the floor response from the reference, for every variant and friction."""
-    figure, ((axes,),) = style.figure(width="double", height=3.2)
+    figure, ((axes,),) = style.figure(height=3.2)
     # powers of ten as such
     texts = [str(text) for text in next(iter(datasets.values()))["text"].values[1:]]
     names = [re.sub(r"1e(-?\d+)", r"$10^{\1}$", text) for text in texts]
@@ -36,21 +33,11 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     axes.legend(loc="lower right", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
     peak = max(float(data["floor_response"].values[0].max()) for data in datasets.values())
     axes.axvline(peak, color=style.FAINT, linewidth=3.5, linestyle="-", zorder=0)
-    axes.annotate(
-        "peak of the response",
-        (peak, 0.5),
-        (-3.0, 0.0),
-        xycoords=("data", "axes fraction"),
-        textcoords="offset points",
-        rotation=90,
-        ha="right",
-        va="center",
-        fontsize=7,
-        color=style.MUTED,
-    )
+    look = {"xycoords": axes.get_xaxis_transform(), "rotation": 90, "ha": "right", "va": "center", "fontsize": 7}
+    note(axes, "peak of the response", (peak, 0.5), (-3.0, 0.0), color=style.MUTED, **look)
     return {"sensitivity": figure}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     said = of_scene(parameters.scene, force=parameters.force, friction=parameters.friction)
     return of_group("sensitivity", {"sensitivity": said})

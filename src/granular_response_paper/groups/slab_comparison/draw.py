@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import titles, zero
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
+from granular_response_paper.panels import note, titles, zero
 from granular_response_paper.records import alike
 
 from .parameters import Parameters
@@ -29,18 +28,16 @@ _KEYS = ("friction", "floor", "gravity", "disks_per_layer")
 _BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 2, "columnspacing": 1.4}
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig01b_slab_comparison`` from the dataset ``slabs`` of the study of the same name."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     data = datasets["slabs"]
-    figure, ((profiles, distances),) = style.figure(1, 2, width="double", height=3.5)
+    figure, ((profiles, distances),) = style.figure(1, 2, height=3.5)
     _profiles(profiles, data)
     _distances(distances, data)
     titles((profiles, distances), ("response and elastic slab", "distance"), stem=STEM)
     return {STEM: figure}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     cases = parameters.cases
     layers = sorted({n for case in cases for n in case.layers})
     said = of_scene(
@@ -93,17 +90,15 @@ def _distances(axes: Axes, data: xr.Dataset) -> None:
         axes.plot(*np.delete([layers, distance], apart, axis=1), **marked, label=_name(case))
         for k in apart:
             axes.plot(layers[k], distance[k], **marked | {"markerfacecolor": "white", "markeredgewidth": 0.9})
-            beside: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 7}
-            axes.annotate("gravity opened a row", (layers[k], distance[k]), (6, 0), **beside)
+            note(axes, "gravity opened a row", (layers[k], distance[k]), (6, 0), va="center", fontsize=7)
     layers = np.array([data["layers"].min(), data["layers"].max()], dtype=float)
     other = data["distance_other_floor"].values.min()
     axes.axhline(other, color=style.MUTED, linewidth=0.8, linestyle=(0, (2, 2)))
-    look: dict[str, Any] = {"textcoords": "offset points", "fontsize": 8}
-    axes.annotate("to the other floor's slab", (layers[0], other), (0, -4), va="top", color=style.MUTED, **look)
+    note(axes, "to the other floor's slab", (layers[0], other), (0, -4), va="top", color=style.MUTED, fontsize=8)
     thinnest = data["distance"].values[data["layers"].values == layers[0]]
     guide = 1.25 * thinnest.max() * layers[0] / layers
     axes.plot(layers, guide, color=style.FAINT, linewidth=0.8, zorder=0)
-    axes.annotate("$\\propto 1/n$", (layers[1], guide[1]), (0, -12), ha="right", **look)
+    note(axes, "$\\propto 1/n$", (layers[1], guide[1]), (0, -12), ha="right", fontsize=8)
     axes.set(xscale="log", yscale="log", xlabel="layers $n$", ylabel="distance / largest response")
     ticks = np.unique(data["layers"].values)
     axes.set_xticks(ticks, [f"{n:g}" for n in ticks])

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Description, Positive, Ratio
-from granular_response.scene.errors import Problem
+from granular_response.scene.base import Positive, Ratio
 from granular_response.theory.slab import Floor
-from granular_response_paper.parameters import SIZE, UNIT_LOAD, Rows, SceneGroup, over, some
+from granular_response_paper.parameters import SIZE, UNIT_LOAD, Checked, Checks, Rows, SceneGroup, over, some
 
 
-class Case(Description):
+class Case(Checked):
     """One material and shape, at several depths."""
 
     friction: Ratio = Field(description="Between disks.")
@@ -22,11 +21,9 @@ class Case(Description):
     disks_per_layer: Rows = Field(description="Disks of a row over number of rows.")
     layers: Annotated[tuple[Rows, ...], AfterValidator(some)] = Field(description="Numbers of rows.")
 
-    @model_validator(mode="after")
-    def _check_floor(self) -> Case:
-        if self.floor == "rough" and self.friction == 0.0:
-            raise Problem("must be smooth, or rough with friction above 0", key=("floor",), value=self.floor)
-        return self
+    def checks(self) -> Checks:
+        holds = self.floor == "smooth" or self.friction > 0.0
+        yield "floor", holds, "must be smooth, or rough with friction above 0"
 
 
 class Parameters(SceneGroup):
@@ -36,9 +33,5 @@ class Parameters(SceneGroup):
     force: Positive = Field(description="Small, in mean disk weights.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials and shapes.")
 
-    @model_validator(mode="after")
-    def _check_ratio(self) -> Parameters:
-        ratio = self.scene.contact.stiffness_ratio
-        if not ratio > 0.0:
-            raise Problem("must be above 0", key=("scene", "contact", "stiffness_ratio"), value=ratio)
-        return self
+    def checks(self) -> Checks:
+        yield "scene.contact.stiffness_ratio", self.scene.contact.stiffness_ratio > 0.0, "must be above 0"

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -14,14 +12,11 @@ from numpy.typing import NDArray
 
 from granular_response.plot import style
 from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, of_group
+from granular_response_paper.captions import Caption, Datasets, of_group
 from granular_response_paper.panels import titles
 
-from .parameters import Parameters
+from .parameters import BLOWS_UP, SETTLES, Parameters
 
-#: Outcomes of a kick in the order of their codes.
-OUTCOMES = ("settles", "cycles", "blows up", "no rest state")
-SETTLES, BLOWS_UP = OUTCOMES.index("settles"), OUTCOMES.index("blows up")
 #: Axes of the study of time steps with their labels.
 AXES = {
     "normal_stiffness": style.STIFFNESS,
@@ -35,23 +30,21 @@ AXES = {
 }
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``stability_steps``, a panel for each property of the scene."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {"stability_steps": _steps(datasets)}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     axes = sum(f"time_step_{name}" in datasets for name in AXES)
     return of_group("stability", {"stability_steps": {}}, p=parameters, last=chr(ord("a") + axes - 1))
 
 
-def _steps(datasets: Mapping[str, xr.Dataset]) -> Figure:
+def _steps(datasets: Datasets) -> Figure:
     """A panel for each property of the scene: where settling ends for each integrator, and where energy explodes."""
     studies = {name: datasets[f"time_step_{name}"] for name in AXES if f"time_step_{name}" in datasets}
     columns = min(4, len(studies))
     rows = -(-len(studies) // columns)
-    figure, panels = style.figure(rows, columns, width="double", height=0.5 + 1.9 * rows, sharey=True)
+    figure, panels = style.figure(rows, columns, height=0.5 + 1.9 * rows, sharey=True)
     for axes in panels.flat[len(studies) :]:
         axes.set_axis_off()
     for axes, (name, study) in zip(panels.flat, studies.items(), strict=False):

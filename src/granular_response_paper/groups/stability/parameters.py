@@ -10,6 +10,10 @@ from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Index, NonNegative
 from granular_response_paper.parameters import Integrators, Positives, over, some
 
+#: What becomes of a kick, and in words.
+SETTLES, CYCLES, BLOWS_UP, NO_REST = 0, 1, 2, 3
+OUTCOMES = ("settles", "cycles", "blows up", "no rest state")
+
 #: Scenes of trials start from the default one; which method a trial takes is its own matter.
 Base = Annotated[Scene, over(Scene())]
 

@@ -1,1 +1,0 @@
-"""Figure group ``stiffness_ratio_crossover``."""

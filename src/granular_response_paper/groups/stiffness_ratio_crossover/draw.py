@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,9 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.groups.stiffness_ratio_crossover.spring_model import draw_spring_model
-from granular_response_paper.panels import among, family, titles, zero
+from granular_response_paper.panels import among, family, note, titles, zero
 
 from .parameters import Parameters
 
@@ -25,16 +24,9 @@ ELASTIC = (0.1, 0.3, 0.6)
 PAPER = 0.2915, 0.3
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig10_stiffness_ratio`` from the datasets of the study of the same name, and ``fig11_spring_model``.
-
-    Fig. 10: (a) simulated profiles; (b) profiles of elastic bodies without horizontal springs; (c) how far the
-    profile at x = 0 is below the peaks beside it, with the ratios between which the simulated one changes its
-    form.
-    """
+def draw(datasets: Datasets) -> dict[str, Figure]:
     response, elastic, events = datasets["response"], datasets["elastic"], datasets["events"]
-    figure, ((simulated, bodies, dips),) = style.figure(1, 3, width="double", height=3.1)
+    figure, ((simulated, bodies, dips),) = style.figure(1, 3, height=3.1)
     force = float(response["force"])
     shown = among(response["stiffness_ratio"], DRAWN)
     looks = {ratio: look | {"linewidth": 1.1} for ratio, look in family(shown, of="other", marked=False, dashed=True)}
@@ -72,7 +64,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return {"fig10_stiffness_ratio": figure, **draw_spring_model()}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     events = datasets["events"]
     said = of_scene(parameters.scene, force=parameters.force, stiffness_ratio=parameters.ratios)
     return of_group(
@@ -103,5 +95,4 @@ def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr
     inset.tick_params(labelsize=7)
     for value, side in zip(PAPER, ("right", "left"), strict=True):
         style.paper_value(inset, value)
-        place: dict[str, Any] = {"ha": side, "textcoords": "offset points"}
-        inset.annotate(f"{value:g}", (value, inset.get_ylim()[1]), (0.0, 2.0), **place, fontsize=7, color=style.PAPER)
+        note(inset, f"{value:g}", (value, inset.get_ylim()[1]), (0.0, 2.0), ha=side, fontsize=7, color=style.PAPER)

@@ -15,10 +15,9 @@ _RADIUS = 0.36
 _COLOUR = {"n": style.BLUE, "t": style.VERMILION}
 
 
-@style.context()
 def draw_spring_model() -> dict[str, Figure]:
     """``fig11_spring_model``: three disks of the lattice, a coil for each spring, labelled as in Sec. V.C."""
-    figure, ((axes,),) = style.figure(width="single", height=3.0)
+    figure, ((axes,),) = style.figure(width=style.SINGLE, height=3.0)
     centre = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, np.sqrt(3.0)]])
     draw_disks(axes, centre, _RADIUS, facecolor="#ECECEC", edgecolor=style.MUTED, linewidth=0.8, zorder=3)
     axes.plot(*centre.T, linestyle="none", marker="o", markersize=2.5, color=style.BLACK, zorder=4)

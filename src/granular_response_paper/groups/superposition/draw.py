@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
 from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, lettered, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, lettered, of_group, of_scene
 from granular_response_paper.panels import banded, family, titles, zero
 
 from .parameters import FORCES, Parameters
@@ -27,30 +26,24 @@ LINEAR_UNTIL = 0.4
 HALF_WIDTH = 48.0
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig23_superposition``, ``fig24_superposition`` and ``fig24b_superposition_error``."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     figures = {stem: _responses(datasets["responses"], force) for stem, force in FORCES.items()}
     figures["fig24b_superposition_error"] = _errors(datasets)
     return figures
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     diameters = [2 * offset for offset in parameters.offsets]
     scene, distance = parameters.scene, [2.0 * d for d in diameters]
-    panels = lettered(f"d = {d:g} diameters" for d in diameters)
-    said = of_scene(scene, force=parameters.forces, distance=distance, realizations=parameters.realizations)
-    found = of_group(
+    given = {stem: of_scene(scene, force=force, distance=distance) for stem, force in FORCES.items()}
+    several = of_scene(scene, force=parameters.forces, distance=distance, realizations=parameters.realizations)
+    return of_group(
         "superposition",
-        {"fig24b_superposition_error": said},
-        p=parameters,
+        given | {"fig24b_superposition_error": several},
+        panels=lettered(f"d = {d:g} diameters" for d in diameters),
         tolerance=100.0 * parameters.tolerance,
         until=LINEAR_UNTIL,
     )
-    for stem, force in FORCES.items():
-        said = of_scene(scene, force=force, distance=distance)
-        found |= of_group("superposition", {stem: said}, panels=panels, force=force)
-    return found
 
 
 def _responses(dataset: xr.Dataset, force: float) -> Figure:
@@ -59,7 +52,7 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
     distances = data["distance"].values
     rows = (len(distances) + 1) // 2
     figure, grid = style.figure(
-        2 * rows, 2, width="double", height=0.45 + 2.4 * rows, sharex=True, sharey="row", height_ratios=[4, 1] * rows
+        2 * rows, 2, height=0.45 + 2.4 * rows, sharex=True, sharey="row", height_ratios=[4, 1] * rows
     )
     panels, strips = grid[::2], grid[1::2]
     x, responses = data["x"].values, data["floor_response"].values
@@ -91,9 +84,9 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
     return figure
 
 
-def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
+def _errors(datasets: Datasets) -> Figure:
     """Errors against force on the floor and at all contacts, and against depth; means over realizations."""
-    figure, panels = style.figure(1, 3, width="double", height=3.0, sharey=True)
+    figure, panels = style.figure(1, 3, height=3.0, sharey=True)
     floor, contacts, deep = panels[0]
     errors, linear = datasets["errors"], datasets["linear_range"]
     force, distances = errors["force"].values, errors["distance"].values

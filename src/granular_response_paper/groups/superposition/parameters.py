@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Positive
-from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import Counts, SceneGroup, Several, over
+from granular_response_paper.parameters import Checks, Counts, SceneGroup, Several, over
 
 _UNLOADED = Scene(loads=())
 
@@ -26,14 +25,9 @@ class Parameters(SceneGroup):
     width: Positive = Field(description="w of the Gaussian at x = 0, in radii.")
     tolerance: Positive = Field(description="Change that ends the linear range.")
 
-    @model_validator(mode="after")
-    def _check(self) -> Parameters:
-        if not set(FORCES.values()) <= set(self.forces):
-            shown = " and ".join(f"{force:g}" for force in FORCES.values())
-            raise Problem(
-                f"must have {shown} among them, which the figures show", key=("forces",), value=list(self.forces)
-            )
+    def checks(self) -> Checks:
+        shown = " and ".join(f"{force:g}" for force in FORCES.values())
+        there = set(FORCES.values()) <= set(self.forces)
+        yield "forces", there, f"must have {shown} among them, which the figures show"
         farthest = (int(self.scene.packing.build().row_count[-1]) - 1) // 2
-        if max(self.offsets) > farthest:
-            raise Problem(f"must be places from 1 to {farthest}", key=("offsets",), value=list(self.offsets))
-        return self
+        yield "offsets", max(self.offsets) <= farthest, f"must be places from 1 to {farthest}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import family, titles, zero
 
 from .parameters import Parameters
@@ -35,13 +34,11 @@ OVER: dict[str, Any] = {
 }
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """Figures by file stem, from the datasets of the study of the same name."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     states, copies = datasets["states"], datasets["copies"]
     with_states = states.sizes["state"] == 3
     rows = 2 if with_states else 1
-    figure, axes = style.figure(rows, 2, width="double", height=3.3 + 2.3 * (rows - 1), height_ratios=[1.3, 1.0][:rows])
+    figure, axes = style.figure(rows, 2, height=3.3 + 2.3 * (rows - 1), height_ratios=[1.3, 1.0][:rows])
     _protocols(axes[0, 0], datasets["runs"], datasets["held"])
     _copies(axes[0, 1], copies)
     loads = [_lost(datasets["runs"]), f"copies, {_load(float(copies['force']))}"]
@@ -55,7 +52,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return {"fig16s_symmetry_breaking": figure}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     steps = {step for protocol in parameters.protocols for step in protocol.time_steps}
     contacts = (
         " (e), (f) Contact network at the last symmetric and the first asymmetric force, ramp of "

@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
-from granular_response_paper.captions import Caption, of_group
+from granular_response_paper.captions import Caption, Datasets, of_group
 from granular_response_paper.panels import family, titles, zero
 
 from .parameters import Parameters
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig01_predictions`` from the dataset ``predictions`` of the study of the same name."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     data = datasets["predictions"]
-    figure, ((elliptic, hyperbolic),) = style.figure(1, 2, width="double", height=2.7, sharex=True, sharey=True)
+    figure, ((elliptic, hyperbolic),) = style.figure(1, 2, height=2.7, sharex=True, sharey=True)
 
     x = data["x"].values
     elliptic.plot(x, data["slab_rough"], **style.line(0), label="slab, rough floor")
@@ -53,6 +48,6 @@ def _rays(axes: Axes, angle: float) -> None:
     style.no_axes(inset)
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     poisson = float(datasets["predictions"]["poisson_ratio"])
     return of_group("theory", {"fig01_predictions": {}}, p=parameters, poisson=poisson)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
-from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import Contacts, force_key, forces, titles
 
 from .parameters import Parameters
@@ -18,13 +16,11 @@ from .parameters import Parameters
 KEY = 5.0
 
 
-@style.context()
-def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig18_torque`` from the datasets of the study of the same name."""
+def draw(datasets: Datasets) -> dict[str, Figure]:
     return {"fig18_torque": _chains(datasets["torques"])}
 
 
-def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     given = of_scene(parameters.scene, force=parameters.force, angle=parameters.angle, torque=parameters.torques)
     return of_group("torque", {"fig18_torque": given}, last=chr(ord("a") - 1 + len(parameters.torques)))
 
@@ -38,7 +34,7 @@ def _chains(data: xr.Dataset) -> Figure:
     limits = {"xlim": (left - 0.5, right + 0.5), "ylim": (low - 0.5, top + 2.4)}
     rows = (len(torques) + 2) // 3
     height = np.ptp(limits["ylim"]) / np.ptp(limits["xlim"]) * style.DOUBLE / 3.0 + 0.2
-    figure, panels = style.figure(rows, 3, width="double", height=float(height) * rows)
+    figure, panels = style.figure(rows, 3, height=float(height) * rows)
     added = np.concatenate([data["contact_added_force"].values, data["wall_added_force"].values], axis=1)
     largest = float(np.linalg.norm(added, axis=-1).max())
     for index, axes in enumerate(panels.ravel()):

@@ -8,23 +8,14 @@ from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Finite, NonNegative, Positive, allowed
-from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Numbers, SceneGroup, growing, over
-
-
-def _begins_with_0(values: tuple[float, ...]) -> tuple[float, ...]:
-    if values[0] != 0.0:
-        raise Problem("")
-    return values
+from granular_response_paper.parameters import UNIT_LOAD, Checks, Numbers, SceneGroup, growing, over
 
 
 class Parameters(SceneGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, "loads")] = UNIT_LOAD
     force: Positive = Field(description="In mean disk weights.")
     angle: Finite = Field(description="Of the force below the horizontal, to the right, in degrees.")
-    torques: Annotated[
-        Numbers, AfterValidator(_begins_with_0), allowed("must be a list of numbers that begins with 0")
-    ] = Field(description="Clockwise, in mean disk weights times the mean radius.")
+    torques: Numbers = Field(description="Clockwise, in mean disk weights times the mean radius.")
     stress_width: Positive = Field(description="w of the Gaussian, in radii.")
     stress_spacing: Positive = Field(description="Of the grid, in radii.")
     distances: Annotated[
@@ -33,3 +24,6 @@ class Parameters(SceneGroup):
         AfterValidator(growing),
         allowed("must be two or more growing numbers from 0 on"),
     ] = Field(description="Edges of the rings around the load in which changes are summed, in radii.")
+
+    def checks(self) -> Checks:
+        yield "torques", self.torques[0] == 0.0, "must be a list of numbers that begins with 0"

@@ -23,7 +23,7 @@ from granular_response.store.variables import RADII
 from granular_response.studies import LoadPath
 from granular_response_extensions.experiments import LATTICE
 from granular_response_extensions.experiments.parameters import Case, Parameters
-from granular_response_extensions.experiments.simulate.widths import FITS, lengths, powers
+from granular_response_extensions.experiments.simulate.widths import DEFINITIONS, FITS, lengths, powers
 from granular_response_paper.datasets import labelled, pictured
 from granular_response_paper.records import axes, column, labels, record, table
 from granular_response_paper.survey.crossover import CONFIDENCE, folded, weights
@@ -97,7 +97,7 @@ def statistics(asked: Parameters, x: FloatArray, height: float, force: FloatArra
     sideways = ANGLES[(ANGLES >= 40.0) & (ANGLES <= 80.0)]
     half, side = folded(stress), x[len(x) // 2 :]
     scaled = np.mean([d * np.interp(d * SCALED, side, half[int(d) - 1]) for d in depth[used]] or [SCALED * np.nan], 0)
-    length = lengths(side, half)[:, :2].T
+    length = lengths(side, half).T
     fit = np.polyfit(depth[used], length[:, used].T, 1) if used.sum() > 1 else np.full((2, 2), np.nan)
     return {
         "force": force, "stress": stress, "scaled": scaled, "direction": direction,
@@ -136,7 +136,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         depth=(np.arange(1.0, asked.depths + 1.0), f"depth below the loaded disk {RADII}"),
         x=(x, f"position from the loaded disk {RADII}"), angle=(ANGLES, "angle below the horizontal, in degrees"),
         t=(SCALED, "distance from the load per depth"),
-        definition=(("half_maximum", "half_force"), "definition of the width"),
+        definition=(DEFINITIONS, "definition of the width"),
         fit=(FITS, "fitted depths"), estimate=(("mean", "low", "high"), "mean, and 95 % of its bootstrap draws"),
     )  # fmt: skip
     used = {"largest_move": asked.largest_move, "fitted": list(asked.fitted), "width": asked.width}

@@ -11,12 +11,6 @@ Two definitions of the width:
 The root of the second moment is no third one. Under a force on a half plane the stress falls as ``t^-4``, so what lies
 beyond a cut-off at t adds to the moment as ``1 / t``: at five depths a quarter of it is still missing. In a packing
 that is noise and side walls.
-
-Where the profile has two peaks, two more lengths tell rays from elasticity: rays go apart as the depth and each spreads
-as its root, in an anisotropic elastic body both grow as the depth.
-
-* ``peak_position``: where the maximum is;
-* ``peak_width``: from there outwards to half of it.
 """
 
 from __future__ import annotations
@@ -26,19 +20,15 @@ import numpy as np
 from granular_response.observe.widths import last_passage
 from granular_response.state import FloatArray
 
-#: Two definitions of the width, then of two peaks.
-DEFINITIONS = ("half_maximum", "half_force", "peak_position", "peak_width")
+DEFINITIONS = ("half_maximum", "half_force")
 #: Depths that are used.
 FITS = ("all", "without the shallowest third", "without the deepest third")
-#: Fewest depths of a fit.
-FEWEST = 2
 
 
-def lengths(t: FloatArray, profile: FloatArray, tolerance: float = 0.0) -> FloatArray:
-    """(..., definition) lengths per depth of scaled profiles (..., len(t)); NaN where there is none.
+def lengths(t: FloatArray, profile: FloatArray) -> FloatArray:
+    """(..., definition) widths per depth of scaled profiles (..., len(t)); NaN where there is none.
 
-    The half force is of the whole force, 1, whatever the profile lacks. There are two peaks where the maximum exceeds
-    the value on the axis by more than ``tolerance`` of it.
+    The half force is of the whole force, 1, whatever the profile lacks.
     """
     shape, profile = profile.shape[:-1], profile.reshape(-1, len(t))
     found = np.full((len(profile), len(DEFINITIONS)), np.nan)
@@ -47,14 +37,11 @@ def lengths(t: FloatArray, profile: FloatArray, tolerance: float = 0.0) -> Float
     for row, (one, force) in enumerate(zip(profile, within, strict=True)):
         if not np.isfinite(one).all() or not one.max() > 0.0:
             continue
-        top = int(np.argmax(one))
-        found[row, 0] = outer = last_passage(t, one, 0.5 * one[top])
+        found[row, 0] = last_passage(t, one, 0.5 * one.max())
         beyond = np.flatnonzero(force >= 0.25)  # of one side
         if beyond.size:
             k = int(beyond[0])
             found[row, 1] = t[k - 1] + (0.25 - force[k - 1]) / (force[k] - force[k - 1]) * (t[k] - t[k - 1])
-        if one[0] < (1.0 - tolerance) * one[top]:
-            found[row, 2:] = t[top], outer - t[top]
     return found.reshape(*shape, len(DEFINITIONS))
 
 
@@ -70,7 +57,7 @@ def powers(depth: FloatArray, length: FloatArray) -> FloatArray:
 
 
 def _slope(depth: FloatArray, length: FloatArray) -> FloatArray:
-    if len(depth) < FEWEST:
+    if len(depth) < 2:
         return np.full(length.shape[:-1], np.nan)
     x = np.log(depth) - np.log(depth).mean()
     with np.errstate(invalid="ignore", divide="ignore"):

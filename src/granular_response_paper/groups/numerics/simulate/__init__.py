@@ -22,17 +22,8 @@ from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.numerics.parameters import Parameters
-from granular_response_paper.groups.numerics.simulate.runs import (
-    Readings,
-    Response,
-    bottom,
-    damp,
-    disordered,
-    respond,
-    restart,
-    stopped,
-    swing,
-)
+from granular_response_paper.groups.numerics.simulate import runs
+from granular_response_paper.groups.numerics.simulate.runs import Readings, Response
 from granular_response_paper.records import table_along
 from granular_response_paper.tasks import computed
 
@@ -56,7 +47,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
     packing = base.packing.build()
     from_load = "position from the loaded disk in mean disk radii"
-    x = variable("floor_disk", packing.position[bottom(packing), 0] - 0.5 * packing.width, from_load)
+    x = variable("floor_disk", packing.position[runs.bottom(packing), 0] - 0.5 * packing.width, from_load)
     by_stop = {(f, e): one for f, several in enumerate(found["stop_energy"]) for e, one in enumerate(several)}
     datasets = {
         "stop_energy": table_along(
@@ -110,16 +101,18 @@ def _tasks(asked: Parameters, grid: FloatArray) -> Mapping[str, list[partial[Any
     slabs = [slab.updated({"packing.realization": r}) for r in range(disorder.realizations)]
     return {
         "damping": [
-            partial(damp, verlet.updated({"contact.damping_ratio": ratio}), damping.time_step)
+            partial(runs.damp, verlet.updated({"contact.damping_ratio": ratio}), damping.time_step)
             for ratio in damping.ratios
         ],
-        "stop_energy": [partial(stopped, _scene(asked, mu), asked.stop_energies) for mu in asked.frictions],
-        "restart": [partial(restart, smooth, force, asked.restart.steps, READ_EVERY) for force in asked.restart.forces],
-        "swing": [partial(swing, scene, asked.swing.steps, asked.swing.read_every) for scene in bare],
-        "disorder": [partial(disordered, scene, grid.tolist(), disorder.width) for scene in slabs],
-        "time_step": [partial(respond, usual.updated({"protocol.time_step": step})) for step in asked.time_steps],
+        "stop_energy": [partial(runs.stopped, _scene(asked, mu), asked.stop_energies) for mu in asked.frictions],
+        "restart": [
+            partial(runs.restart, smooth, force, asked.restart.steps, READ_EVERY) for force in asked.restart.forces
+        ],
+        "swing": [partial(runs.swing, scene, asked.swing.steps, asked.swing.read_every) for scene in bare],
+        "disorder": [partial(runs.disordered, scene, grid.tolist(), disorder.width) for scene in slabs],
+        "time_step": [partial(runs.respond, usual.updated({"protocol.time_step": step})) for step in asked.time_steps],
         "integrators": [
-            partial(respond, integrated.updated({"protocol.integrator": name})) for name in asked.integrators
+            partial(runs.respond, integrated.updated({"protocol.integrator": name})) for name in asked.integrators
         ],
     }
 

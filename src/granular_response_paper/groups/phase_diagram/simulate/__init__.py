@@ -8,8 +8,8 @@ among them, so nothing is simulated. What counts as two peaks, and what a crosso
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
-from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import COLLAPSED, smoothed
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
 from granular_response_paper.groups.phase_diagram.simulate.starts import CASE, dips_of_few, side_by_side, starts_of
-from granular_response_paper.records import axes, parts, table, variables
+from granular_response_paper.records import axes, parts, places, table, variables
 from granular_response_paper.survey import crossover
 from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import LEVELS, Crossing, Ensemble, Singles, folded
@@ -40,17 +40,15 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
     Raises StoreError if the survey cannot be read, ValueError if a parameter is out of range.
     """
-    asked, widths = parameters, parameters.widths
+    asked = parameters
     x = np.arange(round(asked.reach / asked.spacing) + 1, dtype=float) * asked.spacing
     stored = survey.read(Path(asked.survey), asked.blocks)
     source, packings = stored["ensembles"], stored["packings"]
-    places = list(product(range(len(widths)), range(source.sizes["case"])))
     compared = starts_of(source, packings, asked)
     tasks = {}
-    for w, case in places:
-        ensemble = read_ensemble(source, case, x, widths[w], asked.least_part)
+    for (w, case), (width, _) in places(asked.widths, range(source.sizes["case"])):
         steps = {k: start.step for k, start in enumerate(compared) if start.case == case}
-        tasks[w, case] = partial(of_case, ensemble, x, widths[w], asked, steps)
+        tasks[w, case] = partial(of_case, read_ensemble(source, case, x, width, asked), asked, steps)
     done = computed(tasks, "crossovers")
     crossings, single = ({k: one[0] for k, one in done.items()}, {k: one[1] for k, one in done.items()})
     few = {(w, k): dips for (w, _), one in done.items() for k, dips in one[2].items()}
@@ -66,22 +64,23 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
 
 def of_case(
-    ensemble: Ensemble, x: FloatArray, width: float, asked: Parameters, steps: Mapping[int, int]
+    ensemble: Ensemble, asked: Parameters, steps: Mapping[int, int]
 ) -> tuple[Crossing, Singles, dict[int, FloatArray]]:
     """The crossover of an ensemble, its realizations one by one, and the dips of few of them at some ``steps``."""
-    drawn: dict[str, Any] = {"draws": asked.draws, "seed": asked.seed, "tolerance": asked.tolerance}
-    symmetric = Ensemble(ensemble.force, folded(ensemble.response), ensemble.least)
-    crossing = crossover.cross(symmetric, x, width, numbers=asked.numbers, others=asked.other_tolerances, **drawn)
-    few = {k: dips_of_few(symmetric, step, x, width, asked) for k, step in steps.items()}
-    return crossing, crossover.singles(ensemble, x, width, **drawn), few
+    drawn = {"draws": asked.draws, "seed": asked.seed}
+    symmetric = replace(ensemble, response=folded(ensemble.response))
+    crossing = crossover.cross(symmetric, numbers=asked.numbers, others=asked.other_tolerances, **drawn)
+    few = {k: dips_of_few(symmetric, step, asked) for k, step in steps.items()}
+    return crossing, crossover.singles(ensemble, **drawn), few
 
 
-def read_ensemble(source: xr.Dataset, case: int, x: FloatArray, width: float, least_part: float) -> Ensemble:
+def read_ensemble(source: xr.Dataset, case: int, x: FloatArray, width: float, asked: Parameters) -> Ensemble:
     """The realizations of a case, smoothed, from the left end of the reach to the right; ``x`` is the right half."""
     one = source.isel(case=case, realization=slice(0, int(source["realizations"][case])))
     used = np.isfinite(one["force"].values)
     response = smoothed(one.isel(step=used), np.concatenate([-x[:0:-1], x]), width)
-    return Ensemble(one["force"].values[used], response, max(1, int(np.ceil(least_part * len(response)))))
+    least = max(1, int(np.ceil(asked.least_part * len(response))))
+    return Ensemble(one["force"].values[used], response, x, width, least, asked.tolerance)
 
 
 def _linear_range(source: xr.Dataset, width: float, x: FloatArray) -> xr.Dataset:
@@ -102,10 +101,10 @@ def _datasets(
     source: xr.Dataset, parameters: Parameters, crossings: Mapping[Any, Crossing], single: Mapping[Any, Singles]
 ) -> dict[str, xr.Dataset]:
     """``crossovers``, ``definitions``, ``shapes``, ``realizations`` and ``medians``, by width and case."""
-    places = ("width", "case")
-    of_mean, of_each = table(crossings, *places), table(single, *places)
-    by_tolerance = table(parts(crossings, "others"), *places, "tolerance", kind=crossover.Crossover)
-    medians = table({place: single[place].middle(*one.limits) for place, one in crossings.items()}, *places)
+    along = ("width", "case")
+    of_mean, of_each = table(crossings, *along), table(single, *along)
+    by_tolerance = table(parts(crossings, "others"), *along, "tolerance", kind=crossover.Crossover)
+    medians = table({place: single[place].middle(*one.limits) for place, one in crossings.items()}, *along)
     for data in (of_mean, by_tolerance, medians):
         data["draws"] = data["draws"].astype(np.float32)
     for name in ("shape", "asymmetry", "difference"):

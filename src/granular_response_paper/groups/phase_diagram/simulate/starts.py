@@ -10,7 +10,6 @@ import xarray as xr
 from granular_response.scene.lattice import touching_largest
 from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS
-from granular_response_paper.ensembles import at_rest
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
 from granular_response_paper.records import column, record, stacked, table, variables
 from granular_response_paper.survey.crossover import CONFIDENCE, LEVELS, Ensemble, shapes_of_samples, weights
@@ -62,10 +61,9 @@ def starts_of(source: xr.Dataset, packings: xr.Dataset, asked: Parameters) -> li
     return found
 
 
-def dips_of_few(symmetric: Ensemble, step: int, x: FloatArray, width: float, asked: Parameters) -> FloatArray:
+def dips_of_few(symmetric: Ensemble, step: int, asked: Parameters) -> FloatArray:
     """(level, 3) shapes of means of the largest of ``numbers`` realizations: quantiles, and the ends of their 95 %."""
-    rows = at_rest(symmetric.response, step)
-    shapes = shapes_of_samples(rows, x, width, max(asked.numbers), seed=asked.seed)
+    shapes = shapes_of_samples(symmetric, step, max(asked.numbers), seed=asked.seed)
     ends = np.quantile(np.quantile(shapes, LEVELS, axis=1), CONFIDENCE, axis=1).T
     return np.column_stack([np.quantile(shapes, LEVELS), ends])
 

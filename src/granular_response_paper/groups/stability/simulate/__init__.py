@@ -1,20 +1,41 @@
 """Numerical stability: which time steps settle, cycle or blow up, against the predicted limit.
 
-Random scenes, collisions and rolling in closed form are tests (``tests/stress``).
+A packing at rest is kicked, in raw dynamics with no guard on the step. The rest state is solved with a safe step. It is
+then knocked about a little, so that contacts neither open nor slide at first: whether the kick dies out is the linear
+stability of the integrator in this packing. Beyond the limit the motion grows until contacts open and slide, and either
+goes on for ever or blows up. Random scenes, collisions and rolling in closed form are tests (``tests/stress``).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
+from granular_response.errors import SolveError
+from granular_response.scene import Scene
+from granular_response.solvers.dynamics import Dynamics, DynamicsError
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states, rest_state
+from granular_response.solvers.timestep import stability_limit
+from granular_response.state import State
 from granular_response.store.variables import WEIGHTS
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.stability import parameters as given
-from granular_response_paper.groups.stability.simulate import time_steps
-from granular_response_paper.records import table_along
+from granular_response_paper.groups.stability.parameters import (
+    BLOWS_UP,
+    CYCLES,
+    NO_REST,
+    OUTCOMES,
+    SETTLES,
+    Axis,
+    Parameters,
+)
+from granular_response_paper.records import column, record, table_along
 from granular_response_paper.tasks import computed
 
 #: Axes of the time-step maps: what each one changes in the scene, and what it is.
@@ -28,9 +49,96 @@ AXES: dict[str, tuple[str, str]] = {
     "polydispersity": ("packing.polydispersity", "polydispersity"),
     "load": ("loads", f"applied force {WEIGHTS}"),
 }
+#: Largest velocity of the kick, in units of the mean overlap times the frequency of a contact.
+KICK = 1e-3
+#: Parts into which a run is divided to see whether the energy still falls.
+PARTS = 8
+#: Steps between two looks at whether it has blown up.
+LOOK_EVERY = 100
+#: A kick blows up when its energy reaches this multiple; it dies out when in the second half of the run the energy
+#: stays below this part (an unstable mode saturates far above 1, a slow one may not fall much lower).
+GROWN, FALLEN = 1e10, 0.3
 
 
-def simulate(parameters: given.Parameters) -> dict[str, xr.Dataset]:
+@record
+class Steps:
+    """One scene and integrator."""
+
+    limit: float = column("predicted largest stable time step in sqrt(radius/g)")
+    outcome: NDArray[np.int8] = column(
+        "what becomes of a kick: " + ", ".join(f"{code} {text}" for code, text in enumerate(OUTCOMES)), "ratio"
+    )
+
+
+def tried(scene: Scene, integrators: Sequence[str], ratios: Sequence[float], steps: int, seed: int) -> list[Steps]:
+    """For each integrator, what becomes of a kick at time steps that are ``ratios`` of its predicted limit."""
+    problem = Problem.from_scene(scene)
+    limits = [stability_limit(problem, integrator) for integrator in integrators]
+    try:
+        problem, state, load = prepared(problem)
+    except SolveError:
+        return [Steps(limit, np.full(len(ratios), NO_REST, np.int8)) for limit in limits]
+    kicked = kick(problem, state, seed)
+    found = []
+    for name, limit in zip(integrators, limits, strict=True):
+        outcomes = [outcome(problem, kicked, load, name, ratio * limit, steps) for ratio in ratios]
+        found.append(Steps(limit, np.array(outcomes, np.int8)))
+    return found
+
+
+def prepared(problem: Problem) -> tuple[Problem, State, float]:
+    """The packing at rest under its loads, and their factor; settled with the dashpots that settle it fastest."""
+    scene = problem.scene
+    damped = Problem.from_scene(
+        scene.updated(
+            {"contact.damping_ratio": 0.5, "wall.damping_ratio": 0.5, "protocol.integrator": "verlet",
+             "protocol.maximum_steps": 400_000}
+        )
+    )  # fmt: skip
+    state = rest_state(damped)
+    problem, damped = problem.with_loads(state.position), damped.with_loads(state.position)
+    if not scene.loads:
+        return problem, state, 0.0
+    return problem, loaded_states(damped, state, [1.0])[1][0], 1.0
+
+
+def kick(problem: Problem, state: State, seed: int, part: float = KICK) -> State:
+    """The state with random velocities and spins of the disks that bear anything, up to ``part`` of the unit above."""
+    generator = np.random.default_rng(seed)
+    overlap = float(np.mean(state.pairs.overlap[state.pairs.touching]))
+    size = part * overlap * np.sqrt(problem.stiffness) * (state.contact_count() >= 2)
+    return replace(
+        state,
+        velocity=size[:, None] * generator.uniform(-1.0, 1.0, state.velocity.shape),
+        angular_velocity=size * generator.uniform(-1.0, 1.0, problem.n) * problem.rotations,
+    )
+
+
+def outcome(problem: Problem, kicked: State, load: float, integrator: str, step: float, steps: int) -> int:
+    """Run ``steps`` time steps and look at the kinetic energy."""
+    dynamics = Dynamics(problem, kicked, integrator, step)
+    dynamics.set_ramps(load=(load, load, 0.0))
+    start = dynamics.kinetic_energy(bearing_only=True)
+    bearing = int(0.9 * (dynamics.contact_count() >= 2).sum())
+    held = True  # once disks have come loose, theirs is what counts
+    energy: list[float] = []
+    part = steps // PARTS
+    for _ in range(PARTS):
+        for done in range(0, part, LOOK_EVERY):  # what has blown up lists its contacts anew at every step
+            try:
+                with np.errstate(over="ignore", invalid="ignore"):
+                    dynamics.advance(min(LOOK_EVERY, part - done))
+            except (DynamicsError, ValueError):
+                return BLOWS_UP
+            now = dynamics.kinetic_energy(bearing_only=held)
+            if not now < GROWN * start:
+                return BLOWS_UP
+        held = held and int((dynamics.contact_count() >= 2).sum()) >= bearing
+        energy.append(now)
+    return SETTLES if max(energy[PARTS // 2 :]) < FALLEN * start else CYCLES
+
+
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``time_step_AXIS`` for each of ``time_steps.axes``."""
     p = parameters.time_steps
     tasks = {}
@@ -39,14 +147,12 @@ def simulate(parameters: given.Parameters) -> dict[str, xr.Dataset]:
             loads = [{"disk": "top-centre", "force": [0.0, -value]}] if value else []
             changes = {AXES[name][0]: loads if name == "load" else value}
             scene = p.scene.updated({**changes, "protocol.time_step": "auto"})  # safe to come to rest with
-            tasks[name, k] = partial(time_steps.tried, scene, p.integrators, p.ratios, p.steps, parameters.seed)
+            tasks[name, k] = partial(tried, scene, p.integrators, p.ratios, p.steps, parameters.seed)
     found = computed(tasks, "time steps")
 
-    def along(name: given.Axis) -> xr.Dataset:
+    def along(name: Axis) -> xr.Dataset:
         axis, ratio = (p.axes[name], AXES[name][1]), (p.ratios, "time step over the predicted limit")
-        several: dict[Any, time_steps.Steps] = {
-            (i, k): one for k in range(len(axis[0])) for i, one in enumerate(found[name, k])
-        }
+        several: dict[Any, Steps] = {(i, k): one for k in range(len(axis[0])) for i, one in enumerate(found[name, k])}
         return table_along(several, integrator=(p.integrators, "integrator"), **{name: axis}, ratio=ratio)
 
     return labelled({f"time_step_{name}": along(name) for name in p.axes})

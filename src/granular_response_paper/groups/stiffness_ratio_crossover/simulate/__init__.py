@@ -26,7 +26,6 @@ from granular_response.scene import Scene
 from granular_response.state import FloatArray
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.theory import half_plane, lattice
-from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper import slab_response as slab
@@ -35,7 +34,7 @@ from granular_response_paper.groups.stiffness_ratio_crossover.parameters import 
 from granular_response_paper.records import axes, column, places, record, stacked, table, variables
 from granular_response_paper.tasks import computed
 
-BODIES: tuple[Body, ...] = get_args(Body)
+BODIES = ("half plane", "smooth floor", "rough floor")
 ROTATIONS: tuple[lattice.Rotations, ...] = get_args(lattice.Rotations)
 
 #: Further ratios at which the elastic bodies are computed, which costs next to nothing.

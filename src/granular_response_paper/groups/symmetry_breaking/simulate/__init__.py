@@ -11,7 +11,7 @@ Forces are in mean disk weights, lengths in mean radii, times in sqrt(R/g).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -20,15 +20,16 @@ import numpy as np
 import xarray as xr
 
 from granular_response import studies
+from granular_response.observe import network
+from granular_response.scene import Packing, Scene
 from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.timestep import resolve_time_step
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.sweeps.rest import rest_of
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.symmetry_breaking.parameters import Parameters, Protocol
-from granular_response_paper.groups.symmetry_breaking.simulate.copies import compared, copied, copies_of, random_shift
+from granular_response_paper.groups.symmetry_breaking.parameters import Copies, Parameters, Protocol
 from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.tasks import computed
 
@@ -126,6 +127,48 @@ def held(asked: Parameters, rest: State) -> xr.Dataset:
     )
     found = slab.measured_along("force", [slab.measured(measures, settled)]).assign(further)
     return found.assign_coords(axes(force=(given.forces, APPLIED)))
+
+
+def copies_of(given: Copies, packing: Packing) -> dict[str, Packing]:
+    """By how they differ from the packing."""
+    found = {"as it is": packing, "numbered from right to left": mirrored(packing)}
+    shift, name = random_shift(packing.position.shape, given.displacement, given.seed), f"seed {given.seed}"
+    found[f"displaced at random, {name}"] = displaced(packing, shift)
+    found[f"displaced at random, {name}, mirror image"] = displaced(packing, shift, mirror_image=True)
+    return found
+
+
+def mirrored(packing: Packing) -> Packing:
+    """The mirror image of a packing, each disk with its number: for a symmetric lattice only the numbers change."""
+    return replace(packing, position=packing.position * [-1.0, 1.0] + [packing.width, 0.0])
+
+
+def displaced(packing: Packing, shift: FloatArray, *, mirror_image: bool = False) -> Packing:
+    """The packing with its disks moved by ``shift`` (n, 2), or by the mirror image of it."""
+    if mirror_image:
+        shift = shift[network.mirror_disks(packing.position, 0.5 * packing.width)] * [-1.0, 1.0]
+    return replace(packing, position=packing.position + shift)
+
+
+def random_shift(shape: tuple[int, ...], size: float, seed: int) -> FloatArray:
+    """Displacements by up to ``size`` along each axis."""
+    return np.random.default_rng(seed).uniform(-size, size, shape)
+
+
+def copied(scene: Scene, packing: Packing, force: float) -> xr.Dataset:
+    """What is measured under one force on one copy of the packing, settled under gravity anew."""
+    path = studies.LoadPath.of(scene, packing=packing)
+    return slab.measured(studies.Measures(path), [path.at(force)])
+
+
+def compared(found: Mapping[str, xr.Dataset], force: float) -> xr.Dataset:
+    """The copies by name."""
+    return slab.measured_along("copy", list(found.values())).assign(
+        variables(
+            name=("copy", list(found), "how the copy differs from the packing"),
+            force=("", force, f"applied force {WEIGHTS}"),
+        )
+    )
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
