@@ -73,6 +73,20 @@ def test_a_packing_that_left_with_its_springs_comes_back_at_rest(result, tables)
     assert np.abs(anew.rest.position - state.position).max() > 1e-5  # without springs it is another equilibrium
 
 
+@pytest.mark.parametrize("cause", ["load", "law"])
+def test_springs_of_disks_that_are_not_at_rest_are_no_secret(result, tables, tmp_path, cause):
+    state, folder, changes = -1, tables, {"contact.normal_stiffness": 1000.0}
+    if cause == "load":
+        state, folder, changes = 1, tmp_path, {}
+        with pytest.warns(UserWarning, match="contacts begin anew"):
+            result.export(tmp_path / "disks.csv", state=state)
+        result.export(tmp_path / "disks.contacts.csv", state=state)
+    with pytest.warns(UserWarning, match=r"^disk \d+ comes to rest .*: with packing.springs disks must be at rest under"):
+        again = gr.solve(given(folder=folder, **changes), progress=False)
+    given_places = (result.rest, *result.loaded)[state].position
+    assert np.abs(again.rest.position - given_places).max() > 1e-4
+
+
 def test_a_motion_begins_with_the_springs(tables):
     times = [0.0, 0.05, 5.0]
     moved = gr.motion(given(folder=tables), times, progress=False)
