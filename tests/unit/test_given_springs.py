@@ -183,7 +183,7 @@ def test_lammps_keeps_it_at_rest_and_gives_it_back(result, tmp_path):
     script = result.export(tmp_path / "in.lammps", state=-1)
     script.write_text(re.sub(r"^run \d{2,}$", "run 20000", script.read_text(), flags=re.MULTILINE))
     done = subprocess.run(["lmp", "-in", script.name], cwd=tmp_path, capture_output=True, text=True, check=True)
-    (start,) = re.findall(r"^ +0 +\S+ +(\S+) *$", done.stdout, re.MULTILINE)[-1:]
+    (start,) = re.findall(r"^ +0 +\S+ +(\S+) +\S+ +\S+ *$", done.stdout, re.MULTILINE)[-1:]
     assert float(start) < 1e-10
     check_at_rest(
         gr.solve(given("in.dump", "in.contacts.dump", tmp_path), progress=False), result.loaded[-1], within=1e-10

@@ -155,9 +155,12 @@ def script(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
         lines.append(f"fix push{k} loaded{k} addforce v_x{k} v_y{k} 0.0")
     walls = " ".join(f"f_{fix}[2] f_{fix}[3]" for fix in WALL_FIXES[: 1 if box.periodic else 2])
     lines += [
-        "fix plane all enforce2d", "thermo 10000", "thermo_style custom step ke fmax", "thermo_modify norm no",
+        "fix plane all enforce2d",
         "compute pair all property/local patom1 patom2 cutoff radius",
         "compute bears all pair/local force p1 p2 p3 cutoff radius",
+        "# LAMMPS of 2021 dumps only what the last step has asked for",
+        "compute used all reduce sum c_pair[1] c_bears[1]",
+        "thermo 10000", "thermo_style custom step ke fmax c_used[1] c_used[2]", "thermo_modify norm no",
         f"run {steps + round(SETTLING / step)}",
         f"write_dump all custom {path.stem}.dump id type x y z radius mass vx vy omegaz {walls} "
         "modify sort id format float %.17g",
