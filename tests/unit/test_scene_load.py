@@ -125,7 +125,9 @@ def test_missing_disks(selector, message):
 
 def test_only_lattices_have_rows():
     packing = PouredPacking(disks=5, width=10.0).build()
-    with pytest.raises(SceneError, match=r"^disk\.row = 'top': only slabs and piles have rows, must be top-centre, {x: "):
+    with pytest.raises(
+        SceneError, match=r"^disk\.row = 'top': only slabs and piles have rows, must be top-centre, {x: "
+    ):
         resolve_disk(RowSelector(row="top"), packing, packing.position)
 
 
