@@ -117,7 +117,7 @@ def test_two_disks_between_walls_have_all_four_modes():
     matrix = np.block([[contact, -contact], [-contact, contact]]) + np.diag([wall, wall, wall, 0.0])
     np.testing.assert_allclose(gr.modes(pair, 4)["frequency"], np.sqrt(np.linalg.eigvalsh(matrix)), rtol=1e-9)
     alone = gr.solve(gr.Scene.from_arrays([3.0], [1.0], 1.0, width=6.0, scene=scene), progress=False)
-    with pytest.raises(ValueError, match="^count = 6: no disk has two contacts$"):
+    with pytest.raises(ValueError, match=r"^count = 6: no disk has two contacts$"):
         gr.modes(alone)
 
 
