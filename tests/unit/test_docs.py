@@ -58,3 +58,11 @@ def test_the_reference_says_what_the_scene_allows():
     assert not keys["loads[].disk"].default and not keys["packing.kind"].default
     assert keys["loads[].force"].unit == "mg"
     assert keys["loads[].displacement"].unit == keys["loads[].disk.x"].unit == "mean radius"
+
+
+def test_descriptions_within_a_text_are_those_of_the_package():
+    texts = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
+    calls = set(re.findall(r"`(gr\.[A-Z]\w*\([^`.]+[^`]*\))`", texts))
+    assert {"gr.At(x=-10)", 'gr.Row(row="top", offset=-4)'} <= calls
+    for call in calls:
+        assert eval(call, {"gr": importlib.import_module("granular_response")}), call

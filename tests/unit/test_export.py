@@ -313,7 +313,7 @@ def test_a_script_for_lammps_has_the_laws_the_box_and_the_load(tmp_path):
     assert "gran/hooke/history" in pair and "pair_coeff * *" in lines
     (floor,) = (line for line in lines if line.startswith("fix floor"))
     assert "granular hooke 6000.0" in floor and floor.endswith("yplane 0.0 NULL contacts") and " 0.1 damping" in floor
-    assert "fix sides" in "\n".join(lines) and lines[-3].startswith("run ")
+    assert "fix sides" in "\n".join(lines) and lines[-2] == "run ${end}"
     assert "group loaded0 id 17" in lines and "variable y0 equal -1.0*v_factor" in lines
     assert "variable factor equal 0.0+(1.0)*((step<40000)*step/40000+(step>=40000))" in lines
     again = FilePacking(path=str(tmp_path / "in.data"), width=14.0, origin=(0.0, 0.0)).build()

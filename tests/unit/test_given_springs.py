@@ -73,6 +73,20 @@ def test_a_packing_that_left_with_its_springs_comes_back_at_rest(result, tables)
     assert np.abs(anew.rest.position - state.position).max() > 1e-5  # without springs it is another equilibrium
 
 
+@pytest.mark.parametrize("cause", ["load", "law"])
+def test_springs_of_disks_that_are_not_at_rest_are_no_secret(result, tables, tmp_path, cause):
+    state, folder, changes = -1, tables, {"contact.normal_stiffness": 1000.0}
+    if cause == "load":
+        state, folder, changes = 1, tmp_path, {}
+        with pytest.warns(UserWarning, match="contacts begin anew"):
+            result.export(tmp_path / "disks.csv", state=state)
+        result.export(tmp_path / "disks.contacts.csv", state=state)
+    with pytest.warns(UserWarning, match=r"^disk \d+ comes to rest .*: with packing.springs disks must be at rest"):
+        again = gr.solve(given(folder=folder, **changes), progress=False)
+    given_places = (result.rest, *result.loaded)[state].position
+    assert np.abs(again.rest.position - given_places).max() > 1e-4
+
+
 def test_a_motion_begins_with_the_springs(tables):
     times = [0.0, 0.05, 5.0]
     moved = gr.motion(given(folder=tables), times, progress=False)
@@ -158,7 +172,7 @@ def test_a_script_brings_the_springs(result, tmp_path):
     assert len(text) == 3 and all(f"variable {name} atomfile in.slip" in lines for name in ("slipx", "slipy", "turn"))
     order = [lines.index(line) for line in ("run 1", "reset_timestep 0", "fix move all nve/sphere disc")]
     assert order == sorted(order)  # no disk moves while springs are stretched
-    assert "variable factor equal 0.0" in lines and lines[-1].startswith("write_dump all local in.contacts.dump")
+    assert "variable factor equal 0.0" in lines and lines[-1].startswith("write_dump all custom in.dump")
     smooth = gr.solve(SCENE.updated({"contact.friction": 0.0, "wall.friction": 0.0}), progress=False)
     assert "run 1" not in smooth.export(tmp_path / "smooth.lammps").read_text().splitlines()
     assert not (tmp_path / "smooth.slip").exists()
@@ -167,7 +181,7 @@ def test_a_script_brings_the_springs(result, tmp_path):
 @pytest.mark.skipif(shutil.which("lmp") is None, reason="LAMMPS is not installed")
 def test_lammps_keeps_it_at_rest_and_gives_it_back(result, tmp_path):
     script = result.export(tmp_path / "in.lammps", state=-1)
-    script.write_text(re.sub(r"^run \d{2,}$", "run 20000", script.read_text(), flags=re.MULTILINE))
+    script.write_text(re.sub(r"^(variable end equal) \d+$", r"\1 20000", script.read_text(), flags=re.MULTILINE))
     done = subprocess.run(["lmp", "-in", script.name], cwd=tmp_path, capture_output=True, text=True, check=True)
     (start,) = re.findall(r"^ +0 +\S+ +(\S+) *$", done.stdout, re.MULTILINE)[-1:]
     assert float(start) < 1e-10

@@ -49,6 +49,14 @@ def test_statics_refuses_a_motion(method):
             gr.motion(BALL.updated({"protocol.method": method}), [1.0])
 
 
+def test_a_scene_without_loads_moves_whatever_its_load_factors():
+    """So that of any result does, without its loads: ``gr.motion(result.scene.updated({"loads": []}), ...)``."""
+    twice = {"protocol.load_factors": [1.0, 2.0]}
+    assert gr.motion(BALL.updated(twice), [0.0, 1.0])["position"].equals(gr.motion(BALL, [0.0, 1.0])["position"])
+    with pytest.raises(gr.SceneError, match=r"^protocol.load_factors = \[1.0, 2.0\]: must be left out for a motion"):
+        gr.motion(BALL.updated({**twice, "loads": [gr.Load(disk=0, force=(0.0, -1.0))]}), [0.0, 1.0])
+
+
 def test_a_scene_without_a_motion_is_written_as_ever():
     still = {"motion.spin": [0.0], "contact.friction": 0.0}  # where no contact turns a disk, it may stand still
     assert BALL.updated(still).motion.spin == (0.0,)

@@ -103,8 +103,22 @@ def test_modes_are_those_of_the_matrix(smooth, result):
         np.testing.assert_allclose(found["frequency"] ** 2, values[:5], rtol=1e-6, atol=1e-9)
         x = found["displacement"].values.reshape(5, -1)
         np.testing.assert_allclose(x * mass @ x.T, np.eye(5), atol=1e-8)
-    with pytest.raises(ValueError, match=r"^count = 0: must be a whole number from 1 to 105$"):
-        gr.modes(smooth, 0)
+    with pytest.raises(ValueError, match=r"^count = 107: must be a whole number from 1 to 106$"):
+        gr.modes(smooth, 107)
+
+
+def test_two_disks_between_walls_have_all_four_modes():
+    """The upper one leans on the right wall: in closed form, with the turn of the inclined contact under its force."""
+    scene = {"contact": {"friction": 0.0}, "loads": []}
+    pair = gr.solve(gr.Scene.from_arrays([1.0, 2.2], [1.0, 2.6], 1.0, width=3.2, scene=scene), progress=False)
+    k, wall, (nx, nz) = 3000.0, 6000.0, pair.rest.pair_normal()[0]
+    turn = pair.rest.pairs.normal_force[0] / (2.0 - pair.rest.pairs.overlap[0])
+    contact = k * np.outer([nx, nz], [nx, nz]) - turn * np.outer([-nz, nx], [-nz, nx])
+    matrix = np.block([[contact, -contact], [-contact, contact]]) + np.diag([wall, wall, wall, 0.0])
+    np.testing.assert_allclose(gr.modes(pair, 4)["frequency"], np.sqrt(np.linalg.eigvalsh(matrix)), rtol=1e-9)
+    alone = gr.solve(gr.Scene.from_arrays([3.0], [1.0], 1.0, width=6.0, scene=scene), progress=False)
+    with pytest.raises(ValueError, match=r"^count = 6: no disk has two contacts$"):
+        gr.modes(alone)
 
 
 def test_moduli_of_a_lattice_are_those_of_the_theory():

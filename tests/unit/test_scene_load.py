@@ -6,6 +6,7 @@ import pytest
 from granular_response.scene import (
     Packing,
     PilePacking,
+    PouredPacking,
     RowSelector,
     Scene,
     SceneError,
@@ -120,6 +121,19 @@ def test_missing_disks(selector, message):
     with pytest.raises(SceneError) as caught:
         resolve_disk(selector, packing, packing.position)
     assert str(caught.value) == message
+
+
+def test_only_lattices_have_rows():
+    packing = PouredPacking(disks=5, width=10.0).build()
+    with pytest.raises(
+        SceneError, match=r"^disk\.row = 'top': only slabs and piles have rows, must be top-centre, {x: "
+    ):
+        resolve_disk(RowSelector(row="top"), packing, packing.position)
+
+
+def test_a_torque_alone_is_a_load():
+    (load,) = Scene.from_text("loads: [{disk: 17, torque: 4}]").loads
+    assert (load.force, load.torque) == ((0.0, 0.0), 4.0)
 
 
 def test_sideways_forces_that_sum_to_zero_but_for_rounding_are_allowed():

@@ -1,10 +1,22 @@
 """Reduced units against the laboratory's, by hand for the paper's disks."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from refusals import refusals
 
-from granular_response.scene import FilePacking, LaboratoryUnits, Scene, SceneError
+from granular_response.scene import (
+    Contact,
+    FilePacking,
+    LaboratoryUnits,
+    Load,
+    RowSelector,
+    Scene,
+    SceneError,
+    SlabPacking,
+    TopSelector,
+)
 
 #: pi (3.75 mm)^2 6.6 mm 1150 kg/m3 = 0.3353 g; weight 3.286 mN; sqrt(3.75 mm / 9.8 m/s2) = 19.56 ms.
 BY_HAND = {
@@ -50,6 +62,29 @@ test_impossible_disks = refusals(
     (lambda: LaboratoryUnits(thickness="6.6 mm"), r"^thickness = '6\.6 mm': must be a finite number greater than 0$"),
     (lambda: LaboratoryUnits(thickness=True), "^thickness = true: must be a finite number greater than 0$"),
 )
+
+
+test_reduced_numbers_are_not_taken_for_those_in_si = refusals(
+    SceneError,
+    *(
+        (
+            partial(LaboratoryUnits().reduced_scene, data),
+            f"^a {name} holds reduced numbers, must be a mapping for those",
+        )
+        for name, data in {
+            "Load": {"loads": [Load(disk=0, force=(0.0, -0.05))]},
+            "Contact": {"contact": Contact(normal_stiffness=2629.0)},
+            "TopSelector": {"loads": [{"disk": TopSelector(x=0.01), "force": [0.0, -0.05]}]},
+            "SlabPacking": {"packing": SlabPacking(lattice_constant=0.0075)},
+        }.items()
+    ),
+    (lambda: LaboratoryUnits().reduced_scene(Scene()), r"^scene = Scene.*: must be a mapping with its keys$"),
+)
+
+
+def test_a_row_has_no_unit():
+    data = {"loads": [{"disk": RowSelector(row="top"), "force": [0.0, 0.0]}]}
+    assert LaboratoryUnits().reduced_scene(data) == data
 
 
 def test_the_box_of_poured_disks_has_a_width_in_metres():

@@ -143,8 +143,8 @@ class Result:
         Parameters
         ----------
         x : a place in mean radii, or a list of them; the response is that of the nearest floor disk.
-        smooth : width in mean radii of a Gaussian average over floor disks (Sec. VI); then the stress per force at x,
-            per mean radius.
+        smooth : w of a Gaussian average exp(-(x/w)²) over floor disks, in mean radii (Sec. VI); then the stress per
+            force at x, per mean radius.
 
         Returns
         -------
@@ -256,7 +256,7 @@ class Result:
         z : heights above the floor; every mean radius up to the highest disk if left out.
         state : as of :meth:`contacts_table`, with its errors.
         added : the part that the load adds (Fig. 14) rather than the whole stress; by default so for states under load.
-        width : of the Gaussian (Sec. V.C: two mean radii).
+        width : w of the Gaussian exp(-(r/w)²), in mean radii (Sec. V.C: 2).
 
         Returns
         -------

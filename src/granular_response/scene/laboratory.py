@@ -11,8 +11,8 @@ from typing import Any, Final, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from .base import UNITS, unit_of
-from .errors import SceneError, describe, suggestion
+from .base import UNITS, Description, unit_of
+from .errors import SceneError, describe, show, suggestion
 from .given import plain
 from .material import KNOWN_LAWS
 from .table import FilePacking
@@ -145,6 +145,7 @@ class LaboratoryUnits:
 
         The keys are those of a scene file. Plain numbers stay, and columns of own disks, in any unit of length. A table
         that names its unit (``radius_mm``) must have the mean radius of these units, within 1 %; else a SceneError.
+        Descriptions such as ``gr.Contact`` hold reduced numbers, so they are refused.
 
         Examples
         --------
@@ -159,12 +160,16 @@ class LaboratoryUnits:
             if isinstance(value, Mapping):
                 own = {key: _quantities(key, part, value) for key, part in value.items()}
                 return {key: reduced(part, keys.get(key, ""), own[key]) for key, part in value.items()}
+            if isinstance(value, Description) and keys.keys() & type(value).model_fields.keys():
+                raise SceneError(f"a {type(value).__name__} holds reduced numbers, must be a mapping for those in SI")
             value = plain(value)
             if isinstance(value, list):
                 return [reduced(part, quantity) for part in value]
             number = quantity and isinstance(value, (int, float)) and not isinstance(value, bool)
             return self.to_reduced(quantity, float(value)) if number else value
 
+        if not isinstance(scene, Mapping):
+            raise SceneError(f"scene = {show(scene)}: must be a mapping with its keys")
         self._check_radius(scene.get("packing"))
         return {key: reduced(part, keys=_quantities(key, part, scene)) for key, part in scene.items()}
 

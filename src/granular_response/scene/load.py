@@ -90,7 +90,7 @@ class Load(Sparse):
     )
     force: Vector = Field(
         default=(0.0, 0.0),
-        description="Force; z points up. Required without displacement; must be 0 in directions that "
+        description="Force; z points up. Required without displacement or torque; must be 0 in directions that "
         "displacement prescribes.",
     )
     displacement: Displacement | None = Field(
@@ -103,8 +103,8 @@ class Load(Sparse):
     @model_validator(mode="after")
     def _check_displacement(self) -> Load:
         if self.displacement is None:
-            if "force" not in self.model_fields_set:
-                raise Problem("must be given, or displacement", key=("force",), value=None)
+            if not self.model_fields_set & {"force", "torque"}:
+                raise Problem("must be given, or displacement or torque", key=("force",), value=None)
             return self
         if self.displacement == (None, None):
             raise Problem("must hold a direction at least", key=("displacement",), value=list(self.displacement))
@@ -161,7 +161,7 @@ def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.
         raise Problem("must be top-centre, the index of a disk, a TopSelector or a RowSelector", value=selector)
     rows = len(row_count)
     if rows == 0:
-        rule = "a packing from a file or arrays has no rows, must be top-centre or the index of a disk"
+        rule = "only slabs and piles have rows, must be top-centre, {x: number} or the index of a disk"
         raise Problem(rule, key=("row",), value=selector.row)
     named = {"top": rows - 1, "bottom": 0}
     row = named[selector.row] if isinstance(selector.row, str) else selector.row

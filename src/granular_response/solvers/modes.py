@@ -49,15 +49,19 @@ def lowest_modes(
     free = ~np.repeat(left_out[:, None], freedoms, axis=1)
     free[problem.held.disk, problem.held.axis] = False
     chosen = np.flatnonzero(free.ravel())
-    if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or not 1 <= count < len(chosen):
-        raise ValueError(f"count = {count!r}: must be a whole number from 1 to {len(chosen) - 1}")
+    if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or not 1 <= count <= len(chosen):
+        there_are = f"must be a whole number from 1 to {len(chosen)}" if len(chosen) else "no disk has two contacts"
+        raise ValueError(f"count = {count!r}: {there_are}")
     matrix = stiffness_matrix(problem, state, sliding=sliding)[chosen][:, chosen]
     mass = 1.0 / problem.inverse_mass.reshape(freedoms, n).T.ravel()[chosen]
     scale = sp.diags_array(1.0 / np.sqrt(mass))
     symmetric = scale @ (0.5 * (matrix + matrix.T)) @ scale
-    start = np.random.default_rng(0).standard_normal(len(chosen))  # one of every symmetry
-    left = -LEFT * problem.stiffness
-    values, vectors = eigsh(symmetric.tocsc(), k=int(count), sigma=left, which="LM", v0=start)
+    if count < len(chosen):
+        start = np.random.default_rng(0).standard_normal(len(chosen))  # one of every symmetry
+        left = -LEFT * problem.stiffness
+        values, vectors = eigsh(symmetric.tocsc(), k=int(count), sigma=left, which="LM", v0=start)
+    else:  # all, which Lanczos does not find
+        values, vectors = np.linalg.eigh(symmetric.toarray())
     by = np.argsort(values)
     found = np.full((int(count), n * freedoms), np.nan)
     found[:, chosen] = (vectors[:, by] / np.sqrt(mass)[:, None]).T

@@ -81,7 +81,7 @@ def trajectory(
     wanted, protocol = checked_times(times), scene.protocol
     if protocol.method not in ("auto", "dynamics"):
         raise SceneError(f"protocol.method = {protocol.method!r}: must be auto or dynamics, a motion has inertia")
-    if protocol.load_factors != (1.0,):
+    if scene.loads and protocol.load_factors != (1.0,):
         raise SceneError(f"protocol.load_factors = {show(list(protocol.load_factors))}: must be left out for a motion")
     check_memory(scene, scene.packing.disk_count)
     problem = Problem.from_scene(scene)

@@ -67,6 +67,11 @@ def moduli(springs: Springs, rotations: Rotations = "suppressed") -> Moduli:
     """Moduli of eqs. (7)-(10), or with free rotations (see the module's text).
 
     Raises ValueError if the lattice resists some strain not at all (the isostatic limit).
+
+    Examples
+    --------
+    >>> gr.theory.lattice.moduli(gr.theory.lattice.Springs.uniform(1.0, 0.0)).a.round(3)  # 3 sqrt(3) / 4
+    1.299
     """
     _check_rotations(rotations)
     k1n, k2n, k1t, k2t = springs.k1n, springs.k2n, springs.k1t, springs.k2t

@@ -129,7 +129,7 @@ class Slab:
         return result
 
     def stress(self, x: ArrayLike, z: float, force: float = 1.0, smoothing: float = 0.0) -> FloatArray:
-        """(3, ...) sigma_xx, sigma_zz, sigma_xz at ``x`` (any shape) and height ``z`` below the top.
+        """(3, ...) sigma_xx, sigma_zz, sigma_xz at ``x`` (any shape) and height ``z`` above the floor, below the top.
 
         ``smoothing`` is the standard deviation of a Gaussian average over x (0: none). Sums as
         many wave numbers as rounding asks for; raises ValueError where that is hopeless (at the top, unless

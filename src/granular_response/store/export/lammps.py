@@ -158,11 +158,13 @@ def script(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
         "fix plane all enforce2d", "thermo 10000", "thermo_style custom step ke fmax", "thermo_modify norm no",
         "compute pair all property/local patom1 patom2 cutoff radius",
         "compute bears all pair/local force p1 p2 p3 cutoff radius",
-        f"run {steps + round(SETTLING / step)}",
+        f"variable end equal {steps + round(SETTLING / step)}",
+        f"dump bears all local ${{end}} {path.stem}.contacts.dump c_pair[1] c_pair[2] "
+        + " ".join(f"c_bears[{k}]" for k in (1, 2, 3, 4)),
+        "dump_modify bears format float %.17g",
+        "run ${end}",
         f"write_dump all custom {path.stem}.dump id type x y z radius mass vx vy omegaz {walls} "
         "modify sort id format float %.17g",
-        f"write_dump all local {path.stem}.contacts.dump c_pair[1] c_pair[2] "
-        + " ".join(f"c_bears[{k}]" for k in (1, 2, 3, 4)) + " modify format float %.17g",
     ]  # fmt: skip
     return {path: ("\n".join(lines) + "\n").encode("ascii"), **made}
 
