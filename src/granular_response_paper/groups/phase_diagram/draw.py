@@ -154,7 +154,7 @@ def _bounds(axes: Axes, crossovers: xr.Dataset, looks: Iterable[tuple[float, dic
             row = rows[friction, above] = rows.get((friction, above), -1) + 1
             inwards = (10.0 * row + 4.0) * (-1) ** above
             axes.annotate(
-                f"{'>' if above else '≤'} {bound:g}", (friction, float(above)), (-5.0, inwards),
+                f"{'>' if above else '≤'} {bound:g}", (friction, float(above)), (-5.0 if above else -1.0, inwards),
                 xycoords=axes.get_xaxis_transform(), textcoords="offset points", ha="right" if above else "left",
                 va="top" if above else "bottom", fontsize=8, color=look["color"],
             )  # fmt: skip
