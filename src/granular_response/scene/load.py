@@ -50,8 +50,8 @@ class TopSelector(Description):
     """
 
     x: Finite = Field(
-        description="Distance from the middle of the packing, to the right, in its initial equilibrium. Of two disks "
-        "equally near the one with the lower index.",
+        description="Distance from the middle of the packing, to the right, in its initial equilibrium. Of two equally "
+        "near disks the one with the lower index.",
         json_schema_extra={"unit": "mean radius"},
     )
 
