@@ -72,8 +72,8 @@ Displacement = Annotated[
 class Load(Sparse):
     """A force (mg) and a torque (mg × mean radius) on one disk, or a prescribed displacement (mean radii) of it.
 
-    A disk that is displaced is held where the displacement says, and the force that this takes is part of the answer.
-    A direction that is left free has the force, as rotation has the torque.
+    A displaced disk is held at its displacement, and the force that this takes is part of the result. The force acts
+    along directions that are free, the torque on the rotation.
 
     Examples
     --------
