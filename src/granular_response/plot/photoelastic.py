@@ -34,8 +34,8 @@ def photoelastic(
 
     The intensity is sin²(π D / ``fringe``) with the difference D of the principal stresses, black outside the disks.
     A load acts on the rim of its disk, where its arrow ends. Contact forces that do not balance, such as those
-    that support the weight of a disk, are balanced by a force spread evenly over it, and a torque by one that grows with
-    the distance from its centre (:mod:`granular_response.observe.disk_stress`).
+    that support the weight of a disk, are balanced by a force spread evenly over it, and a torque by one that grows
+    with the distance from its centre (:mod:`granular_response.observe.disk_stress`).
 
     Parameters
     ----------
