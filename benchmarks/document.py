@@ -10,7 +10,7 @@ measured.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -35,8 +35,8 @@ TEXTS = {
         "Accuracy of the path",
         "The path is compared with increments that use the return map. These end at each event of the path, and "
         "every 0.001 mg, or 1/250 of the load if that is longer (1/1000 for the ordered slabs with friction 0.2 and "
-        "1). The error is the largest difference of a force of the floor or a wall, relative to the load. Where an "
-        "equilibrium is lost, inertia decides which one follows, so the two methods may end in different ones.",
+        "1). The error is the largest difference of a force on the floor or a wall, relative to the load. After a loss "
+        "of equilibrium inertia decides which one follows, so the two methods may end in different ones.",
     ),
     "shares": (
         "Where the time of a solution goes",
@@ -87,13 +87,13 @@ TEXTS = {
     ),
     "neighbours": (
         "Lists of close disks",
-        "The sweep along the longer side of a packing is compared with a tree of scipy, from places to sorted pairs "
+        "A sweep along the longer side of a packing is compared with a tree of scipy, from positions to sorted pairs "
         "(`neighbours.json`).",
     ),
     "skipping": (
         "Cost of work that is skipped",
-        "A step leaves out rotations without friction, neighbour searches in a network that does not change, and wall "
-        "tests for disks far from a wall. The picture shows what each would cost.",
+        "A step skips rotations without friction, neighbour searches in an unchanged network, and wall tests for disks "
+        "far from a wall. The picture shows the cost of each.",
     ),
     "scale": (
         "Large systems",
@@ -226,9 +226,12 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
 
     def add(
         benchmark: str, what: str, value: float | None, least: float | None, most: float | None, form: Any,
-        above: str = "",
+        above: str = "", runs: Sequence[Metrics] = (),
     ) -> None:  # fmt: skip
-        """``above``: why ``value`` is a lower bound, which can show that a goal is met but not that it is missed."""
+        """``above``: why ``value`` is a lower bound, which can show that a goal is met but not that it is missed.
+
+        ``runs``: those of the benchmark that the value is from, if not all.
+        """
         if benchmark not in found:
             value = None
         goal = f"at least {form(least)}" if least is not None else f"at most {form(most)}"
@@ -238,7 +241,7 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
             met = value >= least if least is not None else value <= most  # type: ignore[operator]
             said = f"over {form(value)} ({above})" if above else form(value)
             known = None if above and not met else bool(met)
-            on = measured_on(found[benchmark])
+            on = measured_on({**found[benchmark], "runs": [*runs]} if runs else found[benchmark])
             rows.append({"what": what, "goal": goal, "measured": said, "met": known, "on": on})
 
     def times(value: float | None) -> str:
@@ -272,21 +275,23 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
         ("path", 1_000_000, 3600.0, "1,000,000 disks with friction, prepared without"),
     ):
         row = next((row for row in runs if row["method"] == method and row["disks"] >= disks), {})
-        add("scale", f"Response of {what}, wall time on two threads", row.get("seconds"), None, limit, seconds)
+        named = f"Response of {what}, wall time on two threads"
+        add("scale", named, row.get("seconds"), None, limit, seconds, runs=[row])
         memory = row.get("peak_gibibytes")
-        add("scale", f"Memory of the response of {what}", memory, None, 16.0, lambda v: f"{v:.2g} GiB")
+        add("scale", f"Memory of the response of {what}", memory, None, 16.0, lambda v: f"{v:.2g} GiB", runs=[row])
     for method, what in (("minimise", "without friction"), ("path", "with friction")):
         row = next(iter(pick(found.get("scale", {}).get("exponents", []), method=method)), {})
         extent = f", {row['from_disks']:,} to {row['to_disks']:,}" if row else ""
         what = f"Exponent of processor time in the number of disks, {what}{extent}"
-        add("scale", what, row.get("exponent_of_cpu_seconds"), None, 1.5, lambda v: f"{v:.2f}")
+        fitted = [one for one in runs if row and row["from_disks"] <= one["disks"] <= row["to_disks"]]
+        add("scale", what, row.get("exponent_of_cpu_seconds"), None, 1.5, lambda v: f"{v:.2f}", runs=fitted)
     residuals = [row["force_residual"] for row in runs if row["method"] != "dynamics"]
     what = "Largest unbalanced force of static results of the benchmark of large systems"
     add("scale", what, max(residuals, default=None), None, 1e-9, lambda v: f"{v:.1g} mg")
     totals = {row["collection"]: row["seconds"] for row in found.get("pipeline", {}).get("totals", [])}
     add("pipeline", "The paper from nothing (`make reproduce`), 2 cores", totals.get("paper"), None, 300.0, seconds)
     value = min((row["ratio"] for row in found.get("limits", {}).get("runs", [])), default=None)
-    what = "Slowest kernel of a step over a loop of the same mix of operations"
+    what = "Speed of the slowest kernel of a step over a loop of the same mix of operations"
     add("limits", what, value, 0.7, None, lambda v: f"{v:.2f}")
     startup = found.get("startup", {}).get("runs", [])
     add("startup", "Every kernel compiled and cached", startup[0]["seconds"] if startup else None, None, 40.0, seconds)
@@ -313,8 +318,8 @@ def limits(found: dict[str, Metrics]) -> list[dict[str, str]]:
     if points := [row for row in points if "dynamics_seconds" in row]:
         ratios = extent((row["seconds"] / row["dynamics_seconds"] for row in points), ".2g")
         errors = extent((row["dynamics_error"] for row in points), ".1g")
-        reason = f"that dynamics errs by {errors}; the paths have up to {max(row['events'] for row in points):,} events"
-        what = "Processor time of a path over that of dynamics with a ramp of one time unit, nine slabs"
+        reason = f"such dynamics errs by {errors}; the paths have up to {max(row['events'] for row in points):,} events"
+        what = "Processor time of a path over that of dynamics with a ramp of 1 sqrt(R/g), nine slabs"
         add("exactness", what, f"{ratios} times", reason)
     solved = next(iter(pick(found.get("shares", {}).get("runs", []), what="ordered, friction 0.2, 15 mg")), {})
     if solved:
@@ -325,12 +330,12 @@ def limits(found: dict[str, Metrics]) -> list[dict[str, str]]:
         add("shares", "Solution of the ordered slab, friction 0.2, 15 mg", f"{solved['seconds']:.2f} s", reason)
     if factorisations := found.get("limits", {}).get("factorisations", []):
         widths = extent((row["size"] for row in factorisations), "d")
-        reason = f"bands and fronts are {widths} unknowns wide, and the ratio of bands grows with their width"
-        add("limits", "Speed of factorisations over the matrix product",
+        reason = f"bands and fronts are {widths} unknowns wide; wider bands are faster"
+        add("limits", "Speed of factorisations over LAPACK's matrix product",
             extent((row["ratio"] for row in factorisations), ".2f"), reason)  # fmt: skip
     if startup := found.get("startup", {}).get("runs", []):
         two = next(row["seconds"] for row in startup if row["what"].endswith("two disks"))
-        reason = f"two disks take {two:.1f} s: imports, and kernels from the cache"
+        reason = f"imports and the loading of kernels take {two:.1f} s (scene of two disks)"
         add("startup", "`granular-response run`, default scene", seconds(startup[2]["seconds"]), reason)
     return rows
 

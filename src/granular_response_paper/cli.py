@@ -114,14 +114,14 @@ def claims(
         typer.Option(help="Summary of other preparations, left out if not there; extensions/summary.nc if not given."),
     ] = None,
     name: CollectionName = PAPER.name,
-    every: Annotated[bool, typer.Option("--list", help="Print the stored table; judge nothing anew.")] = False,
+    every: Annotated[bool, typer.Option("--list", help="Print the stored table without judging again.")] = False,
     figure: Annotated[
         int | None, typer.Option(help="With --list: the claims of one figure of the paper alone.")
     ] = None,
 ) -> None:
     """Compare the claims with the stored datasets.
 
-    A table that has verdicts on groups without datasets here stays as it is.
+    A table with verdicts on groups whose datasets are not here is not overwritten.
     """
     from .claims import preparations as kept
     from .claims import table
@@ -171,7 +171,7 @@ def summary(
     ] = None,
     output: Annotated[Path | None, output_option(help="Summary (netCDF); extensions/summary.nc if not given.")] = None,
 ) -> None:
-    """Write what the claims read of other preparations of the slab: the forces of its events."""
+    """Write the forces of the events of the slab in other preparations, which the claims read."""
     from .claims import preparations as writing
 
     loaded()
@@ -180,7 +180,7 @@ def summary(
 
 @commands.command("groups", "groups --collection extensions")
 def groups(name: CollectionName = PAPER.name, root: Root = Path(".")) -> None:
-    """List the figure groups of a collection: figures, stored seconds on two cores, the question that each answers."""
+    """List the figure groups of a collection: figures, stored run time on two cores, question."""
     from granular_response.inputs import read_json
 
     from . import captions
@@ -210,12 +210,12 @@ def stages(name: CollectionName = PAPER.name, root: Root = Path(".")) -> None:
 def reproduce(
     name: CollectionName = PAPER.name,
     root: Root = Path("."),
-    force: Annotated[bool, typer.Option("--force", help="Run every stage, up to date or not.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Run every stage, also those that are up to date.")] = False,
     keep_times: Annotated[
         bool, typer.Option("--keep-times", help="Store the seconds of all stages in benchmarks/pipeline.json.")
     ] = False,
 ) -> None:
-    """Run every stage of a collection that is not up to date, and say how far it is."""
+    """Run every stage of a collection that is out of date, and show the progress."""
     from .pipeline import reproduce as running
 
     arguments = ["--force"] if force else []
@@ -258,7 +258,7 @@ def archive(
 ) -> None:
     """Archive the reproduction: datasets, figures, claims, sources and how each was made.
 
-    Only what is as dvc.lock says goes in, so everything must be up to date.
+    Everything must be up to date with dvc.lock.
     """
     from .archive import crate
 
@@ -272,9 +272,9 @@ def restore(
     archive: Annotated[str, typer.Argument(help="An archive of this project: a file, or its address.")],
     root: LockFolder = Path("."),
 ) -> None:
-    """Take the datasets out of an archive, in place of computing them.
+    """Copy the datasets from an archive, in place of computing them.
 
-    They must be those of dvc.lock; one that is there already stays.
+    They must be those of dvc.lock. Existing datasets are kept.
     """
     from .archive import restore as restoring
 

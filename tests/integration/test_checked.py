@@ -105,8 +105,8 @@ def test_the_record_of_a_state_comes_back(solution, path):
 def test_what_xarray_writes_is_shown_and_exported(solution, tmp_path):
     to_dataset(solution).to_netcdf(tmp_path / "by_xarray.nc")
     shown = succeeded("show", "by_xarray.nc", folder=tmp_path)
-    assert "not sealed: rewritten by another program, so its numbers are not vouched for\n" in shown
-    assert "force residual" in shown
+    assert "not sealed: rewritten by another program, so its numbers are not guaranteed\n" in shown
+    assert "max. unbalanced force" in shown
     succeeded("export", "by_xarray.nc", "-o", "a.xyz", folder=tmp_path)
     xr.Dataset({"a": ("n", [1.0])}).to_netcdf(tmp_path / "foreign.nc")
     refused("show", "foreign.nc", folder=tmp_path)

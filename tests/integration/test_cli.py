@@ -78,7 +78,7 @@ def test_run_and_show(folder):
     assert again.endswith("s (replaces an earlier result.nc)\n")
     shown = succeeded("show", "out/result.nc", folder=folder)
     assert re.search(r"1\.0000000\d\d|0\.999999999", shown)
-    for part in ("certificate", "force residual", "layers: 3", "minimise"):
+    for part in ("certificate", "max. unbalanced force", "layers: 3", "minimise"):
         assert part in shown
 
 

@@ -142,7 +142,7 @@ def test_show_counts_events_and_names_lost_equilibria(result, tmp_path):
         assert row[:2] == [kind, "0"] and sum(map(int, row[1:])) == count
     opening = result.events.of("opens")[0]
     assert f"first opening at load factor {opening.load_factor:.9g}, {opening.where}" in lines
-    assert "events taken together within 0.25 mg, estimated error 3.0e-05 of the load" in lines
+    assert "events processed in batches within 0.25 mg, estimated error 3.0e-05 of the load" in lines
     row = next(line for line in lines if line.strip().startswith("0.75"))
     assert row.split()[:4] == ["0.75", "0.8", "jump", "0.5"] and "disk 3" in row
     result.save(tmp_path / "result.nc")

@@ -93,5 +93,5 @@ def test_stability_that_nobody_looked_at_is_said_so(tmp_path):
         store.write(tmp_path / "result.nc", data)
         lines = shown(tmp_path / "result.nc").splitlines()
         assert [line.split()[1:] for line in lines if line.startswith("stable")] == [said.split()]
-        row = next(line for line in lines if line.startswith("negative modes"))
+        row = next(line for line in lines if line.startswith("unstable modes"))
         assert row.split(maxsplit=2)[2].split(maxsplit=1) == ["0", "not determined" if modes is None else "1"]

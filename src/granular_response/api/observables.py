@@ -37,8 +37,8 @@ def coordination_number(result: Result) -> xr.Dataset:
 
     Dimension ``state``: the initial equilibrium, then one for each load factor. ``coordination_number`` is the mean
     number of closed contacts of a disk, those with floor and walls included, over all disks. ``without_rattlers``
-    leaves out ``rattlers`` disks with all their contacts: those with fewer than two contacts that bear more than
-    1e-8 mg, removed again and again. nan where all are rattlers.
+    leaves out ``rattlers`` disks with all their contacts: those with fewer than two contacts of more than
+    1e-8 mg, removed iteratively. nan where all are rattlers.
 
     Examples
     --------
@@ -77,7 +77,7 @@ def fabric_tensor(result: Result) -> xr.DataArray:
 
 
 def mobilization(result: Result) -> xr.Dataset:
-    """How much of the Coulomb limit each contact needs: tangential force over friction times normal force.
+    """The mobilization of each contact: tangential force over friction times normal force.
 
     1 is full mobilization. ``mobilization`` (state, contact) between disks and ``wall_mobilization`` (state,
     wall_contact) at floor and walls, in the order of ``result.contacts``; nan where a contact is open, or has no
@@ -136,8 +136,8 @@ def force_distribution(result: Result, *, state: int = -1, bins: int = 24, to: f
 def stiffness_matrix(result: Result, *, state: int = -1, sliding: str = "refuse") -> Any:
     """The tangent stiffness K = -dF/dq of a stable state, as a ``scipy.sparse.csc_array`` in mg per mean radius.
 
-    Its unknowns are those of the disks one after another: x and z, and the angle where disks turn. With the turn of
-    contacts under the forces that they bear (geometric stiffness). ``state`` and ``sliding`` are as of
+    Its unknowns are those of the disks one after another: x and z, and the angle where disks turn. Geometric
+    (initial-stress) stiffness is included. ``state`` and ``sliding`` are as of
     :meth:`Result.influence`, and so is what it raises.
 
     Examples
@@ -179,15 +179,15 @@ def elastic_moduli(
 ) -> xr.DataArray:
     """The elastic moduli of a packing between periodic sides: stress per small uniform strain, in mg per mean radius.
 
-    The lowest and the highest row move with the strain and the disks between them as equilibrium wants; both stress and
-    strain are averaged between, tension positive. Contacts at the Coulomb limit are taken to stick.
+    The lowest and the highest row move with the strain, and the disks between them relax to equilibrium; stress and
+    strain are averaged over these, tension positive. Contacts at the Coulomb limit are taken to stick.
 
     Parameters
     ----------
     state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
     following : "free"; "suppressed" where no disk turns; "affine" where every disk moves with the strain.
-    margin : part of the rows that is left out at either end, below 1/2.
-    prestress : whether the turn of contacts under the forces that they bear counts.
+    margin : fraction of the rows that is left out at either end, below 1/2.
+    prestress : whether geometric (initial-stress) stiffness is included.
 
     Returns
     -------
@@ -213,13 +213,13 @@ def elastic_moduli(
 
 
 def work(result: Result) -> xr.Dataset:
-    """Where the work of the loads goes, from each state to the next: into stored energy, and into sliding; in mg R.
+    """Work of the loads from each state to the next, split into stored energy and dissipation by sliding, in mg R.
 
-    Dimension ``load``, as of ``floor_response``. ``work`` : that of the loads since the state before, their mean force
-    times the way of their disks. ``stored`` : what the energy of springs and weights has grown by. ``dissipated`` :
-    the difference. ``slid`` : the same loss from the slip of the contacts, an independent sum. Both are for a path of
-    equilibria, and have errors of third and second order in the distance of the states: ask :func:`solve` for load
-    factors close to each other, and compare the two. ``cumsum("load")`` sums them up.
+    Dimension ``load``, as of ``floor_response``. ``work`` : mean force of the loads times the displacement of their
+    disks since the state before. ``stored`` : increase of the energy of springs and weights. ``dissipated`` : the
+    difference. ``slid`` : the same dissipation from the slip of the contacts, an independent sum. Both hold for a path
+    of equilibria, with errors of third and second order in the distance of the states: solve for load factors close to
+    each other, and compare the two. ``cumsum("load")`` sums them up.
 
     Raises ValueError for a result without loads.
 

@@ -36,7 +36,7 @@ from .terminal import LOG, logged, shown
 
 
 class Result:
-    """The initial equilibrium of a scene and its states under load, and what is measured on them.
+    """The initial equilibrium of a scene, its states under load, and quantities measured on them.
 
     Made by :func:`solve` and :func:`open_result`.
 
@@ -96,22 +96,22 @@ class Result:
 
     @property
     def events(self) -> Events:
-        """What happened on the load path, in order: contacts that change, and equilibria that are lost.
+        """Events on the load path, in order: contacts that change status, and losses of equilibrium.
 
-        Without a path, by dynamics or by minimisation, no contact events are known. Where events were taken together,
-        as in packings of many thousand disks, ``reached.events_within`` of a state is the load within which they were
-        (mg), and ``reached.events_error`` an estimate, no bound, of what that leaves out of a force of the floor or a
-        wall since the state before, per load.
+        Dynamics and minimisation have no contact events. Where events were processed in a batch, as in packings of many
+        thousand disks, ``reached.events_within`` of a state is the load increment of the batch (mg), and
+        ``reached.events_error`` estimates, without a bound, the resulting error of a force on the floor or a wall since
+        the state before, relative to the load.
         """
         return Events((k, event) for k, state in enumerate(self._states) for event in state.reached.events)
 
     @property
     def floor_response(self) -> xr.DataArray:
-        """What each load adds to the vertical force on each floor disk, per total magnitude of the applied forces.
+        """The incremental vertical force on each floor disk, over the total magnitude of the applied forces.
 
-        Dimensions ``load`` (with ``load_factor``, ``step`` and ``branch``) and ``floor_disk`` (with ``x``, its place
-        from the loaded disk in mean radii). NaN where no force is applied, after unloading and under torques alone;
-        :attr:`floor_force_change` is defined there.
+        Dimensions ``load`` (with ``load_factor``, ``step`` and ``branch``) and ``floor_disk`` (with ``x``, its position
+        relative to the loaded disk in mean radii). NaN where no force is applied, after unloading and under torques
+        alone; :attr:`floor_force_change` is defined there.
 
         Examples
         --------
@@ -124,7 +124,7 @@ class Result:
 
     @property
     def floor_force_change(self) -> xr.DataArray:
-        """What each load adds to the vertical force on each floor disk, in mg; after unloading too.
+        """The incremental vertical force on each floor disk in mg; defined after unloading too.
 
         Dimensions as of :attr:`floor_response`.
 
@@ -138,11 +138,11 @@ class Result:
     def response_at(
         self, x: float | Sequence[float] | np.ndarray = 0.0, *, smooth: float | None = None
     ) -> xr.DataArray:
-        """The floor response at the place ``x`` from the loaded disk, or at many places, for each load.
+        """The floor response at the position ``x`` relative to the loaded disk, or at several, for each load.
 
         Parameters
         ----------
-        x : a place in mean radii, or a list of them; the response is that of the nearest floor disk.
+        x : a position in mean radii, or a list of them; the response is that of the nearest floor disk.
         smooth : w of a Gaussian average exp(-(x/w)²) over floor disks, in mean radii (Sec. VI); then the stress per
             force at x, per mean radius.
 
@@ -173,7 +173,7 @@ class Result:
 
     @property
     def displacement(self) -> xr.DataArray:
-        """(load, disk, axis) way of each disk from the initial equilibrium, in mean radii.
+        """(load, disk, axis) displacement of each disk from the initial equilibrium, in mean radii.
 
         With the coordinate ``force`` (load), the total magnitude of the applied forces in mg, for a curve of force and
         displacement; :attr:`loaded_disks` says which disks are loaded.
@@ -255,7 +255,7 @@ class Result:
         x : places from the loaded disk, as in ``floor_response``; every mean radius across the box if left out.
         z : heights above the floor; every mean radius up to the highest disk if left out.
         state : as of :meth:`contacts_table`, with its errors.
-        added : the part that the load adds (Fig. 14) rather than the whole stress; by default so for states under load.
+        added : the incremental stress (Fig. 14) in place of the whole stress; the default for states under load.
         width : w of the Gaussian exp(-(r/w)²), in mean radii (Sec. V.C: 2).
 
         Returns
@@ -291,12 +291,12 @@ class Result:
         return xr.DataArray(tensor, coordinates, tuple(coordinates), "stress", labels)
 
     def influence(self, *, state: int = -1, sliding: str = "refuse") -> xr.DataArray:
-        """What a small force on any disk adds to the vertical force on each floor disk, exactly in the limit.
+        """The response of the vertical force on each floor disk to a small force on any disk, exact in the limit.
 
         Parameters
         ----------
-        state : the one that answers, as of :meth:`contacts_table`, with its errors.
-        sliding : "refuse" a state with contacts at the Coulomb limit, whose answer depends on the direction of the
+        state : the loaded state, as of :meth:`contacts_table`, with its errors.
+        sliding : "refuse" a state with contacts at the Coulomb limit, whose response depends on the direction of the
             load, or take them to "stick".
 
         Returns
@@ -371,14 +371,14 @@ class Result:
 
         Parameters
         ----------
-        path : its ending is the format: ``.gsd`` and ``.xyz`` for OVITO, ``.vtu`` and ``.pvd`` for ParaView, ``.data``
-            and ``.dump`` for LAMMPS, ``in.lammps`` for a script with the disks and their springs beside it, ``.txt``
-            for YADE, ``.csv`` for disks, ``.contacts.csv`` and ``.events.csv``.
+        path : its extension is the format: ``.gsd`` and ``.xyz`` for OVITO, ``.vtu`` and ``.pvd`` for ParaView,
+            ``.data`` and ``.dump`` for LAMMPS, ``in.lammps`` for a script with the disks and their springs beside it,
+            ``.txt`` for YADE, ``.csv`` for disks, ``.contacts.csv`` and ``.events.csv``.
         state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last
-            in a file of one.
+            one in a format of one state.
 
-        Raises granular_response.ExportError for another ending, a state that does not exist, a scene that the program
-        cannot have, a missing library, or a place that cannot be written.
+        Raises granular_response.ExportError for another extension, a state that does not exist, a scene that the
+        program cannot have, a missing library, or a place that cannot be written.
 
         Examples
         --------
@@ -392,7 +392,7 @@ class Result:
         return exporting.export(self._data, path, state=state)
 
     def continued(self, load_factors: Sequence[float], *, progress: Progress | bool = True) -> Result:
-        """The result with states at further ``load_factors``, as if they had been asked for from the beginning.
+        """The result with states at further ``load_factors``, bitwise those of an uninterrupted run.
 
         ``progress`` is as of :func:`solve`. Raises as :func:`solve` does, and ResultError where the table of disks has
         changed since.

@@ -142,13 +142,12 @@ def preparations(
 ) -> xr.Dataset:
     """The response of a scene prepared in several ways, with its band over them.
 
-    Under a load that is not small, how gravity was applied decides more than most parameters do: a result for one
-    preparation is one of a band.
+    Unless the load is small, the way in which gravity was applied matters more than most parameters.
 
     Parameters
     ----------
     ways : by name, a ``Preparation`` or a mapping of keys that differ from that of the scene. If left out: gravity at
-        once (the paper's), grown over 20, 100 and 500 sqrt(R/g), a start without friction, and ten taps by 0.5 g after
+        once (the paper's), ramped over 20, 100 and 500 sqrt(R/g), a start without friction, and ten taps of 0.5 g after
         slow gravity.
     scene, measure, load_factors, workers, scheduler, checkpoint, progress : as of :func:`sweep`.
 

@@ -40,7 +40,7 @@ commands = CommandLine(
 StoredResult = Annotated[Path, typer.Argument(help="A stored result (netCDF).")]
 ResultFile = Annotated[Path, output_option(help="Result (netCDF).")]
 AllowUnsettled = Annotated[
-    bool, typer.Option("--allow-unsettled", help="Do not fail where states are stored that are not settled.")
+    bool, typer.Option("--allow-unsettled", help="Exit with 0 even if a stored state has not settled.")
 ]
 Threads = Annotated[
     int | None,
@@ -81,7 +81,7 @@ def _examples_folder() -> Path:
 @commands.command("example slab > slab.yaml", "example")
 def example(
     name: Annotated[
-        str | None, typer.Argument(help="Of the scene; all names if left out.", autocompletion=_example_names)
+        str | None, typer.Argument(help="Name of the scene; all names if left out.", autocompletion=_example_names)
     ] = None,
 ) -> None:
     """Print a scene to start from."""
@@ -169,16 +169,16 @@ def run(
 )
 def continue_(
     result: StoredResult,
-    to: Annotated[list[float], typer.Option(help="Multiple of the scene's loads to go to; repeated, up or down.")],
+    to: Annotated[list[float], typer.Option(help="Next load factor, larger or smaller than the last; repeated.")],
     output: ResultFile,
     folder: Annotated[Path, typer.Option(help="Folder of the scene file, for a packing from a table.")] = Path("."),
     threads: Threads = None,
     allow_unsettled: AllowUnsettled = False,
     imported: Import = None,
 ) -> None:
-    """Take a result through further loads, up or down.
+    """Continue a result to further loads.
 
-    The states so far are kept. The new ones are, to the last bit, those of a run that was never interrupted.
+    Stored states are kept. New ones are bitwise those of an uninterrupted run.
     """
     from ..store import files as store
 
@@ -289,18 +289,19 @@ def keys(
 )
 def export(
     result: StoredResult,
-    output: Annotated[Path, output_option(help="File to make; its ending is the format.")],
+    output: Annotated[Path, output_option(help="File to make; its extension is the format.")],
     state: Annotated[
         int | None,
         typer.Option(
-            help="Write this state alone: 0 for the initial equilibrium, -1 the last one. If not given all, or "
-            "the last in a file of one."
+            help="Write this state alone: 0 for the initial equilibrium, -1 the last one. If not given, all states, or "
+            "the last one in formats of one state."
         ),
     ] = None,
 ) -> None:
-    """Write a result for OVITO (.gsd, .xyz), ParaView (.pvd, .vtu), LAMMPS (.data, .dump), YADE (.txt) or as .csv.
+    """Write a result for OVITO, ParaView, LAMMPS or YADE, or as a table.
 
-    Events of the load path: .events.csv.
+    OVITO: .gsd, .xyz; ParaView: .pvd, .vtu; LAMMPS: .lammps (input script), .data, .dump; YADE: .txt. Tables: .csv
+    (disks), .contacts.csv, .events.csv.
     """
     from ..store import export as exporting
 

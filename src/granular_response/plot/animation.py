@@ -49,13 +49,13 @@ def animate(
 ) -> FuncAnimation:
     """Animation of a growing load: force chains and opened contacts above the floor response, a frame for each load.
 
-    Everything is per applied force and on one scale in all frames, so what moves is what is not linear in the load;
-    grey stays the response to the first load. Ask ``solve`` for the ``load_factors`` of the frames.
+    Forces are divided by the applied force, on one scale in all frames, so that only nonlinear changes are seen. Grey:
+    response to the first load. Each frame is one of the ``load_factors`` given to ``solve``.
 
     Parameters
     ----------
     results : one, or several by their titles, which are shown side by side: with the same forces, in the same order.
-    output : file to write, whole or not at all: .gif, .webp or .html.
+    output : file to write, atomically: .gif, .webp or .html.
     half_width : draw what is within this distance of the loaded disk, in mean radii; by default all.
     fps : frames per second; in a .gif or .webp the last one stays for at least a second and a half.
     dpi, width : pixels per inch, and inches from side to side.

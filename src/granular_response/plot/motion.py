@@ -33,7 +33,7 @@ def motion(
     Parameters
     ----------
     moved : the dataset of ``gr.motion``, or some of its times (``moved.isel(time=slice(0, 50))``).
-    output : file to write, whole or not at all: .gif, .webp or .html.
+    output : file to write, atomically: .gif, .webp or .html.
     fps, dpi, width : frames per second; pixels per inch, and inches from side to side.
     figure : drawn into, or a new one of pyplot's.
 

@@ -33,9 +33,9 @@ def photoelastic(
     """Photoelastic picture: the stress of each disk under its contact forces, in closed form, and its fringes.
 
     The intensity is sin²(π D / ``fringe``) with the difference D of the principal stresses, black outside the disks.
-    A load acts on the rim of its disk, where its arrow ends. Forces that do not balance at the contacts, as those that
-    bear the weight of a disk, are balanced by a force spread evenly over it, and a torque by one that grows with the
-    distance from its centre (:mod:`granular_response.observe.disk_stress`).
+    A load acts on the rim of its disk, where its arrow ends. Contact forces that do not balance, such as those
+    that support the weight of a disk, are balanced by a force spread evenly over it, and a torque by one that grows
+    with the distance from its centre (:mod:`granular_response.observe.disk_stress`).
 
     Parameters
     ----------

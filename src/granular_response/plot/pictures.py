@@ -171,7 +171,7 @@ class Shown:
 
 
 def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line: Any) -> Axes:
-    """The floor response against the place from the loaded disk, a curve for each load (Fig. 7).
+    """The floor response against the position relative to the loaded disk, a curve for each load (Fig. 7).
 
     ``line`` goes to ``Axes.plot``. Raises PictureError for a result without forces to respond to; see :func:`floor`.
 
@@ -247,7 +247,7 @@ def forces(
     Parameters
     ----------
     added : draw the incremental force of each contact, gravity subtracted as a vector (Sec. III.C): dark where it
-        presses the disks together, pale where it takes compression away. By default so for states under load.
+        presses the disks together, pale where compression decreases. By default so for states under load.
     scale : of lengths and widths: linear in the force as in the paper, by its square root, which shows the
         chains of a point load beyond its first rows, or by the percentile of the force among all.
     vmax : magnitude that has full length, in mean disk weights; by default that of the largest force. Give several
@@ -543,7 +543,7 @@ def save(
     scale: Any = "sqrt",
     inputs: Sequence[str | os.PathLike[str]] = (),
 ) -> Path:
-    """Write the :func:`page` of a result as ``.pdf``, ``.png`` or ``.svg``, whole or not at all; returns its path.
+    """Write the :func:`page` of a result as ``.pdf``, ``.png`` or ``.svg``, atomically; returns its path.
 
     Raises PictureError for another format, for what :func:`page` refuses, and for a place that cannot be written or is
     one of ``inputs``.

@@ -102,7 +102,7 @@ PRESSURE = rf"floor pressure $p\,h/{F_EXT}$"
 STRESS = rf"$\sigma_{{zz}}{RADIUS}/{F_EXT}$"
 STRESS_OF_GRAVITY = rf"$\sigma_{{zz}}{RADIUS}/{WEIGHT}$"
 STIFFNESS = rf"$k_N{RADIUS}/{WEIGHT}$"
-CONTACT_FORCE = rf"$|\mathbf{{f}}|/{WEIGHT}$"
+CONTACT_FORCE = rf"$|\,\mathbf{{f}}\,|\,/\,{WEIGHT}$"
 ENERGY_UNIT = rf"{WEIGHT}{RADIUS}"
 TIME_UNIT = rf"\sqrt{{{RADIUS}/g}}"
 #: A difference of stresses has both signs: blue is compression, red the loss of it, white neither.

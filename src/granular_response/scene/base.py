@@ -214,8 +214,8 @@ Sides = Annotated[Literal["walls", "periodic"], Field(description="Side walls, o
 Overlaps = Annotated[
     Literal["kept", "removed"],
     Field(
-        description="Of the given disks, kept: they are springs that are pressed, as in a packing that bears forces; "
-        "removed: disks that overlap, as measured ones do, are pushed apart gently before gravity acts."
+        description="Overlaps of the given disks. kept: they are compressed contacts; removed: overlapping disks, as "
+        "measured ones may be, are pushed apart before gravity acts."
     ),
 ]
 

@@ -50,8 +50,8 @@ class TopSelector(Description):
     """
 
     x: Finite = Field(
-        description="Distance from the middle of the packing, to the right, in its initial equilibrium. Of two disks "
-        "equally near the one with the lower index.",
+        description="Distance from the middle of the packing, to the right, in its initial equilibrium. Of two equally "
+        "near disks the one with the lower index.",
         json_schema_extra={"unit": "mean radius"},
     )
 
@@ -72,8 +72,8 @@ Displacement = Annotated[
 class Load(Sparse):
     """A force (mg) and a torque (mg × mean radius) on one disk, or a prescribed displacement (mean radii) of it.
 
-    A disk that is displaced is held where the displacement says, and the force that this takes is part of the answer.
-    A direction that is left free has the force, as rotation has the torque.
+    A displaced disk is held at its displacement, and the force that this takes is part of the result. The force acts
+    along directions that are free, the torque on the rotation.
 
     Examples
     --------

@@ -42,9 +42,9 @@ class Taps(Description):
     Taps(number=3, amplitude=1.5)
     """
 
-    number: Count = Field(default=10, description="How many; each begins when the packing is at rest again.")
+    number: Count = Field(default=10, description="Number of taps; each begins when the packing is at rest again.")
     amplitude: Positive = Field(default=0.5, description="Largest acceleration of the box.")
-    duration: Positive = Field(default=3.0, description="Time of one period, rounded to four times whole steps.")
+    duration: Positive = Field(default=3.0, description="Duration of a tap, rounded to a multiple of four time steps.")
 
 
 class Preparation(Sparse):

@@ -74,7 +74,7 @@ class Scene(Sparse):
     wall: Wall = Field(default_factory=Wall, description="Contact law at the floor and the side walls.")
     loads: Annotated[tuple[Load, ...], BeforeValidator(_check_list)] = Field(
         default_factory=lambda: (Load(disk=TOP_CENTRE, force=(0.0, -15.0)),),
-        description="Forces and torques on disks, or displacements of them, beside gravity; [] for none.",
+        description="Forces, torques or prescribed displacements of disks, besides gravity; [] for none.",
     )
     preparation: Preparation = Field(default_factory=Preparation, description="How gravity is applied.")
     protocol: Protocol = Field(default_factory=Protocol, description="How equilibrium is reached.")

@@ -39,7 +39,7 @@ Format = Annotated[
 def _check_columns(value: Any) -> Any:
     text = isinstance(value, Mapping) and all(isinstance(one, str) and one.strip() for one in value.values())
     if not text or not value or not set(value) <= set(csv_table.NAMED):
-        raise Problem(f"must say the columns of a CSV table as {{z: Y, radius: R}}, for {', '.join(csv_table.NAMED)}")
+        raise Problem(f"must be columns of a CSV table, as {{z: Y, radius: R}}, for {', '.join(csv_table.NAMED)}")
     if len(set(value.values())) < len(value):
         raise Problem("must name a column once")
     return dict(value)
@@ -49,8 +49,8 @@ class FilePacking(Sparse, PackingDescription):
     """Disks from a file: CSV with the columns x, z and radius, or what another program wrote (``scene.formats``).
 
     Lengths are in any one unit. Every centre lies above the floor and between the side walls; periodic sides take any
-    x. These stand where the file says: tables without a box have the floor ``z = 0`` and the left wall ``x = 0``. A box
-    that follows its disks, or does not say what it is, is not taken for them: then ``width`` and ``origin`` are given.
+    x. Floor and walls are those of the box in the file; a table without a box has the floor ``z = 0`` and the left wall
+    ``x = 0``. Where the box shrinks to the disks, or is of an unknown kind, ``width`` and ``origin`` must be given.
     Lengths, the width too, are rescaled to a mean radius of 1, masses to a mean of 1.
 
     Examples
@@ -63,7 +63,7 @@ class FilePacking(Sparse, PackingDescription):
     kind: Literal["file"] = Field(default="file", description="Disks from a file.")
     path: FileName = Field(description="File with x, z and radius of each disk, from the folder of the scene file.")
     format: Format | None = Field(
-        default=None, description="Format of the file; null goes by its ending, csv for an unknown one."
+        default=None, description="Format of the file; null: by its extension, csv for an unknown one."
     )
     width: Positive | None = Field(
         default=None,
@@ -77,14 +77,14 @@ class FilePacking(Sparse, PackingDescription):
     sides: Sides = "walls"
     columns: Annotated[dict[str, str], BeforeValidator(_check_columns)] | None = Field(
         default=None,
-        description="Which columns of a CSV table are meant, such as {z: Y, radius: R}; without it those of that name, "
-        "and y for the height where there is no z, r for the radius, or diameter.",
+        description="Columns of a CSV table, such as {z: Y, radius: R}; null: those named x, z (or y), radius (or r, "
+        "diameter, d), mass and density.",
     )
     overlaps: Overlaps = "kept"
     springs: FileName | None = Field(
         default=None,
         description="File with the forces of all contacts, for a packing at rest that goes on with its tangential "
-        "springs: our .contacts.csv, or a LAMMPS dump of patom1 patom2 and pair/local force p1 p2 p3.",
+        "springs: a .contacts.csv of this package, or a LAMMPS dump of patom1 patom2 and pair/local force p1 p2 p3.",
     )
     sparse: ClassVar[tuple[str, ...]] = ("columns", "overlaps", "springs")
 

@@ -86,10 +86,10 @@ class Certificate:
 
     ``force_residual``, ``torque_residual``: largest on any disk (mean weights, mean radii). ``coulomb_excess``:
     largest ``|f_t| - friction f_n``. ``smallest_normal_force``: over closed contacts. ``kinetic_energy``: per
-    disk. ``negative_modes``: unstable directions of the tangent with the recorded statuses (where contacts slide 1
-    stands for any number; None: not determined). ``loose_disks``: disks with fewer than two contacts.
-    ``unbalanced_part``: largest unbalanced force on a disk, or torque per radius, as a part of what it bears, its
-    weight or its largest contact force (nan: not measured, in files from before).
+    disk. ``negative_modes``: number of unstable modes with the recorded statuses (where contacts slide 1 stands for any
+    number; None: not determined). ``loose_disks``: disks with fewer than two contacts.
+    ``unbalanced_part``: largest unbalanced force on a disk, or torque per radius, relative to its weight or its largest
+    contact force (nan: not measured).
     ``rolling_excess``: largest rolling force beyond its limit.
 
     Examples
@@ -110,7 +110,7 @@ class Certificate:
 
     @property
     def balanced(self) -> bool:
-        """Whether forces and torques on each disk cancel, as far as it bears any."""
+        """Whether forces and torques on each disk cancel, up to 1e-6 of its weight or largest contact force."""
         return not self.unbalanced_part > BALANCED
 
     @property

@@ -27,6 +27,15 @@ _HIDDEN = {"format", "scene", "scene_folder_note", "parameters", "method", "meth
 
 #: Titles of what is shown of the floor response.
 _RESPONSE = ("load factor", "total force", "sum", "at x = 0", "largest", "at x", "largest change")
+#: Titles of what a certificate has, where they are not its names.
+_CERTIFICATE = {
+    "force_residual": "max. unbalanced force",
+    "torque_residual": "max. unbalanced torque",
+    "unbalanced_part": "max. relative residual",
+    "coulomb_excess": "max. Coulomb violation",
+    "negative_modes": "unstable modes",
+    "loose_disks": "rattlers",
+}
 #: What is shown of the work that each state took.
 _WORK = ("steps", "increments", "factorisations", "newton_iterations")
 
@@ -90,7 +99,7 @@ def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     datasets, attributes, result = _opened(path)
     yield _text(path, style="bold")
     if not store.is_sealed(path):
-        yield Text("not sealed: rewritten by another program, so its numbers are not vouched for", style="bold")
+        yield Text("not sealed: rewritten by another program, so its numbers are not guaranteed", style="bold")
     yield _pairs((name, value) for name, value in attributes.items() if name not in _HIDDEN)
     keys = {name: str(attributes[name]) for name in ("scene", "parameters") if name in attributes}
     texts = ((name, _text(_readable(text).rstrip())) for name, text in keys.items())
@@ -110,7 +119,7 @@ def _result(result: xr.Dataset) -> Iterator[tuple[str, RenderableType]]:
     methods, reasons = (json.loads(result.attrs.get(name, "{}")) for name in ("method", "method_reason"))
     rows = [(stage, f"{method} ({reasons.get(stage, '')})") for stage, method in methods.items()]
     verdicts = [(name, result.attrs[name]) for name in ("stable", "settled") if name in result.attrs]
-    yield "how it was solved", _pairs([*rows, *verdicts])
+    yield "methods", _pairs([*rows, *verdicts])
     if work := stored_values(result, "reached_", _WORK):
         shown = ((name, ("-" if n == NOT_DETERMINED else n for n in work[name])) for name in work)
         yield "work", _by_factor(result, shown)
@@ -131,29 +140,29 @@ def _events(result: xr.Dataset) -> Iterator[tuple[str, RenderableType]]:
     counts = [Counter(event.kind for k, event in found if k == state) for state in range(result.sizes["state"])]
     kinds = [kind for kind in EVENT_KINDS if any(kind in one for one in counts)]
     numbers = ((kind, (one[kind] for one in counts)) for kind in kinds)
-    yield "events on the way to each state", _by_factor(result, numbers)
+    yield "events before each state", _by_factor(result, numbers)
     opening = next((event for _, event in found if event.kind == "opens"), None)
     if opening is not None:
         yield "", _text(f"first opening at load factor {opening.load_factor:.9g}, {opening.where}")
     if "reached_events_within" in result:
         within, error = (float(np.nanmax(result[f"reached_events_{name}"].values)) for name in ("within", "error"))
-        yield "", _text(f"events taken together within {within:.3g} mg, estimated error {error:.1e} of the load")
+        yield "", _text(f"events processed in batches within {within:.3g} mg, estimated error {error:.1e} of the load")
     if lost := [event for _, event in found if event.lost]:
         titles = ("at load factor", "until", "what", "largest displacement", "of", "why")
         rows = (
             (f"{e.load_factor:.6g}", f"{e.until:.6g}", e.kind, f"{e.displacement:.3g}", e.where, e.reason) for e in lost
         )
-        yield "equilibria lost on the way", _table(titles, rows, left=("what", "of", "why"))
+        yield "losses of equilibrium", _table(titles, rows, left=("what", "of", "why"))
 
 
 def _certificate(result: xr.Dataset) -> Iterator[tuple[str, list[str]]]:
     for name in map(str, result):
         if name.startswith("certificate_"):
-            title = name.removeprefix("certificate_").replace("_", " ").replace("loose disks", "rattlers")
+            key = name.removeprefix("certificate_")
             values = [f"{value:.3g}" for value in result[name].values]
-            if title == "negative modes":
+            if key == "negative_modes":
                 values = ["not determined" if value == str(NOT_DETERMINED) else value for value in values]
-            yield title, values
+            yield _CERTIFICATE.get(key, key.replace("_", " ")), values
     if "reached_stopped_rattlers" in result:
         stopped = result["reached_stopped_rattlers"].values
         yield "rattlers stopped by hand", ["0" if number == NOT_DETERMINED else f"{number:g}" for number in stopped]

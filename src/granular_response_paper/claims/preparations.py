@@ -37,7 +37,7 @@ def along(data: Data, measure: Callable[[Data], Any]) -> Iterator[tuple[Case, An
     others = events.isel(event=events["gravity"].values != "at-once")
     ways = set(zip(others["gravity"].values, others["ramp_time"].values, strict=True))
     for gravity, ramp in sorted(ways, key=lambda way: (way[0] != "slow", way[1])):
-        name = f"grown over {ramp:g} sqrt(R/g)" if gravity == "slow" else "without friction first"
+        name = f"ramped over {ramp:g} sqrt(R/g)" if gravity == "slow" else "first without friction"
         with suppress(NotMeasured):  # not every event is looked for in every preparation
             found = measure(replace(data, prepared={"gravity": gravity, "ramp_time": ramp} | fixed))
             yield Case(prepared=f"gravity {name}"), found

@@ -29,7 +29,7 @@ OUTPUT = Path("figures") / "claims.json"
 PARTS = {
     "ordered": "ordered slabs, piles, theory and method",
     "disorder": "disordered packings",
-    "extension": "what the paper leaves to words (extensions)",
+    "extension": "questions beyond the paper",
 }
 
 #: What a stored table lists of each claim.

@@ -67,7 +67,7 @@ def _profiles(axes: Axes, one: xr.Dataset) -> None:
     for depth, look in family(depths, of="length", marked=False):
         middle, low, high = near["force"].sel(depth=depth).transpose("estimate", "x").values
         banded(axes, near["x"], middle, (low, high), look, alpha=0.25, label=f"{depth:g}")
-    axes.set(xlabel=style.POSITION, ylabel=rf"added force per length$\,\times\,{style.RADIUS}/{style.F_EXT}$")
+    axes.set(xlabel=style.POSITION, ylabel=rf"incremental force per length$\,\times\,{style.RADIUS}/{style.F_EXT}$")
     axes.legend(title=style.DEPTH, fontsize=7, title_fontsize=7, handlelength=1.2)
 
 
@@ -77,7 +77,7 @@ def _directions(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
         banded(axes, means["angle"], middle, (low, high), style.line(k), label=_name(means, case))
     for angle in (LATTICE, 180.0 - LATTICE):
         axes.axvline(angle, ymax=0.62, **DOTS)  # the legend is above
-    axes.set(xlabel="direction below horizontal (°)", ylabel=rf"added force per radian$\,/\,{style.F_EXT}$")
+    axes.set(xlabel="direction below horizontal (°)", ylabel=rf"incremental force per radian$\,/\,{style.F_EXT}$")
     axes.set(xticks=[30, 60, 90, 120, 150], ylim=(0.0, None))
     if cases:
         axes.set_ylim(0.0, 1.5 * axes.get_ylim()[1])
@@ -105,8 +105,8 @@ def _moves(axes: Axes, packings: xr.Dataset, cases: list[int]) -> None:
         part = np.arange(1, len(moves) + 1) / len(moves)
         axes.step(np.maximum(moves, 1e-3), part, where="post", label=_name(packings, case), **style.line(k))
     axes.axvline(packings.attrs["largest_move"], ymax=0.62, **DOTS)
-    axes.set(xlabel=rf"way of the loaded disk$\,/\,{style.RADIUS}$", ylabel="part of packings", xscale="log")
-    axes.set(ylim=(0.0, 1.75), yticks=[0.0, 0.5, 1.0])
+    axes.set(xlabel=rf"displacement of the loaded disk$\,/\,{style.RADIUS}$", xscale="log")
+    axes.set(ylabel="fraction of packings", ylim=(0.0, 1.75), yticks=[0.0, 0.5, 1.0])
     axes.legend(fontsize=6, loc="upper left", handlelength=1.6)
 
 

@@ -126,7 +126,7 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
     drawn[0].set_ylabel("relative to the load")
     _ends(ends, events, delta, friction)
     figure.legend(*drawn[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, handlelength=3.0)
-    names = ("remainder on the floor", "dissipated, first loop", "dissipated, second loop", "ends of ranges")
+    names = ("residual floor forces", "dissipated, first loop", "dissipated, second loop", "ends of ranges")
     titles((*drawn, ends), names)
     return figure
 

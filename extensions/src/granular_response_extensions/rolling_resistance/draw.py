@@ -116,7 +116,8 @@ def _couples(axes: Axes, slab: xr.Dataset) -> None:
     for rolling, look in family(slab["rolling_friction"].values, of="other", marked=False):
         for load, dashes in zip((0, -1), ("-", "--"), strict=True):
             axes.plot(part["z"], part.sel(rolling_friction=rolling).isel(load=load), **look | {"linestyle": dashes})
-    axes.set(xlabel="height / slab's", ylabel=rf"couple stress$\,/\,\sigma_{{zz}}{style.RADIUS}$ (%)", ylim=(0.0, None))
+    axes.set(xlabel="height / slab height", ylim=(0.0, None))
+    axes.set_ylabel(rf"couple stress$\,/\,\sigma_{{zz}}{style.RADIUS}$ (%)")
 
 
 def _torques(slab: xr.Dataset) -> Figure:

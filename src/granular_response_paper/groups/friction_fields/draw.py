@@ -82,7 +82,7 @@ def _force_chains(data: xr.Dataset) -> Figure:
             style.no_axes(axes)
             axes.set(xlim=(width / 3.0, 2.0 * width / 3.0), ylim=(-2.4, z + 5.2))
     names = list(map(_friction, frictions))
-    titles(panels.flat, [*names, *(rf"{name}, $|\mathbf{{f}}|\,z/{style.F_EXT}$" for name in names)])
+    titles(panels.flat, [*names, *(rf"{name}, $|\,\mathbf{{f}}\,|\,z/{style.F_EXT}$" for name in names)])
     return figure
 
 

@@ -153,7 +153,8 @@ def _bounds(axes: Axes, crossovers: xr.Dataset, looks: Iterable[tuple[float, dic
             inwards = (10.0 * row + 4.0) * (-1) ** above
             text, (ha, va) = (f"> {bound:g}", ("right", "top")) if above else (f"≤ {bound:g}", ("left", "bottom"))
             at_edge = {"xycoords": axes.get_xaxis_transform(), "ha": ha, "va": va, "color": look["color"]}
-            note(axes, text, (friction, float(above)), (-5.0, inwards), fontsize=8, **at_edge)
+            place = (-5.0 if above else -1.0, inwards)
+            note(axes, text, (friction, float(above)), place, fontsize=8, **at_edge)
 
 
 def _certainty(crossovers: xr.Dataset, shapes: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:

@@ -152,7 +152,7 @@ def _forces(data: xr.Dataset) -> Figure:
             network.draw_loaded_disk(axes, (x, z), float(radius[disk]))
             network.draw_load(axes, (x, z + radius[disk]), length=3.6)
             axes.set(xlim=limits)
-    times_depth = rf"incremental, $|\mathbf{{f}}|\,z/{style.F_EXT}$"
+    times_depth = rf"incremental, $|\,\mathbf{{f}}\,|\,z/{style.F_EXT}$"
     titles((wide, *panels[1]), ("under gravity", f"incremental, {force}, middle third", times_depth))
     return figure
 
@@ -301,10 +301,10 @@ def _averages(data: xr.Dataset) -> Figure:
             _family(axes, data.isel(case=case, width=w), x)
             letter = chr(ord("a") + row * len(deltas) + column)
             style.letter(axes, letter, text=material(delta, friction).replace(", ", "\n      "))
-        panels[row, 0].set_ylim(top=1.15 * panels[row, 0].get_ylim()[1])
+        panels[row, 0].set_ylim(top=1.3 * panels[row, 0].get_ylim()[1])
     panels[0, 0].set_xlim(-45.0, 45.0)
     outer(panels, style.POSITION, style.FLOOR_STRESS)
-    note = f"over each panel: {style.FORCE}, in brackets the packings at rest where some collapsed; grey: elastic"
+    note = f"over each panel: {style.FORCE}, in brackets the number of stable slabs if some collapsed; grey: elastic"
     figure.suptitle(note, fontsize=8)
     return figure
 
@@ -339,7 +339,6 @@ def _packings(data: xr.Dataset) -> Figure:
     roses = [figure.add_subplot(grid[0, k], projection="polar") for k in range(len(disordered))]
     for axes, delta in zip(roses, disordered, strict=True):
         _rose(axes, data, delta, None, {"color": colours[delta], "linestyle": "-"})
-    _rose(roses[0], data, disordered[0], LITERAL, {"color": style.BLACK, "linestyle": "--", "linewidth": 0.8})
     coordination = figure.add_subplot(grid[1, :])
     ends, counted = [], data["coordination_number_with_walls"].values
     for delta, look in family(deltas, of="polydispersity"):

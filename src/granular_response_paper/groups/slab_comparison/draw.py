@@ -33,7 +33,7 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     figure, ((profiles, distances),) = style.figure(1, 2, height=3.5)
     _profiles(profiles, data)
     _distances(distances, data)
-    titles((profiles, distances), ("response and elastic slab", "distance"), stem=STEM)
+    titles((profiles, distances), ("response and elastic slab", "difference from the elastic slab"), stem=STEM)
     return {STEM: figure}
 
 
@@ -94,12 +94,12 @@ def _distances(axes: Axes, data: xr.Dataset) -> None:
     layers = np.array([data["layers"].min(), data["layers"].max()], dtype=float)
     other = data["distance_other_floor"].values.min()
     axes.axhline(other, color=style.MUTED, linewidth=0.8, linestyle=(0, (2, 2)))
-    note(axes, "to the other floor's slab", (layers[0], other), (0, -4), va="top", color=style.MUTED, fontsize=8)
+    note(axes, "slab with the other floor", (layers[0], other), (0, -4), va="top", color=style.MUTED, fontsize=8)
     thinnest = data["distance"].values[data["layers"].values == layers[0]]
     guide = 1.25 * thinnest.max() * layers[0] / layers
     axes.plot(layers, guide, color=style.FAINT, linewidth=0.8, zorder=0)
     note(axes, "$\\propto 1/n$", (layers[1], guide[1]), (0, -12), ha="right", fontsize=8)
-    axes.set(xscale="log", yscale="log", xlabel="layers $n$", ylabel="distance / largest response")
+    axes.set(xscale="log", yscale="log", xlabel="layers $n$", ylabel="difference / largest response")
     ticks = np.unique(data["layers"].values)
     axes.set_xticks(ticks, [f"{n:g}" for n in ticks])
     axes.minorticks_off()

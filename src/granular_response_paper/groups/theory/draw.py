@@ -30,7 +30,7 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     for axes in (elliptic, hyperbolic):
         zero(axes)
         axes.set(xlabel=style.SCALED_POSITION, xlim=(x[0], x[-1]))
-        axes.margins(y=0.08)
+        axes.margins(y=0.16)
         axes.legend(loc="upper right")
     elliptic.set_ylabel(style.PRESSURE)
     return {"fig01_predictions": figure}
@@ -43,7 +43,7 @@ def _rays(axes: Axes, angle: float) -> None:
     for z in (0.0, 1.0):
         inset.plot([-1.2, 1.2], [z, z], color=style.MUTED, linewidth=1.0, linestyle="-")
     inset.plot([-foot, 0.0, foot], [0.0, 1.0, 0.0], color=style.BLUE, linewidth=1.4, linestyle="-")
-    inset.text(0.0, 0.28, f"$\\pm{angle:g}°$", ha="center", fontsize=7)
+    inset.text(0.0, 0.1, f"$\\pm{angle:g}°$", ha="center", fontsize=7)
     network.draw_load(inset, (0.0, 1.0), length=0.5)
     style.no_axes(inset)
 
