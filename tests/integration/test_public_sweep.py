@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 from commands import python
 from places import ROOT
+from refusals import refuses
 
 import granular_response as gr
 from granular_response.api import sweep as sweeping
@@ -171,9 +172,7 @@ def test_a_combination_without_equilibrium_is_missing_and_says_why():
     ],
 )
 def test_mistakes_are_one_line(axes, measure, error, said):
-    with pytest.raises(error, match=said) as caught:
-        gr.sweep(SCENE, axes, *filter(None, [measure]), workers=1, progress=False)
-    assert "\n" not in str(caught.value)
+    refuses(error, said, gr.sweep, SCENE, axes, *filter(None, [measure]), workers=1, progress=False)
 
 
 @pytest.mark.parametrize("factors", [2, "12", True, [True], [[1, 2]], []])
@@ -185,8 +184,7 @@ def test_load_factors_that_are_none_are_one_line_before_anything_is_solved(facto
         ),
         lambda: gr.solve(SCENE, load_factors=factors),
     ):
-        with pytest.raises(SceneError, match=r"^load factors.*must be .*one or more finite numbers$"):
-            solved()
+        refuses(SceneError, r"^load factors.*must be .*one or more finite numbers$", solved)
     assert calls == []
 
 
@@ -236,8 +234,7 @@ def test_an_event_along_the_load_is_bracketed():
     assert bracket.width <= 0.002 and bracket.at_low is False
     assert not opened(gr.solve(SCENE, load_factors=[bracket.low]))
     assert opened(gr.solve(SCENE, load_factors=[bracket.high]))
-    with pytest.raises(EventNotBracketed, match="is False at both"):
-        gr.find_event(SCENE, opened, 0.001, 0.002, progress=False)
+    refuses(EventNotBracketed, "is False at both", gr.find_event, SCENE, opened, 0.001, 0.002, progress=False)
 
 
 def test_an_event_along_a_key_is_bracketed():
@@ -281,8 +278,7 @@ def test_a_combination_that_is_no_scene_is_refused_before_anything_is_solved(axe
         raise AssertionError("solved")
 
     scene = SCENE.updated({"contact.friction": 0.2})
-    with pytest.raises(SceneError, match="must be"):
-        gr.sweep(scene, axes, measure, workers=1, progress=False)
+    refuses(SceneError, "must be", gr.sweep, scene, axes, measure, workers=1, progress=False)
 
 
 def test_floor_disks_that_differ_are_in_order_along_x():

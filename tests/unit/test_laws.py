@@ -12,6 +12,7 @@ from commands import process
 from demonstration import Cohesion, Cohesive, Cubic
 from places import ROOT
 from pydantic import Field
+from refusals import refuses
 
 import granular_response as gr
 from granular_response.cli import scene_reference
@@ -108,8 +109,7 @@ def test_parameters_of_a_law_are_validated_stored_and_listed():
             r"contact\.parameters\.strenth = 1\.0: unknown key, did you mean stre",
         ),
     ):
-        with pytest.raises(SceneError, match=said):
-            scene.updated(wrong)
+        refuses(SceneError, said, scene.updated, wrong)
     with pytest.raises(SceneError, match=r"contact\.parameters\.strength = 0\.5: unknown key \(allowed: none\)"):
         Scene().updated({"contact.parameters": {"strength": 0.5}})
     weak = gr.LaboratoryUnits().reduced_scene({"contact": {"law": "cohesive", "parameters": {"strength": 6.57e-4}}})
@@ -181,8 +181,7 @@ def test_a_law_without_parameters_is_known_in_other_processes_and_tells_results_
     ],
 )
 def test_a_law_that_lacks_something_is_refused(arguments, said):
-    with pytest.raises(gr.GranularError, match=said):
-        gr.register_law(*arguments)
+    refuses(gr.GranularError, said, gr.register_law, *arguments)
     assert "mine" not in KNOWN_LAWS
 
 
@@ -235,8 +234,7 @@ class Growing(Cohesive):
     ],
 )
 def test_a_law_that_contradicts_itself_is_refused(wrong, said):
-    with pytest.raises(gr.GranularError, match=said):
-        gr.register_law("wrong", wrong)
+    refuses(gr.GranularError, said, gr.register_law, "wrong", wrong)
     assert "wrong" not in KNOWN_LAWS
 
 

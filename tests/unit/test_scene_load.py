@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from refusals import refuses
 
 from granular_response.scene import (
     Packing,
@@ -117,9 +118,7 @@ def test_a_place_beyond_the_sides_says_which_load():
 )
 def test_missing_disks(selector, message):
     packing = SlabPacking(layers=4, disks_per_row=7).build()
-    with pytest.raises(SceneError) as caught:
-        resolve_disk(selector, packing, packing.position)
-    assert str(caught.value) == message
+    assert refuses(SceneError, None, resolve_disk, selector, packing, packing.position) == message
 
 
 def test_sideways_forces_that_sum_to_zero_but_for_rounding_are_allowed():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from refusals import refuses
 from small_scenes import scene
 
 import granular_response as gr
@@ -55,8 +56,7 @@ def test_contacts_at_the_limit_are_refused_unless_they_shall_stick():
     solution = solve_scene(described(changes, 80, [0.0, 0.0, 0.0]))
     state = solution.loaded[0]
     disks = floor_disks([solution.rest, state])
-    with pytest.raises(EquilibriumError, match=r"^\d+ contacts are at the Coulomb limit"):
-        influence(solution.problem, state, disks)
+    refuses(EquilibriumError, r"^\d+ contacts are at the Coulomb limit", influence, solution.problem, state, disks)
     assert np.isfinite(influence(solution.problem, state, disks, sliding="stick")).all()
     with pytest.raises(ValueError, match=r"sliding = 'slip': must be refuse or stick"):
         influence(solution.problem, state, disks, sliding="slip")
@@ -102,8 +102,7 @@ def test_a_result_has_it_labelled_and_a_stored_one_too(tmp_path):
     assert float(found["disk_x"][80]) == pytest.approx(0.0, abs=1e-12)
     result.save(tmp_path / "r.nc")
     assert np.array_equal(gr.open_result(tmp_path / "r.nc").influence(state=0).values, found.values)
-    with pytest.raises(IndexError, match="state = 7"):
-        result.influence(state=7)
+    refuses(IndexError, "state = 7", result.influence, state=7)
 
 
 @pytest.mark.parametrize("changes", CASES.values(), ids=CASES)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from refusals import refusals
+from refusals import refusals, refuses
 
 from granular_response.scene import FilePacking, LaboratoryUnits, Scene, SceneError
 
@@ -84,5 +84,4 @@ def test_what_is_wrong_with_a_table_is_for_the_scene_to_say(tmp_path):
     for given in ({"path": str(tmp_path / "disks.csv")}, {"path": 5}, {"path": "disks.csv", "widht": 3}):
         data = {"packing": {"kind": "file", **given}}
         assert LaboratoryUnits().reduced_scene(data) == data
-        with pytest.raises(SceneError, match=r"^packing\."):
-            Scene.from_dict(data).packing.build()
+        refuses(SceneError, r"^packing\.", lambda data=data: Scene.from_dict(data).packing.build())
