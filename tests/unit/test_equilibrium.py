@@ -110,13 +110,6 @@ def test_fixed_limits_lead_to_the_same_equilibrium(start, monkeypatch):
     assert solve_increment(system, known, external, known.q, Work()) is None
 
 
-def test_column_between_walls_by_hand():
-    """Two disks on each other: 2 weights on the floor spring, 1 on the spring between them."""
-    problem, state = free_disks([[1.0, 1.0], [1.0, 3.0]], width=2.0, contact__friction=0.0)
-    z = minimise(problem, state).position[:, 1]
-    assert z == pytest.approx([1.0 - 2.0 / 6000.0, 3.0 - 2.0 / 6000.0 - 1.0 / 3000.0], abs=1e-13)
-
-
 def test_minimum_is_where_dynamics_ends():
     problem = Problem.from_scene(scene(contact__friction=0.0))
     found = minimise(problem, problem.bare_state())

@@ -190,13 +190,6 @@ def test_the_first_event_of_a_kind_is_found_at_its_load(result):
     assert later.low >= bracket.low
 
 
-def test_an_event_read_from_the_path_is_where_contacts_change(result):
-    load = gr.find_event(SCENE, "opens", 0.0, 1.0, progress=False).low
-    before, beyond = gr.solve(SCENE, load_factors=[load - 1e-6, load + 1e-6]).loaded
-    opened = before.pairs.touching & ~beyond.pairs.touching
-    assert opened.any() and (result.rest.pairs.touching <= before.pairs.touching).all()
-
-
 def test_what_changes_at_an_event_is_bracketed_to_its_load():
     """However wide the tolerance, and although the function knows nothing of events."""
     calls = []

@@ -85,17 +85,6 @@ def test_the_stiffness_is_that_at_one_disk_weight(name, reduced_radius, second):
     assert one.stiffest(1.0) == pytest.approx(3000.0)
 
 
-def test_hertz_by_hand():
-    """f = K sqrt(R) xi^(3/2): eight times the force at four times the overlap, twice at four times the radius."""
-    one = law("hertz")
-    equal, wall = shape_of(one), shape_of(one, 2.0, None)
-    assert equal == 1.0 and wall == pytest.approx(2.0)
-    force = asked(one, 4e-4, equal)[0]
-    assert force == pytest.approx((3000.0 / 1.5) ** 1.5 * 8e-6)
-    assert asked(one, 16e-4, equal)[0] == pytest.approx(8.0 * force)
-    assert asked(one, 4e-4, wall)[0] == pytest.approx(2.0 * force)
-
-
 def test_parameters_of_a_law_are_validated_stored_and_listed():
     scene = Scene().updated({"contact.law": "cohesive"})
     assert scene.contact.parameters == Cohesion(strength=0.1) == scene.resolved_wall.parameters

@@ -74,15 +74,6 @@ def test_fronts_cover_every_disk_and_tie(columns, rows):
     )
 
 
-@pytest.mark.parametrize("freedoms", [2, 3])
-def test_lu_solves_what_a_general_solver_does(freedoms):
-    dissection, matrix = dissected(23, 31, freedoms)
-    matrix = shifted(matrix, 6.0)
-    right = np.random.default_rng(2).normal(size=matrix.shape[0])
-    x = Multifrontal(dissection, freedoms).factor(matrix).solve(right)
-    assert x == pytest.approx(spsolve(matrix, right), rel=1e-8, abs=1e-10)
-
-
 @pytest.mark.parametrize("shift", [60.0, 2.0])
 def test_symmetric_matrices_are_solved_where_definite_and_their_negative_eigenvalues_counted(shift):
     dissection, matrix = dissected(15, 20)

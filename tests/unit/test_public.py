@@ -5,7 +5,6 @@ import pkgutil
 
 import numpy as np
 import pytest
-import xarray as xr
 from refusals import refuses
 
 import granular_response as gr
@@ -119,17 +118,6 @@ def test_stress_carries_the_load(result):
 )
 def test_mistakes_of_a_stress_are_one_line(result, arguments, error, said):
     refuses(error, said, result.stress, **arguments)
-
-
-def test_a_stored_result_is_the_result(result, tmp_path):
-    result.save(tmp_path / "result.nc")
-    back = gr.open_result(tmp_path / "result.nc")
-    xr.testing.assert_equal(back.floor_response, result.floor_response)
-    assert back.certificates == result.certificates and back.scene == result.scene
-    np.testing.assert_array_equal(back.loaded[-1].position, result.loaded[-1].position)
-    further = back.continued([1.5])
-    assert further.load_factors == (0.5, 1.0, 1.5)
-    np.testing.assert_array_equal(further.loaded[-1].position, result.continued([1.5]).loaded[-1].position)
 
 
 def test_periodic_sides_are_crossed_the_shortest_way(tmp_path):

@@ -72,17 +72,6 @@ def test_a_disk_on_the_floor_holds_a_couple_up_to_its_limit(torque):
     assert state.angle[0] - rest.angle[0] == pytest.approx(torque / problem.wall_rolling.stiffness)
 
 
-def test_a_disk_rolls_to_rest():
-    """Without slip it is slowed by 2/3 mu_R g, so it stops after 3 v^2 / (4 mu_R g)."""
-    speed = 0.5
-    problem, state = free_disks([[500.0, 1.0 - 1.0 / 6000.0]], velocity=[[speed, 0.0]], spin=[-speed], **FLOOR)
-    dynamics = Dynamics(problem, state, time_step=2e-4)
-    dynamics.advance(20_000)
-    assert np.abs(dynamics.v).max() < 1e-3
-    assert dynamics.position[0, 0] - 500.0 == pytest.approx(0.75 * speed**2 / 0.3, rel=5e-3)
-    assert dynamics.state().walls.resists_rolling
-
-
 @pytest.mark.parametrize("body", ["disk", "floor"])
 def test_energy_is_never_gained(body):
     """Collisions with any spin, without gravity: what flies apart has less energy than what met."""

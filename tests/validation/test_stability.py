@@ -89,22 +89,6 @@ def test_undamped_energy_stays_and_friction_only_takes_it(integrator):
     assert sliding[-1] < -0.9
 
 
-@pytest.mark.parametrize(("speed", "spin"), [(1.0, 0.0), (0.0, -3.0), (-1.0, 5.0), (1.0, -1.0)])
-@pytest.mark.parametrize("mu", [0.1, 0.5])
-def test_sliding_turns_into_rolling_as_in_closed_form(mu, speed, spin):
-    """Friction mu g until velocity and rim speed agree: 2/3 of the first velocity for a disk without spin."""
-    time = 1.5 * max(abs(speed + spin), 1.0) / (3.0 * mu)
-    scene = Scene().updated({"wall.friction": mu, "loads": []})
-    t, velocity, rim = closed_forms.sliding_to_rolling(scene, speed, spin, 1e-4, time)
-    exact_velocity, exact_rim = closed_forms.rolling_speed(t, mu, speed, spin)
-    # where sliding ends the spring is still stretched by mu g, and rings with the frequency sqrt(3 k_T)
-    wall = scene.resolved_wall
-    ringing = mu / np.sqrt(3.0 * wall.stiffness_ratio * wall.normal_stiffness)
-    np.testing.assert_allclose(velocity, exact_velocity, rtol=0, atol=ringing)
-    np.testing.assert_allclose(rim, exact_rim, rtol=0, atol=2.0 * ringing)
-    assert velocity[-1] == pytest.approx((2.0 * speed - spin) / 3.0, abs=1e-3)
-
-
 # Results
 
 
