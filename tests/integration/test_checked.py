@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from commands import refused, succeeded
 from refusals import refuses
-from small_scenes import scene
+from small_scenes import pushed, scene
 from spoilt import spoil
 
 import granular_response as gr
@@ -19,8 +19,7 @@ from granular_response.store.result import ResultError, load_coordinates, state_
 
 @pytest.fixture(scope="module")
 def solution():
-    load = {"disk": "top-centre", "force": [0.5, -3.0]}
-    return solve_scene(scene(contact__friction=0.3, loads=[load]), load_factors=(0.5, 1.0, 2.0))
+    return solve_scene(scene(contact__friction=0.3, loads=pushed(0.5, -3.0)), load_factors=(0.5, 1.0, 2.0))
 
 
 @pytest.fixture(scope="module")

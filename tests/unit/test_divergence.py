@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_scenes import at_rest, free_disks, scene, started
+from small_scenes import at_rest, free_disks, pushed, scene, started
 
 from granular_response.solvers import stability
 from granular_response.solvers.equilibrium import external_force, newton
@@ -101,8 +101,9 @@ def test_an_instability_that_is_not_determined_is_not_certified(monkeypatch):
 
 def sliding(layers, across, force):
     """A slab with friction 0.5 under an oblique force: its state, and the trial that this is."""
-    loads = [{"disk": "top-centre", "force": [0.15 * force, -force]}]
-    problem, rest = at_rest(scene(layers, across, contact__friction=0.5, wall__friction=0.5, loads=loads))
+    problem, rest = at_rest(
+        scene(layers, across, contact__friction=0.5, wall__friction=0.5, loads=pushed(0.15 * force, -force))
+    )
     (state,) = follow(problem, rest, [1.0])
     assert state.certificate.stable and not any(event.lost for event in state.reached.events)
     system = StaticSystem(problem, state)

@@ -54,7 +54,6 @@ def test_a_disk_thrown_far_is_followed():
 
 
 def test_looking_changes_nothing():
-    """Forces, energies and states measured on the way leave the trajectory the same to the last bit."""
     unseen, seen = falling(), falling()
     for _ in range(10):
         unseen.advance(10)

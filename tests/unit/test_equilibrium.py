@@ -45,7 +45,6 @@ def test_a_disk_that_nothing_touches_falls_to_its_support_in_few_steps(friction)
 
 
 def test_certificate_measures_what_it_says(settled):
-    """Each fault shows in its own number."""
     problem, rest = settled
     good = certify(problem, rest)
     assert good.force_residual < 1e-10 and good.kinetic_energy == 0 and good.coulomb_excess == 0

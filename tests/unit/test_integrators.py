@@ -20,7 +20,6 @@ from granular_response.solvers.dynamics import Dynamics
 
 @pytest.mark.parametrize("name", INTEGRATORS)
 def test_free_fall_is_exact(name):
-    """Constant acceleration: position and velocity are right to rounding for every integrator."""
     problem, state = free_disks([[500.0, 400.0]], velocity=[(0.3, 2.0)], contact__friction=0.0)
     dynamics = Dynamics(problem, state, name, 2e-3)
     dynamics.advance(1000)

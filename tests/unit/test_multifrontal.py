@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
-from small_scenes import at_rest, scene
+from small_scenes import at_rest, pushed, scene
 
 from granular_response.linalg import Sequence, multifrontal, nearby, ordering
 from granular_response.linalg.dissection import Dissection
@@ -217,8 +217,8 @@ def test_a_sequence_of_solutions_renews_what_serves_and_leaves_the_rest_to_exact
 
 
 def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
-    loads = [{"disk": "top-centre", "force": [0.0, -12.0]}]
-    problem, rest = at_rest(scene(9, 19, contact__friction=0.2, preparation__gravity="frictionless", loads=loads))
+    smooth = {"preparation__gravity": "frictionless", "loads": pushed(0.0, -12.0)}
+    problem, rest = at_rest(scene(9, 19, contact__friction=0.2, **smooth))
     roughly = counted(monkeypatch, Multifrontal, "rough_factor")
     alone = follow(problem, rest, [1.0])[0]
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
@@ -233,8 +233,8 @@ def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
 def test_no_other_factorisation_is_in_memory_when_eigenvalues_are_looked_for(monkeypatch):
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
     monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
-    loads = [{"disk": "top-centre", "force": [0.0, -28.0]}]
-    problem, rest = at_rest(scene(4, 9, contact__friction=1.0, preparation__gravity="frictionless", loads=loads))
+    smooth = {"preparation__gravity": "frictionless", "loads": pushed(0.0, -28.0)}
+    problem, rest = at_rest(scene(4, 9, contact__friction=1.0, **smooth))
     state = follow(problem, rest, [1.0])[0]
     system = StaticSystem(problem, state)
     trial = system.at(state)

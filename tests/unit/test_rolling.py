@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from small_scenes import free_disks, scene, shaken, started
+from small_scenes import free_disks, pushed, scene, shaken, started
 from test_next_changes import added_to_tangent
 from test_statics import dense_tangent, numerical_tangent
 
@@ -178,9 +178,8 @@ def test_a_changed_status_is_the_difference_of_tangents():
 
 @pytest.fixture(scope="module")
 def solution():
-    loads = [{"disk": "top-centre", "force": [1.0, -6.0]}]
     weak = EVERYWHERE | {"contact__rolling_friction": 0.02, "wall__rolling_friction": 0.02}
-    return solve_scene(scene(5, 9, loads=loads, protocol__load_factors=[0.5, 1.0], **weak))
+    return solve_scene(scene(5, 9, loads=pushed(1.0, -6.0), protocol__load_factors=[0.5, 1.0], **weak))
 
 
 def test_a_path_keeps_the_limits_and_its_energy(solution):
@@ -235,10 +234,9 @@ def test_stiff_rolling_shortens_the_time_step():
 
 def test_an_event_names_the_contact_that_changes():
     """Also where a wall contact and the rolling of a pair change at one load: a disk is where its wall contact is."""
-    load = {"disk": "top-centre", "force": [0.3, -6.0]}
     rolls = {"contact__friction": 0.5, "contact__rolling_friction": 0.05, "contact__rolling_stiffness_ratio": 1.0}
     solved = solve_scene(
-        scene(packing__layers=5, packing__disks_per_row=9, wall__friction=0.3, **rolls, loads=[load]),
+        scene(packing__layers=5, packing__disks_per_row=9, wall__friction=0.3, **rolls, loads=pushed(0.3, -6.0)),
         load_factors=[1.0, 2.0],
     )
     at_wall = [event for state in solved.loaded for event in state.reached.events if event.at_wall]

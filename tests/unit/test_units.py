@@ -32,7 +32,6 @@ def test_units_of_the_paper(quantity):
 
 
 def test_laws_hold_in_both_units():
-    """A law of physics does not know its units: a spring's frequency, a falling disk, a weight on a line."""
     units = LaboratoryUnits(radius=0.02, thickness=0.1, density=2500.0, gravity=1.62)
     stiffness, mass = units.to_laboratory("stiffness", 3000.0), units.to_laboratory("mass", 1.0)
     assert units.to_reduced("time", np.sqrt(mass / stiffness)) == pytest.approx(np.sqrt(1.0 / 3000.0))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_scenes import at_rest, scene
+from small_scenes import at_rest, pushed, scene
 from stress import closed_forms, random_scenes
 
 from granular_response.kernels.integrators import INTEGRATORS
@@ -41,7 +41,6 @@ SMALL = {"packing": {"kind": "slab", "layers": 4, "disks_per_row": 7}, "loads": 
     ids=lambda changes: ", ".join(changes) or "as it is",
 )
 def test_the_predicted_time_step_is_neither_too_long_nor_much_too_short(integrator, changes):
-    """What is settled stays so at 0.95 of the limit, and not at twice the limit."""
     if integrator == "leapfrog" and changes == {"contact.damping_ratio": 0.0}:
         changes = {"contact.damping_ratio": 0.02}  # it adds no damping of its own: without any, no kick dies out
     scene = Scene.from_dict(SMALL).updated({**changes, "protocol.time_step": "auto"})
@@ -141,7 +140,6 @@ DESCRIPTION = {
 
 
 def test_a_table_of_disks_has_twins_too(tmp_path):
-    """Mirrored, in another order and another unit; forces and displacements alike."""
     third = 1.0 + np.sqrt(3.0)
     table = np.array([(2.0, 1.0, 1.0), (4.0, 1.0, 1.0), (6.2, 1.1, 1.1), (3.0, third, 1.0), (5.1, third + 0.1, 0.9)])
     random_scenes.write_table(tmp_path / "packing.csv", table)
@@ -228,8 +226,7 @@ def test_errors_that_a_user_would_not_understand_count_as_wrong(tmp_path, monkey
 
 
 def test_a_rest_state_disturbed_in_its_last_digits_gives_the_same_response():
-    loads = [{"disk": "top-centre", "force": [0.0, -3.0]}]
-    problem, rest = at_rest(scene(contact__friction=0.0, loads=loads))
+    problem, rest = at_rest(scene(contact__friction=0.0, loads=pushed(0.0, -3.0)))
     assert rest.certificate.negative_modes == 0
 
     def floor(state):
