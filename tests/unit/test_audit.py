@@ -100,11 +100,9 @@ def test_a_spring_of_an_open_contact_and_a_lost_disk_are_found(solution, state):
     assert check(solution, replace(state, position=position)).escaped == 1
 
 
-@pytest.mark.parametrize(
-    ("name", "value"), [("force_residual", 1e-3), ("torque_residual", 1e-3), ("coulomb_excess", 1e-3)]
-)
-def test_a_certificate_that_says_something_else_is_found(solution, state, name, value):
-    certificate = replace(state.certificate, **{name: value})
+@pytest.mark.parametrize("name", ["force_residual", "torque_residual", "coulomb_excess"])
+def test_a_certificate_that_says_something_else_is_found(solution, state, name):
+    certificate = replace(state.certificate, **{name: 1e-3})
     tampered = replace(state, reached=replace(state.reached, certificate=certificate))
     assert complaint(solution, tampered).startswith(f"{name} is")
 

@@ -494,12 +494,8 @@ def test_every_claim_has_a_text_and_stands_at_its_section():
     parts = [list(table.PARTS).index(claim.part) for claim in EVERY]
     assert parts == sorted(parts)
     for claim in EVERY:
-        assert (
-            claim.place
-            and claim.measured
-            and claim.paper
-            and claim.group in table.groups_read(collection_of(claim.group))
-        )
+        assert claim.place and claim.measured and claim.paper
+        assert claim.group in table.groups_read(collection_of(claim.group))
         assert claim.paper[0].isupper() and claim.paper.rstrip('”"').endswith((".", ":")), claim.id  # whole sentences
         assert all(1 <= number <= 24 for number in claim.figures)
         assert claim.source == "paper" or claim.part == "extension", claim.id  # no hypothesis is the paper's
@@ -935,9 +931,8 @@ def test_the_stored_table_is_the_one_file_of_verdicts(tmp_path):
     found = table.write(tmp_path / "claims.json", tmp_path / "data", tmp_path / "none.nc")
     stored = json.loads((tmp_path / "claims.json").read_text())
     assert stored == found == table.read(tmp_path / "claims.json")
-    assert [row["id"] for row in stored["table"]] == [claim.id for claim in table.claims_in(PAPER)] and stored[
-        "scheme"
-    ] == list(SCHEME)
+    assert [row["id"] for row in stored["table"]] == [claim.id for claim in table.claims_in(PAPER)]
+    assert stored["scheme"] == list(SCHEME)
     ordered = stored["counts"]["ordered"]
     assert ordered["supported"] == 4 and ordered["not_measured"] == sum(ordered.values()) - 4
     assert sum(sum(part.values()) for part in stored["counts"].values()) == len(stored["table"])

@@ -87,16 +87,8 @@ def test_what_cannot_be_told_apart_has_no_key():
         pass
 
     bound = [Task(0.1, np.ones(2)).total, [1].append]
-    for value in (
-        Local(),
-        Local,
-        threading.Lock(),
-        (n for n in [1]),
-        [Local()],
-        lambda: 1,
-        np.array([Local()]),
-        *bound,
-    ):
+    local = [Local(), Local, [Local()], np.array([Local()]), lambda: 1]
+    for value in (*local, *bound, threading.Lock(), (n for n in [1])):
         refuses(Indistinct, None, key, value)
 
 

@@ -8,7 +8,6 @@ import pytest
 from refusals import refuses
 from small_scenes import free_disks, pushed, scene
 
-import granular_response
 import granular_response as gr
 from granular_response.errors import EquilibriumError
 from granular_response.scene import Scene, SceneError
@@ -70,7 +69,7 @@ def test_a_response_that_is_rounding_says_so(force, stiffness, said):
     line = "of the response to the smallest load may be rounding; take larger loads"
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        granular_response.solve(scene(loads=pushed(0.0, -force), **stiff))
+        gr.solve(scene(loads=pushed(0.0, -force), **stiff))
     assert any(line in str(warning.message) for warning in caught) is said
 
 

@@ -75,11 +75,8 @@ def test_a_disk_on_the_floor_holds_a_couple_up_to_its_limit(torque):
 @pytest.mark.parametrize("body", ["disk", "floor"])
 def test_energy_is_never_gained(body):
     """Collisions with any spin, without gravity: what flies apart has less energy than what met."""
-    rng, strong = (
-        np.random.default_rng(3),
-        EVERYWHERE | {"contact__rolling_friction": 1.0, "wall__rolling_friction": 1.0},
-    )
-    lost = []
+    rng, lost = np.random.default_rng(3), []
+    strong = EVERYWHERE | {"contact__rolling_friction": 1.0, "wall__rolling_friction": 1.0}
     for _ in range(60):
         v, spin = rng.normal(0.0, 0.3, (2, 2)), rng.normal(0.0, 1.0, 2)
         v[0, 1], v[1, 1] = -abs(v[0, 1]) - 0.01, abs(v[1, 1])

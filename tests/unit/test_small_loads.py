@@ -69,14 +69,6 @@ def test_nothing_holds_a_periodic_slab_on_a_smooth_floor_along_x():
     assert np.isnan(found[:, :, 0]).all() and np.isfinite(found[:, :, 1]).all()
 
 
-def contact_answers(problem, state, disks, sliding="refuse"):
-    """What a unit force downwards on one disk after another adds to every contact force: (k, m, 2) and (k, w, 2)."""
-    system, trial = sticking(problem, state, sliding)
-    answer = system.answers(trial)
-    added = [added_forces(system, trial, answer(force_on(problem, disk, 1, -1.0))) for disk in disks]
-    return tuple(np.array(one) for one in zip(*added, strict=True))
-
-
 def test_an_unknown_that_a_load_holds_adds_nothing():
     load = [{"disk": "top-centre", "displacement": [None, -1e-4]}]
     solution = solve_scene(described({}, 80, SMALL).updated({"loads": load}))
@@ -109,11 +101,12 @@ def test_a_result_has_it_labelled_and_a_stored_one_too(tmp_path):
 def test_every_contact_answers_as_to_a_small_load(changes):
     solution = solve_scene(described(changes, 80, [0.0, -1e-4, 0.0]))
     rest, loaded = solution.rest, solution.loaded[0]
-    pairs, walls = contact_answers(solution.problem, rest, np.array([19, 80]))
-    assert pairs.shape == (2, len(rest.pairs.first), 2) and walls.shape == (2, len(rest.walls.first), 2)
-    assert pairs[1] == pytest.approx(pair_force_difference(rest, loaded) / 1e-4, abs=1e-4)
-    assert walls[1] == pytest.approx(wall_force_difference(rest, loaded) / 1e-4, abs=1e-4)
-    assert np.abs(pairs[1]).max() > 0.1
+    system, trial = sticking(solution.problem, rest, "refuse")
+    down = force_on(solution.problem, 80, 1, -1.0)
+    pairs, walls = added_forces(system, trial, system.answers(trial)(down))
+    assert pairs == pytest.approx(pair_force_difference(rest, loaded) / 1e-4, abs=1e-4)
+    assert walls == pytest.approx(wall_force_difference(rest, loaded) / 1e-4, abs=1e-4)
+    assert np.abs(pairs).max() > 0.1
 
 
 def test_a_displacement_holds_a_periodic_packing_along_x():

@@ -17,12 +17,6 @@ from granular_response.solvers.system import StaticSystem
 from granular_response.state import State
 
 
-def settling() -> tuple[Problem, State]:
-    """A packing that is nearly at rest."""
-    problem = Problem.from_scene(scene(contact__friction=0.2, wall__friction=0.2))
-    return problem, relax(Dynamics(problem, problem.bare_state()), Stop(1e-8))
-
-
 @pytest.fixture(scope="module")
 def loaded() -> tuple[Problem, State]:
     """A packing at rest, with the load that it is to bear."""
@@ -30,7 +24,8 @@ def loaded() -> tuple[Problem, State]:
 
 
 def test_newtons_method_ends_where_its_options_say(monkeypatch):
-    problem, state = settling()
+    problem = Problem.from_scene(scene(contact__friction=0.2, wall__friction=0.2))
+    state = relax(Dynamics(problem, problem.bare_state()), Stop(1e-8))  # nearly at rest
     equations, external = StaticSystem(problem, state), external_force(problem, 0.0)
     known = equations.start(state)
     assert newton(equations, known, external)[1].residual < equilibrium.OPTIONS.tolerance

@@ -40,24 +40,11 @@ def unstressed(ratio, horizontal):
     packing = scene.updated({"packing.lattice_constant": spacing}).packing.build()
     pairs = rest.pairs
     level = packing.row[pairs.first] == packing.row[pairs.second]
-    distance = np.linalg.norm(
-        packing.box.separation(packing.position[pairs.first], packing.position[pairs.second]), axis=1
-    )
-    near = (distance < 2.1) & (horizontal | ~level)
-    zero = np.zeros(len(level))
-    state = replace(
-        rest,
-        position=packing.position,
-        box=packing.box,
-        pairs=replace(
-            pairs,
-            overlap=np.where(near, 1e-12, -1.0),
-            normal_force=zero,
-            tangential_force=zero,
-            spring=zero,
-            status=np.where(near, STICKING, 0).astype(np.int8),
-        ),
-    )
+    apart = packing.box.separation(packing.position[pairs.first], packing.position[pairs.second])
+    near = (np.linalg.norm(apart, axis=1) < 2.1) & (horizontal | ~level)
+    closed = {"overlap": np.where(near, 1e-12, -1.0), "status": np.where(near, STICKING, 0).astype(np.int8)}
+    bears = dict.fromkeys(("normal_force", "tangential_force", "spring"), np.zeros(len(level)))
+    state = replace(rest, position=packing.position, box=packing.box, pairs=replace(pairs, **closed, **bears))
     if not horizontal:  # what touches is found from positions: a hair wider and lower
         position = packing.position * [1.0 + 1e-9, 1.0 - 1e-9]
         packing = replace(packing, width=packing.width * (1.0 + 1e-9))

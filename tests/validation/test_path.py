@@ -146,19 +146,12 @@ def test_a_path_is_that_of_small_increments_but_for_their_error(changes):
 
 
 #: Statuses from which and to which each event leads; a contact that closes may slide at once.
-BEFORE = {
-    "opens": {STICKING, SLIDING},
-    "closes": {OPEN},
-    "slides": {STICKING},
-    "sticks": {SLIDING},
-    "reverses": {SLIDING},
-}
-AFTER = {
-    "opens": {OPEN},
-    "closes": {STICKING, SLIDING},
-    "slides": {SLIDING},
-    "sticks": {STICKING},
-    "reverses": {SLIDING},
+LEADS = {
+    "opens": ({STICKING, SLIDING}, {OPEN}),
+    "closes": ({OPEN}, {STICKING, SLIDING}),
+    "slides": ({STICKING}, {SLIDING}),
+    "sticks": ({SLIDING}, {STICKING}),
+    "reverses": ({SLIDING}, {SLIDING}),
 }
 
 
@@ -177,9 +170,9 @@ def test_events_lead_from_the_statuses_of_one_kept_state_to_those_of_the_next(ch
         for event in events:
             kinds.add(event.kind)
             contact = (event.at_wall, event.first, event.second)
-            was = now.get(contact, {OPEN})
-            assert was & BEFORE[event.kind]
-            now[contact] = AFTER[event.kind]
+            expected, becomes = LEADS[event.kind]
+            assert now.get(contact, {OPEN}) & expected
+            now[contact] = becomes
         for contact, status in statuses(after).items():
             assert status in now.get(contact, {OPEN}), contact
     assert kinds
