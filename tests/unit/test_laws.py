@@ -242,6 +242,7 @@ SCENE = """
 packing: {kind: arrays, x: [1.0], z: [1.0], radius: [1.0], width: 2.5}
 contact: {law: mine, friction: 0.0}
 loads: [{disk: 0, force: [0.0, -1.0]}]
+protocol: {method: dynamics, static_finish: false, stop_kinetic_energy: 1.0e-9}  # kernels of statics take longest
 """
 
 
