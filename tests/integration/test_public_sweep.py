@@ -150,6 +150,9 @@ def test_a_combination_without_equilibrium_is_missing_and_says_why():
         gr.sweep(scene, {"loads": up[1:]}, workers=1, progress=False)
 
 
+ONE = {"contact.friction": [0.1]}
+
+
 @pytest.mark.parametrize(
     ("axes", "measure", "error", "said"),
     [
@@ -161,14 +164,9 @@ def test_a_combination_without_equilibrium_is_missing_and_says_why():
         ({"protocol.static_finish": [True, 1]}, None, SceneError, r"static_finish = 1"),  # others, and not allowed
         ({"contact.friction": 0.1}, None, ValueError, r"^axes: contact.friction = 0.1, must be a list of values$"),
         ([("contact.friction", [0.1])], None, ValueError, r"^axes = .*contact.friction.*: must be a mapping of keys"),
-        (
-            {"contact.friction": [0.1]},
-            lambda result: 1 / 0,
-            SweepError,
-            r"task 1 of 1 \(.*contact.friction = 0.1.*ZeroDivisionError",
-        ),
-        ({"contact.friction": [0.1]}, lambda result: result, SweepError, r"measure is a Result, must be a number"),
-        ({"contact.friction": [0.1]}, lambda result: {"friction": 1}, SweepError, r"friction is the name of an axis"),
+        (ONE, lambda result: 1 / 0, SweepError, r"task 1 of 1 \(.*contact.friction = 0.1.*ZeroDivisionError"),
+        (ONE, lambda result: result, SweepError, r"measure is a Result, must be a number"),
+        (ONE, lambda result: {"friction": 1}, SweepError, r"friction is the name of an axis"),
     ],
 )
 def test_mistakes_are_one_line(axes, measure, error, said):

@@ -458,12 +458,7 @@ def test_gsd_of_others_has_its_origin_in_the_middle(tmp_path):
 
 @pytest.mark.parametrize(
     ("header", "mass"),
-    [
-        ("x,z,radius,density", [1, 12]),
-        (" x,z,radius,mass", [1, 3]),
-        ("X,Z,Radius,Mass", [1, 3]),
-        ("x [mm], z [mm], radius[mm], MASS [g]", [1, 3]),
-    ],
+    [("x,z,radius,density", [1, 12]), ("X,Z,Radius,Mass", [1, 3]), ("x [mm], z [mm], radius[mm], MASS [g]", [1, 3])],
 )
 def test_masses_of_a_table(tmp_path, header, mass):
     packing = build(tmp_path / "a.csv", f"{header}\n{TWO}", width=9.0)

@@ -91,14 +91,12 @@ def test_parameters_of_a_law_are_validated_stored_and_listed():
     strong = scene.updated({"contact.parameters.strength": 0.5})
     assert Scene.from_text(strong.to_yaml()) == strong != scene and "strength: 0.5" in strong.to_yaml()
     assert Problem.from_scene(strong).pair_law.strength == Problem.from_scene(strong).wall_law.strength == 0.5
-    for wrong, said in (
-        ({"contact.parameters": {"strength": -1.0}}, r"contact\.parameters\.strength = -1\.0: must be a number, 0 or"),
-        (
-            {"contact.parameters": {"strenth": 1.0}},
-            r"contact\.parameters\.strenth = 1\.0: unknown key, did you mean stre",
-        ),
+    for name, value, said in (
+        ("strength", -1.0, "must be a number, 0 or"),
+        ("strenth", 1.0, "unknown key, did you mean stre"),
     ):
-        refuses(SceneError, said, scene.updated, wrong)
+        mistake = {"contact.parameters": {name: value}}
+        refuses(SceneError, rf"contact\.parameters\.{name} = {value}: {said}", scene.updated, mistake)
     with pytest.raises(SceneError, match=r"contact\.parameters\.strength = 0\.5: unknown key \(allowed: none\)"):
         Scene().updated({"contact.parameters": {"strength": 0.5}})
     weak = gr.LaboratoryUnits().reduced_scene({"contact": {"law": "cohesive", "parameters": {"strength": 6.57e-4}}})
