@@ -102,7 +102,7 @@ ODD = {
 
 @pytest.fixture
 def coarse_pictures(monkeypatch):
-    """All that is asked of a picture here is that it can be drawn; at the size of stored ones, whose texts are known."""
+    """All that is asked here is that a picture can be drawn; texts of the stored size are known from the others."""
     render = style.render
 
     def coarse(drawn, file_format):

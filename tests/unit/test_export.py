@@ -120,10 +120,8 @@ def read_vtu(path: Path) -> dict[str, np.ndarray]:
         components = int(array.get("NumberOfComponents", 1))
         found[array.get("Name")] = values.reshape(-1, components) if components > 1 else values
     piece = root.find(".//Piece")
-    assert (len(found["points"]), len(found["types"])) == (
-        int(piece.get("NumberOfPoints")),
-        int(piece.get("NumberOfCells")),
-    )
+    counts = {"points": "NumberOfPoints", "types": "NumberOfCells"}
+    assert all(len(found[name]) == int(piece.get(count)) for name, count in counts.items())
     return found
 
 
