@@ -116,12 +116,15 @@ def test_minimum_is_where_dynamics_ends():
     assert found.position == pytest.approx(settled.position, abs=1e-11)
 
 
-ROUGH = Problem.from_scene(scene())
+def rough() -> Problem:
+    return Problem.from_scene(scene())
+
+
 test_friction_has_no_energy_to_minimise = refusals(
-    ValueError, (lambda: minimise(ROUGH, ROUGH.bare_state()), "without friction")
+    ValueError, (lambda: minimise(rough(), rough().bare_state()), "without friction")
 )
 test_where_there_is_no_equilibrium_it_is_said = refusals(
     EquilibriumError,
-    (lambda: finish(ROUGH, shaken(ROUGH, size=0.2)), "relax it further first"),
+    (lambda: finish(rough(), shaken(rough(), size=0.2)), "relax it further first"),
     (lambda: minimise(*free_disks([[500.0, 1.0], [500.5, 1e5]], contact__friction=0.0)), "no minimum"),
 )
