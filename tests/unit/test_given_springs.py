@@ -230,8 +230,9 @@ def test_dumps_that_say_too_little_are_refused(tmp_path):
         refuses(gr.SceneError, said, lambda: gr.solve(given(disks, springs, tmp_path, **changes)))
 
     entries, disks = ENTRIES.read_text(), DUMP.read_text()
+    narrow = entries.replace(" c_bears[4]", "").replace(" -0 \n", "\n")
     for text, said in (
-        (entries.replace(" c_bears[4]", "").replace(" -0 \n", "\n"), "line 9: must have the six columns .* p3, not 5$"),
+        (narrow, "line 9: must have the six columns patom1 .* p3, not 5$"),
         (entries.replace("\n8 3 ", "\n8 33 "), "line 10: atoms 8 and 33: must be ids of disks$"),
         (entries[: entries[:-1].rindex("\n") + 1], "line 9: holds 19 of 20 entries in its last frame$"),
     ):
