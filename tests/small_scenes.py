@@ -18,6 +18,11 @@ def scene(layers=4, disks_per_row=7, **changes) -> Scene:
     return base.updated({key.replace("__", "."): value for key, value in changes.items()})
 
 
+def pushed(x: float, z: float, torque: float = 0.0) -> list[dict]:
+    """The loads of a scene that is pushed on the disk in the middle of its top row."""
+    return [{"disk": "top-centre", "force": [x, z], "torque": torque}]
+
+
 def free_disks(
     position, radius=None, *, width=1000.0, velocity=None, spin=None, described=None, **changes
 ) -> tuple[Problem, State]:

@@ -14,6 +14,7 @@ import pytest
 import xarray as xr
 from commands import SCENE, process, refused, succeeded
 from places import ROOT
+from refusals import refuses
 
 from granular_response.cli import main as cli
 from granular_response.store import atomic
@@ -113,8 +114,7 @@ def test_the_name_of_a_result_says_what_it_is(inputs, tmp_path, name):
     for arguments in (["run", inputs / "scene.yaml"], ["continue", inputs / "result.nc", "--to", 2]):
         said = refused(*arguments, "-o", name, folder=tmp_path)
         assert f"{name}: datasets are netCDF, the name must end in .nc" in said
-    with pytest.raises(StoreError, match=r"must end in \.nc"):
-        store.write(tmp_path / name, xr.Dataset())
+    refuses(StoreError, r"must end in \.nc", store.write, tmp_path / name, xr.Dataset())
     assert not any(tmp_path.iterdir())
 
 
@@ -138,12 +138,9 @@ def test_devices_and_pipes_stay(tmp_path):
     link.symlink_to("/dev/null")
     loop.symlink_to(loop)
     for path in (pipe, link):
-        with pytest.raises(StoreError, match="cannot be written: is not a regular file"):
-            store.write(path, xr.Dataset())
-        with pytest.raises(StoreError, match="cannot be written: is not a regular file"):
-            store.check_writable(path)
-    with pytest.raises(StoreError, match="symbolic links"):
-        store.write(loop, xr.Dataset())
+        refuses(StoreError, "cannot be written: is not a regular file", store.write, path, xr.Dataset())
+        refuses(StoreError, "cannot be written: is not a regular file", store.check_writable, path)
+    refuses(StoreError, "symbolic links", store.write, loop, xr.Dataset())
     assert stat.S_ISFIFO(pipe.stat().st_mode) and stat.S_ISCHR(os.stat("/dev/null").st_mode)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["link.nc", "loop.nc", "pipe.nc"]
 
@@ -222,6 +219,4 @@ def test_what_was_computed_is_kept_where_its_file_cannot_be_written(tmp_path, mo
     assert said.startswith(f"{path}: cannot be written: ") and Path(place).name.startswith("a.kept-")
     assert Path(place).parent == (path.parent if ending == "folder" else Path())
     xr.testing.assert_equal(store.read(place)[""], data)
-    with pytest.raises(StoreError) as caught:
-        store.write(path, data)
-    assert "what was computed" not in str(caught.value)
+    assert "what was computed" not in refuses(StoreError, None, store.write, path, data)

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import python
+from refusals import refuses
 
 from granular_response.scene import Contact, Scene, Wall
 from granular_response.sweeps import executor, keys, processes
@@ -102,11 +103,9 @@ def test_a_failing_task_is_named_by_the_keys_and_values_that_tell_it_from_others
     scenes = [Scene(contact=Contact(friction=mu), wall=Wall(friction=0.1)) for mu in (0.5, 0.7)]
     calls = [functools.partial(fail_by_name, one, np.zeros(3), kind="pile") for one in scenes]
     one = r"task (1|2) of 2 \(contact.friction = 0.[57]\) failed: ValueError: no equilibrium of 0.[57]"
-    with pytest.raises(SweepError, match=one):
-        map_tasks(call, calls, **everywhere)
+    refuses(SweepError, one, map_tasks, call, calls, **everywhere)
     alone = r"task 1 of 1 \(contact.friction = 0.5, wall.friction = 0.1, kind = 'pile'\) failed"
-    with pytest.raises(SweepError, match=alone):
-        map_tasks(call, calls[:1], **everywhere)
+    refuses(SweepError, alone, map_tasks, call, calls[:1], **everywhere)
 
 
 class Unreadable(Exception):
@@ -199,8 +198,7 @@ def test_a_killed_worker_loses_only_what_was_in_flight(tmp_path):
 
 def test_a_task_that_kills_every_worker_is_named(tmp_path):
     task = functools.partial(note, folder=tmp_path, die_at=3, always=True)
-    with pytest.raises(SweepError, match=r"task 4 of 6 \(3\) killed its worker process 3 times"):
-        map_tasks(task, range(6), workers=2)
+    refuses(SweepError, r"task 4 of 6 \(3\) killed its worker process 3 times", map_tasks, task, range(6), workers=2)
     assert len(starts(tmp_path, 3)) == processes.ATTEMPTS
 
 
@@ -373,8 +371,7 @@ class TestDask:
 
     def test_without_distributed_the_error_says_what_to_install(self, monkeypatch):
         monkeypatch.setitem(sys.modules, "distributed", None)
-        with pytest.raises(SweepError, match=r"granular-response\[dask\]"):
-            map_tasks(response, ITEMS, scheduler="tcp://127.0.0.1:8786")
+        refuses(SweepError, r"granular-response\[dask\]", map_tasks, response, ITEMS, scheduler="tcp://127.0.0.1:8786")
 
 
 def one_process(*command):

@@ -103,12 +103,12 @@ ODD = {
 
 @pytest.fixture
 def coarse_pictures(monkeypatch):
-    """All that is asked of a picture here is that it can be drawn, wherever its panels are."""
+    """All that is asked here is that a picture can be drawn; texts of the stored size are known from the others."""
     render = style.render
 
     def coarse(drawn, file_format):
         drawn.set_layout_engine("none")  # to lay out takes as long as to draw
-        return render(drawn, file_format, dpi=30)
+        return render(drawn, file_format, dpi=40)
 
     monkeypatch.setattr(style, "render", coarse)
 

@@ -8,12 +8,15 @@ import reduced
 from granular_response.scene import SceneError
 from granular_response_paper.registry import group_member
 
+ROUGH = {"friction": 0.0, "floor": "rough"}
 BETWEEN = {"friction": 0.2, "floor": "smooth", "gravity": "at-once", "disks_per_layer": 6, "layers": [4]}
 SERIES = {"name": "one", "friction": 0.0, "layers": [5, 7]}
 LOOP = {"polydispersity": 0.1, "friction": 0.2, "forces": [0.3, 1.0], "increments": 2}
 WAY = {"name": "x", "changes": {}}
 PICTURE = {"polydispersity": 0.3, "friction": 0.2, "force": 5.0, "realization": 0}
 TAPS = {"number": 1, "amplitudes": [0.5], "durations": [3.0]}
+MEANS, ENSEMBLE = reduced.parameters("polydisperse_averages"), {"polydispersities": [0.0], "friction": 0.0}
+LOADED, SIZES = reduced.parameters("moduli")["loaded"], {"polydispersity": 0.1, "friction": 0.0, "layers": [5, 7]}
 
 #: For each group: changes to its reduced section (None: left out), and what is said.
 MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
@@ -50,26 +53,20 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     "influence": [({"fitted": [6.0, 1.0]}, r"fitted = \[6.0, 1.0\]: must be two growing numbers")],
     "moduli": [
         (
-            {"cases": [{"polydispersity": 0.1, "friction": 0.0, "layers": [5, 7], "realizations": [4]}]},
+            {"cases": [SIZES | {"realizations": [4]}]},
             r"realizations = \[4\]: must have a number for each of the layers",
         ),
         (
-            {"loaded": reduced.parameters("moduli")["loaded"] | {"scene": {"packing.layers": 1}}},
+            {"loaded": LOADED | {"scene": {"packing.layers": 1}}},
             r"loaded\.scene\.packing\.layers = 1: must be 2 or more",
         ),
     ],
     "pile_dip": [({"dip_height": -1.0}, r"dip_height = -1\.0: must be a number greater than 0")],
     "polydisperse_averages": [
-        (
-            {"cases": [{"polydispersities": [0.0], "friction": 0.0, "forces": [2.0]}]},
-            "must have a polydispersity above 0",
-        ),
-        (
-            {"cases": [{"polydispersities": [0.0], "friction": 0.0, "forces": [2.0, 1.0]}]},
-            r"cases\[0\].forces = .*: must be",
-        ),
+        ({"cases": [ENSEMBLE | {"forces": [2.0]}]}, "must have a polydispersity above 0"),
+        ({"cases": [ENSEMBLE | {"forces": [2.0, 1.0]}]}, r"cases\[0\].forces = .*: must be"),
         ({"forces_picture": PICTURE}, "forces_picture = .*: must be"),
-        ({"individual": reduced.parameters("polydisperse_averages")["individual"] | {"force": 7.0}}, "individual = "),
+        ({"individual": MEANS["individual"] | {"force": 7.0}}, "individual = "),
     ],
     "preparation": [
         ({"ways": [WAY | {"changes": {"contact.friction": 1.0}}]}, "must have keys among preparation.gravity"),
@@ -83,10 +80,7 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     ],
     "slab_comparison": [
         ({"cases": [{"friction": 0.2}]}, r"cases\[0\]\.floor: missing"),
-        (
-            {"cases": [BETWEEN | {"friction": 0.0, "floor": "rough"}]},
-            "floor = 'rough': must be smooth, or rough with friction above 0",
-        ),
+        ({"cases": [BETWEEN | ROUGH]}, "floor = 'rough': must be smooth, or rough with friction above 0"),
         ({"cases": [BETWEEN | {"layers": [4.5]}]}, r"cases\[0\]\.layers\[0\] = 4\.5"),
     ],
     "stiffness_ratio_crossover": [

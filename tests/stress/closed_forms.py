@@ -5,8 +5,6 @@ Everything is free of gravity unless it says so, in reduced units: mass 1, radiu
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from small_scenes import free_disks
 
@@ -59,31 +57,6 @@ def collision(scene: Scene, angle: float, spin: float, step: float, *, pair: boo
             return dynamics.kinetic_energy() / before
         touched = touched or touching
     return float("nan")
-
-
-def sliding_to_rolling(scene: Scene, speed: float, spin: float, step: float, time: float) -> tuple[FloatArray, ...]:
-    """Time, velocity and rim speed of a disk set on the floor with ``speed`` and ``spin``, with gravity."""
-    problem, state = free_disks([(FAR, 1.0)], velocity=[(speed, 0.0)], spin=[spin], described=scene)
-    down = state.position - [[0.0, 1.0 / problem.wall_law.normal_stiffness]]
-    dynamics = Dynamics(problem, replace(state, position=down), scene.protocol.integrator, step)
-    dynamics.set_ramps()
-    readings = []
-    for _ in range(100):
-        dynamics.advance(max(1, round(0.01 * time / step)))
-        readings.append((dynamics.time, dynamics.v[0], -dynamics.v[2]))
-    return tuple(np.array(column) for column in zip(*readings, strict=True))
-
-
-def rolling_speed(time: FloatArray, friction: float, speed: float, spin: float) -> tuple[FloatArray, FloatArray]:
-    """Closed form of the same: friction ``mu g`` acts until velocity and rim speed ``-R w`` are equal, 3 mu g t after.
-
-    The rim speed changes twice as fast as the velocity, so both end at ``(2 v + rim) / 3``: 2/3 of the velocity
-    for a disk that does not turn at first.
-    """
-    rim = -spin
-    slip = speed - rim
-    slid = np.minimum(np.asarray(time), abs(slip) / (3.0 * friction))
-    return speed - np.sign(slip) * friction * slid, rim + 2.0 * np.sign(slip) * friction * slid
 
 
 def drift(scene: Scene, system: str, integrator: str, part: float, time: float, kick: float, seed: int) -> FloatArray:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from PIL import Image
+from refusals import refuses
 
 import granular_response as gr
 from granular_response.plot import animation, style
@@ -81,14 +82,11 @@ def test_results_stand_side_by_side_with_their_titles(result) -> None:
 
 def test_what_cannot_be_animated_is_said(result, tmp_path) -> None:
     other = gr.solve(SCENE, load_factors=[0.2, 0.4])
-    with pytest.raises(PictureError, match="must have the same forces, one for each frame"):
-        gr.plot.animate({"a": result, "b": other})
-    with pytest.raises(PictureError, match="no loads, so there is no response"):
-        gr.plot.animate(gr.solve({**SCENE, "loads": []}))
+    refuses(PictureError, "must have the same forces, one for each frame", gr.plot.animate, {"a": result, "b": other})
+    refuses(PictureError, "no loads, so there is no response", gr.plot.animate, gr.solve({**SCENE, "loads": []}))
     with pytest.raises(PictureError, match=r"format '.mp4' is unknown, must be .gif, .webp, .html"):
         gr.plot.animate(result, output=tmp_path / "growing.mp4")
-    with pytest.raises(PictureError, match="fps = 0: must be a finite number greater than 0"):
-        gr.plot.animate(result, fps=0)
+    refuses(PictureError, "fps = 0: must be a finite number greater than 0", gr.plot.animate, result, fps=0)
     with pytest.raises(PictureError, match="cannot be written: No such file"):
         gr.plot.animate(result, output=tmp_path / "none" / "growing.gif", figure=Figure())
     assert not any(tmp_path.iterdir())

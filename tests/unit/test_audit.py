@@ -5,14 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from audit import ContactRule, audit
-from small_scenes import scene
-from stress.random_scenes import (
-    anachronism,
-    check,
-    contradiction,
-    rounding_of,
-    write_table,
-)
+from small_scenes import pushed, scene
+from stress.random_scenes import anachronism, check, contradiction, rounding_of
 
 from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
@@ -22,8 +16,7 @@ from granular_response.state import OPEN, SLIDING, STICKING, Contacts, Reached
 
 @pytest.fixture(scope="module")
 def solution() -> Solution:
-    load = [{"disk": "top-centre", "force": [0.5, -4.0], "torque": 0.3}]
-    return solve_scene(scene(contact__friction=0.2, wall__friction=0.1, loads=load))
+    return solve_scene(scene(contact__friction=0.2, wall__friction=0.1, loads=pushed(0.5, -4.0, 0.3)))
 
 
 @pytest.fixture
@@ -107,11 +100,9 @@ def test_a_spring_of_an_open_contact_and_a_lost_disk_are_found(solution, state):
     assert check(solution, replace(state, position=position)).escaped == 1
 
 
-@pytest.mark.parametrize(
-    ("name", "value"), [("force_residual", 1e-3), ("torque_residual", 1e-3), ("coulomb_excess", 1e-3)]
-)
-def test_a_certificate_that_says_something_else_is_found(solution, state, name, value):
-    certificate = replace(state.certificate, **{name: value})
+@pytest.mark.parametrize("name", ["force_residual", "torque_residual", "coulomb_excess"])
+def test_a_certificate_that_says_something_else_is_found(solution, state, name):
+    certificate = replace(state.certificate, **{name: 1e-3})
     tampered = replace(state, reached=replace(state.reached, certificate=certificate))
     assert complaint(solution, tampered).startswith(f"{name} is")
 
@@ -193,13 +184,11 @@ def test_another_load_factor_than_was_asked_for_is_found(solution, state):
     assert anachronism(solution, moving, found, 2.0) == ""
 
 
-def test_a_disk_that_bears_next_to_nothing_is_judged_by_what_it_bears(tmp_path):
+def test_a_disk_that_bears_next_to_nothing_is_judged_by_what_it_bears():
     """In mid-air, out of balance by its whole weight, which was less than any bound in units of the mean one."""
-    table = np.array([(2.0, 0.98, 1.0, 1.0), (6.0, 0.98, 1.0, 1.0), (4.0, 5.0, 1.0, 1e-12)])
-    write_table(tmp_path / "dust.csv", table)
-    packing = {"kind": "file", "path": "dust.csv", "width": 8.0}
     smooth = {"contact": {"friction": 0.0, "normal_stiffness": 37.5}, "wall": {"friction": 0.0}, "loads": []}
-    problem = Problem.from_scene(Scene.from_dict({"packing": packing, **smooth}, folder=tmp_path))
+    dust = {"x": [2.0, 6.0, 4.0], "z": [0.98, 0.98, 5.0], "radius": 1.0, "mass": [1.0, 1.0, 1e-12]}
+    problem = Problem.from_scene(Scene.from_arrays(**dust, width=8.0, scene=smooth))
     rule = ContactRule(37.5, 0.0, 0.0), ContactRule(75.0, 0.0, 0.0)
     position = problem.packing.position.copy()
     position[:2, 1] = 1.0 - problem.weight[:2] / 75.0
@@ -225,9 +214,8 @@ def rolling() -> Solution:
     """With contacts at either limit; disks of two sizes, so that an arm is not a radius."""
     resists = {"friction": 0.3, "rolling_friction": 0.02, "rolling_stiffness_ratio": 0.5}
     changes = {f"{kind}__{name}": value for kind in ("contact", "wall") for name, value in resists.items()}
-    loads = [{"disk": "top-centre", "force": [1.0, -4.0], "torque": 0.3}]
     sizes = {"packing__polydispersity": 0.2, "packing__lattice_constant": "touching-largest", "packing__seed": 3}
-    return solve_scene(scene(protocol__time_step="auto", loads=loads, **changes, **sizes))
+    return solve_scene(scene(protocol__time_step="auto", loads=pushed(1.0, -4.0, 0.3), **changes, **sizes))
 
 
 def test_couples_of_rolling_resistance_balance(rolling):

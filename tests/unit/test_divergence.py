@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_scenes import at_rest, free_disks, scene, started
+from small_scenes import at_rest, free_disks, pushed, scene, started
 
 from granular_response.solvers import stability
 from granular_response.solvers.equilibrium import external_force, newton
@@ -91,19 +91,13 @@ def test_a_negative_eigenvalue_is_followed_where_it_is_still_negative(monkeypatc
 
 
 def test_an_instability_that_is_not_determined_is_not_certified(monkeypatch):
-    """Contacts slide, and no lowest direction is found: neither stable nor unstable."""
-    _, system, trial = sliding(3, 5, 2.0)
+    """Contacts slide under an oblique force, and no lowest direction is found: neither stable nor unstable."""
+    problem, rest = at_rest(scene(3, 5, contact__friction=0.5, wall__friction=0.5, loads=pushed(0.3, -2.0)))
+    (state,) = follow(problem, rest, [1.0])
+    assert state.certificate.stable and not any(event.lost for event in state.reached.events)
+    system = StaticSystem(problem, state)
+    trial = system.at(state)
     found = Spectrum(system, trial)
     monkeypatch.setattr(Spectrum, "negative_modes", 1)
     monkeypatch.setattr(stability, "lowest_real", lambda *_: None)
     assert (np.abs(trial.sense) == SLIDING).any() and diverging(found) is None
-
-
-def sliding(layers, across, force):
-    """A slab with friction 0.5 under an oblique force: its state, and the trial that this is."""
-    loads = [{"disk": "top-centre", "force": [0.15 * force, -force]}]
-    problem, rest = at_rest(scene(layers, across, contact__friction=0.5, wall__friction=0.5, loads=loads))
-    (state,) = follow(problem, rest, [1.0])
-    assert state.certificate.stable and not any(event.lost for event in state.reached.events)
-    system = StaticSystem(problem, state)
-    return state, system, system.at(state)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from places import ROOT
+from refusals import refuses
 
 import granular_response as gr
 from granular_response.scene import FilePacking, Scene, SceneError
@@ -119,10 +120,8 @@ def read_vtu(path: Path) -> dict[str, np.ndarray]:
         components = int(array.get("NumberOfComponents", 1))
         found[array.get("Name")] = values.reshape(-1, components) if components > 1 else values
     piece = root.find(".//Piece")
-    assert (len(found["points"]), len(found["types"])) == (
-        int(piece.get("NumberOfPoints")),
-        int(piece.get("NumberOfCells")),
-    )
+    counts = {"points": "NumberOfPoints", "types": "NumberOfCells"}
+    assert all(len(found[name]) == int(piece.get(count)) for name, count in counts.items())
     return found
 
 
@@ -179,25 +178,19 @@ def test_errors_are_one_line(result, tmp_path, monkeypatch):
         export(result, tmp_path / "result.pdf")
     with pytest.raises(ExportError, match=r"^state = 0: \S+\.pvd is a series of all states, must be left out \(.*\)$"):
         export(result, tmp_path / "result.pvd", state=0)
-    with pytest.raises(ExportError, match=r"state = 2: must be from -2 to 1"):
-        export(result, tmp_path / "result.vtu", state=2)
-    with pytest.raises(ExportError, match=r"state = -3: must be from -2 to 1"):
-        export(result, tmp_path / "result.xyz", state=-3)
-    with pytest.raises(store.StoreError, match="no such file"):
-        export(tmp_path / "absent.nc", tmp_path / "result.gsd")
+    refuses(ExportError, r"state = 2: must be from -2 to 1", export, result, tmp_path / "result.vtu", state=2)
+    refuses(ExportError, r"state = -3: must be from -2 to 1", export, result, tmp_path / "result.xyz", state=-3)
+    refuses(store.StoreError, "no such file", export, tmp_path / "absent.nc", tmp_path / "result.gsd")
     (tmp_path / "file").write_text("")
-    with pytest.raises(ExportError, match="cannot be written"):
-        export(result, tmp_path / "file" / "result.gsd")
+    refuses(ExportError, "cannot be written", export, result, tmp_path / "file" / "result.gsd")
     study = tmp_path / "study.nc"
     store.write(study, {"a": store.read(result)[""][["radius"]]})
-    with pytest.raises(ResultError, match="holds no states"):
-        export(study, tmp_path / "result.gsd")
+    refuses(ResultError, "holds no states", export, study, tmp_path / "result.gsd")
     with pytest.raises(ExportError, match=r"in.lammps: loads\[0\].torque: must be left out"):
         lammps_lines({"loads.0.torque": 0.1}, tmp_path / "in.lammps")
     monkeypatch.setitem(sys.modules, "gsd", None)
     monkeypatch.setitem(sys.modules, "gsd.hoomd", None)
-    with pytest.raises(ExportError, match=r"needs the package gsd.*, pip install gsd$"):
-        export(result, tmp_path / "result.gsd")
+    refuses(ExportError, r"needs the package gsd.*, pip install gsd$", export, result, tmp_path / "result.gsd")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "study.nc"]
 
 

@@ -167,7 +167,6 @@ def test_contact_points_lie_between_the_surfaces() -> None:
 
 
 def test_forces_that_press_together_and_apart_are_told_apart(axes) -> None:
-    """Each has the colour of its kind, whatever its direction is."""
     point, normal = np.zeros((4, 2)), np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
     force = np.array([[2.0, 1.0], [0.0, -1.0], [-1.0, 3.0], [0.0, 2.0]])
     drawn = nd.draw_forces(axes, point, force, normal, length_per_force=1.0, width_per_force=1.0)

@@ -1,6 +1,4 @@
-"""The force loops: hand-made pairs, an independent loop over pairs, momentum and torque balance."""
-
-import math
+"""The force loops against an independent loop over pairs, and the balance of momentum."""
 
 import numpy as np
 import pytest
@@ -43,44 +41,6 @@ def run_kernel(position, velocity, spin, radius, first, second, springs, materia
     force = out[: 2 * n].reshape(2, n).T
     torque = -radius * out[2 * n :] if friction else np.zeros(n)
     return force, torque, spring[slot], spring, slot
-
-
-def pair(material=None, *, velocity=((0.0, 0.0), (0.0, 0.0)), spin=(0.0, 0.0), angle=0.0, overlap=0.01, spring=0.0,
-         radius=(1.0, 1.0), dt=1e-3, rule=CUT):  # fmt: skip
-    """Force on disk 0, torques and spring of one pair whose normal (from 1 to 0) is at ``angle`` to x."""
-    material = Material(1000.0, 10.0, 800.0, 5.0, 0.5) if material is None else material
-    radius = np.array(radius)
-    normal = np.array([math.cos(angle), math.sin(angle)])
-    position = np.array([normal * (radius.sum() - overlap), [0.0, 0.0]])
-    force, torque, new, _, _ = run_kernel(
-        position, np.array(velocity), np.array(spin), radius, [0], [1], [spring], material, dt, rule
-    )
-    assert force[1] == pytest.approx(-force[0], abs=1e-14)
-    return force[0], torque, new[0]
-
-
-def test_oblique_pair_sticks():
-    """Normal along z; disk 0 moves along -x, which is +t = (-1, 0): the spring takes 0.2 * 1e-3."""
-    force, torque, spring = pair(angle=math.pi / 2, velocity=[(-0.2, 0.0), (0.0, 0.0)])
-    ft = -(800.0 * 2e-4 + 5.0 * 0.2)
-    assert spring == pytest.approx(2e-4)
-    assert force == pytest.approx([-ft, 10.0])
-    assert torque == pytest.approx([-ft, -ft])
-
-
-def test_spinning_pair_of_unequal_disks():
-    """Surface speeds 2 * 0.1 and 0.5 * 0.2 add up; a torque is the radius times the tangential force."""
-    force, torque, spring = pair(radius=(2.0, 0.5), spin=(0.1, 0.2), dt=1e-3)
-    ft = 800.0 * 3e-4 + 5.0 * 0.3
-    assert spring == pytest.approx(-3e-4)
-    assert force == pytest.approx([10.0, ft])
-    assert torque == pytest.approx([-2.0 * ft, -0.5 * ft])
-
-
-@pytest.mark.parametrize(("least", "expected"), [(-math.inf, -10.0), (0.0, 0.0)])
-def test_dashpot_pulls_or_not(least, expected):
-    force, *_ = pair(Material(1000.0, 10.0, 800.0, 5.0, 0.5, least), velocity=[(2.0, 0.0), (0.0, 0.0)])
-    assert force == pytest.approx([expected, 0.0])
 
 
 def lattice(rng, disks_per_row=61, layers=3):

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from refusals import refuses
 
 import granular_response as gr
 from granular_response.api.result import _places
@@ -86,16 +87,13 @@ def test_what_is_missing_is_no_number(entry, kind):
         known = plain(MISSING[kind])[1]  # null is a value of some keys, and says that a direction is free
         assert known is None if kind == "none" else pd.isna(known)
         return
-    with pytest.raises(ValueError) as caught:
-        ENTRIES[entry](MISSING[kind])
-    assert "\n" not in str(caught.value)
+    refuses(ValueError, None, ENTRIES[entry], MISSING[kind])
 
 
 @pytest.mark.parametrize("entry", ENTRIES)
 @pytest.mark.parametrize("kind", UNORDERED)
 def test_what_has_no_order_is_no_list(entry, kind):
-    with pytest.raises(ValueError, match=r"must be|no item"):
-        ENTRIES[entry](UNORDERED[kind])
+    refuses(ValueError, r"must be|no item", ENTRIES[entry], UNORDERED[kind])
 
 
 @pytest.mark.parametrize("key", ["wall.normal_stiffness", "protocol.time_step", "contact.friction"])
@@ -103,8 +101,7 @@ def test_what_has_no_order_is_no_list(entry, kind):
 def test_what_is_missing_is_not_what_is_left_open(key, missing):
     """A mask was null, and so the default of keys that may be null."""
     part, _, name = key.partition(".")
-    with pytest.raises(gr.SceneError, match=rf"^{key} = nan: must be"):
-        gr.Scene.from_dict({part: {name: missing}, "loads": []})
+    refuses(gr.SceneError, rf"^{key} = nan: must be", gr.Scene.from_dict, {part: {name: missing}, "loads": []})
     with pytest.raises(gr.SceneError, match=r"^packing\.width = nan: must be a number greater than 0"):
         gr.Scene.from_arrays(x=[1, 3], z=[1, 1], radius=1.0, width=missing)
 
@@ -112,8 +109,7 @@ def test_what_is_missing_is_not_what_is_left_open(key, missing):
 def test_tasks_have_an_order():
     """Results are in that of the items: those of a set came in the order of its hashes."""
     for items in ({-1, 2}, frozenset((-1, 2))):
-        with pytest.raises(gr.SweepError, match=r"^items = .*: must be a list, a set has no order"):
-            gr.map_tasks(abs, items, workers=1)
+        refuses(gr.SweepError, r"^items = .*: must be a list, a set has no order", gr.map_tasks, abs, items, workers=1)
     assert gr.map_tasks(abs, {-1: None, 2: None}.keys(), workers=1) == [1, 2]
 
 

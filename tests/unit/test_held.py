@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from printed import shown
 from small_scenes import free_disks, scene
-from stress.random_scenes import check, contradiction, rounding_of, write_table
+from stress.random_scenes import check, contradiction, rounding_of
 
 import granular_response as gr
 from granular_response.kernels.integrators import INTEGRATORS
@@ -113,7 +113,6 @@ def test_one_disk_on_the_floor_has_the_closed_form(method, friction):
 
 
 def test_a_disk_dragged_over_a_rough_floor_rolls():
-    """It turns by what it moves, and takes no force."""
     alone, state = free_disks([(10.0, 1.0)], wall__friction=0.3, loads=[{"disk": 0, "displacement": [0.2, None]}])
     problem = alone.with_loads(state.position)
     start = rest_state(alone)
@@ -185,12 +184,11 @@ def test_two_loads_cannot_hold_one_coordinate():
     assert travel(both, both.loaded[0]) == pytest.approx([1e-4, -1e-4], abs=1e-14)
 
 
-def of_table(folder, disks, *, width, loads, friction, **more) -> gr.Result:
-    """Disks of a table (x, z, radius of each), solved."""
-    write_table(folder / "disks.csv", np.array(disks, float))
-    packing = {"kind": "file", "path": "disks.csv", "width": width, "sides": more.pop("sides", "walls")}
+def of_disks(disks, *, loads, friction, sides="walls", width, **more) -> gr.Result:
+    """Disks (x, z, radius of each), solved."""
     rubs = {"contact": {"friction": friction}, "wall": {"friction": friction}}
-    return gr.solve(Scene.from_dict({"packing": packing, "loads": loads, **rubs, **more}, folder=folder))
+    scene = {"loads": loads, **rubs, **more}
+    return gr.solve(Scene.from_arrays(*np.transpose(disks), width=width, sides=sides, scene=scene))
 
 
 #: Where the path fails: one increment as long as the way leads through a disk, or thousands that lead nowhere.
@@ -202,9 +200,9 @@ def of_table(folder, disks, *, width, loads, friction, **more) -> gr.Result:
         *(("path", friction, other, way) for friction in (0.0, 0.5) for other, way in ((6.0, 8.0), (4.3, 5.0))),
     ],
 )
-def test_a_displaced_disk_pushes_what_is_on_its_way(other, way, friction, method, tmp_path):
-    result = of_table(
-        tmp_path, [(2, 1, 1), (other, 1, 1)], width=20.0, friction=friction, protocol={"method": method},
+def test_a_displaced_disk_pushes_what_is_on_its_way(other, way, friction, method):
+    result = of_disks(
+        [(2, 1, 1), (other, 1, 1)], width=20.0, friction=friction, protocol={"method": method},
         loads=[{"disk": 0, "displacement": [way, None]}],
     )  # fmt: skip
     first, second = result.loaded[-1].position[:, 0]
@@ -214,23 +212,23 @@ def test_a_displaced_disk_pushes_what_is_on_its_way(other, way, friction, method
 
 @pytest.mark.parametrize("method", ["path", "dynamics"])
 @pytest.mark.parametrize("friction", [0.0, 0.5])
-def test_two_disks_may_meet_across_a_side_after_they_were_neighbours_within(friction, method, tmp_path):
+def test_two_disks_may_meet_across_a_side_after_they_were_neighbours_within(friction, method):
     loads = [{"disk": 0, "displacement": [-0.9, None]}, {"disk": 1, "displacement": [0.0, None]}]
-    result = of_table(
-        tmp_path, [(0.01, 1, 1), (2.56, 1, 1)], width=5.3, sides="periodic", friction=friction, loads=loads,
+    result = of_disks(
+        [(0.01, 1, 1), (2.56, 1, 1)], width=5.3, sides="periodic", friction=friction, loads=loads,
         protocol={"method": method},
     )  # fmt: skip
     pressed = 3000.0 * (2.0 - (5.3 - 2.55 - 0.9))  # k_N times the overlap across the side
     assert result.reaction.values[-1, :, 0] == pytest.approx([-pressed, pressed], abs=0.5)
 
 
-def test_a_path_finds_contacts_that_the_list_of_the_fall_has_not(tmp_path):
+def test_a_path_finds_contacts_that_the_list_of_the_fall_has_not():
     radius, off = 0.92, 0.22
     z = 1.0 + ((1.0 + radius) ** 2 - (1.0 - off) ** 2) ** 0.5
     disks = [(1, 1, 1), (3, 1, 1), (5, 1, 1), (2 - off, z, radius), (4 + off, z, radius)]
     loads = [{"disk": 3, "displacement": [0.098, 0.065]}, {"disk": 4, "displacement": [-0.098, 0.065]}]
-    result = of_table(
-        tmp_path, disks, width=6.0, friction=0.5, loads=loads, preparation={"gravity": "slow"},
+    result = of_disks(
+        disks, width=6.0, friction=0.5, loads=loads, preparation={"gravity": "slow"},
         protocol={"method": "path", "maximum_steps": 600_000},
     )  # fmt: skip
     last = result.loaded[-1]

@@ -12,6 +12,7 @@ from commands import process
 from demonstration import Cohesion, Cohesive, Cubic
 from places import ROOT
 from pydantic import Field
+from refusals import refuses
 
 import granular_response as gr
 from granular_response.cli import scene_reference
@@ -84,32 +85,18 @@ def test_the_stiffness_is_that_at_one_disk_weight(name, reduced_radius, second):
     assert one.stiffest(1.0) == pytest.approx(3000.0)
 
 
-def test_hertz_by_hand():
-    """f = K sqrt(R) xi^(3/2): eight times the force at four times the overlap, twice at four times the radius."""
-    one = law("hertz")
-    equal, wall = shape_of(one), shape_of(one, 2.0, None)
-    assert equal == 1.0 and wall == pytest.approx(2.0)
-    force = asked(one, 4e-4, equal)[0]
-    assert force == pytest.approx((3000.0 / 1.5) ** 1.5 * 8e-6)
-    assert asked(one, 16e-4, equal)[0] == pytest.approx(8.0 * force)
-    assert asked(one, 4e-4, wall)[0] == pytest.approx(2.0 * force)
-
-
 def test_parameters_of_a_law_are_validated_stored_and_listed():
     scene = Scene().updated({"contact.law": "cohesive"})
     assert scene.contact.parameters == Cohesion(strength=0.1) == scene.resolved_wall.parameters
     strong = scene.updated({"contact.parameters.strength": 0.5})
     assert Scene.from_text(strong.to_yaml()) == strong != scene and "strength: 0.5" in strong.to_yaml()
     assert Problem.from_scene(strong).pair_law.strength == Problem.from_scene(strong).wall_law.strength == 0.5
-    for wrong, said in (
-        ({"contact.parameters": {"strength": -1.0}}, r"contact\.parameters\.strength = -1\.0: must be a number, 0 or"),
-        (
-            {"contact.parameters": {"strenth": 1.0}},
-            r"contact\.parameters\.strenth = 1\.0: unknown key, did you mean stre",
-        ),
+    for name, value, said in (
+        ("strength", -1.0, "must be a number, 0 or"),
+        ("strenth", 1.0, "unknown key, did you mean stre"),
     ):
-        with pytest.raises(SceneError, match=said):
-            scene.updated(wrong)
+        mistake = {"contact.parameters": {name: value}}
+        refuses(SceneError, rf"contact\.parameters\.{name} = {value}: {said}", scene.updated, mistake)
     with pytest.raises(SceneError, match=r"contact\.parameters\.strength = 0\.5: unknown key \(allowed: none\)"):
         Scene().updated({"contact.parameters": {"strength": 0.5}})
     weak = gr.LaboratoryUnits().reduced_scene({"contact": {"law": "cohesive", "parameters": {"strength": 6.57e-4}}})
@@ -181,8 +168,7 @@ def test_a_law_without_parameters_is_known_in_other_processes_and_tells_results_
     ],
 )
 def test_a_law_that_lacks_something_is_refused(arguments, said):
-    with pytest.raises(gr.GranularError, match=said):
-        gr.register_law(*arguments)
+    refuses(gr.GranularError, said, gr.register_law, *arguments)
     assert "mine" not in KNOWN_LAWS
 
 
@@ -235,8 +221,7 @@ class Growing(Cohesive):
     ],
 )
 def test_a_law_that_contradicts_itself_is_refused(wrong, said):
-    with pytest.raises(gr.GranularError, match=said):
-        gr.register_law("wrong", wrong)
+    refuses(gr.GranularError, said, gr.register_law, "wrong", wrong)
     assert "wrong" not in KNOWN_LAWS
 
 
@@ -255,6 +240,7 @@ SCENE = """
 packing: {kind: arrays, x: [1.0], z: [1.0], radius: [1.0], width: 2.5}
 contact: {law: mine, friction: 0.0}
 loads: [{disk: 0, force: [0.0, -1.0]}]
+protocol: {method: dynamics, static_finish: false, stop_kinetic_energy: 1.0e-9}  # kernels of statics take longest
 """
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from refusals import refusals
+from refusals import refusals, refuses
 
 import granular_response as gr
 
@@ -36,8 +36,7 @@ test_times_are_numbers_in_order = refusals(
     ],
 )
 def test_a_motion_that_is_none_is_refused_by_its_key(changes, said):
-    with pytest.raises(gr.SceneError, match=f"^{said}"):
-        BALL.updated(changes)
+    refuses(gr.SceneError, f"^{said}", BALL.updated, changes)
 
 
 @pytest.mark.parametrize("method", ["auto", "dynamics", "path", "minimise"])
@@ -87,7 +86,5 @@ def test_a_film_of_a_motion(tmp_path):
     (disks,) = [one for one in axes.collections if type(one).__name__ == "EllipseCollection"]
     np.testing.assert_allclose(disks.get_offsets(), moved["position"].values[2])
     for wrong in (moved.isel(time=0), moved.isel(time=[0]), BALL):
-        with pytest.raises(gr.plot.PictureError, match=r"^moved: "):
-            gr.plot.motion(wrong)
-    with pytest.raises(gr.plot.PictureError, match=r"format '.avi' is unknown"):
-        gr.plot.motion(moved, output="fall.avi")
+        refuses(gr.plot.PictureError, r"^moved: ", gr.plot.motion, wrong)
+    refuses(gr.plot.PictureError, r"format '.avi' is unknown", gr.plot.motion, moved, output="fall.avi")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
-from small_scenes import at_rest, scene
+from small_scenes import at_rest, pushed, scene
 
 from granular_response.linalg import Sequence, multifrontal, nearby, ordering
 from granular_response.linalg.dissection import Dissection
@@ -72,15 +72,6 @@ def test_fronts_cover_every_disk_and_tie(columns, rows):
     assert len(children) == len(set(children)) and all(
         child < parent for parent, below in enumerate(dissection.children) for child in below
     )
-
-
-@pytest.mark.parametrize("freedoms", [2, 3])
-def test_lu_solves_what_a_general_solver_does(freedoms):
-    dissection, matrix = dissected(23, 31, freedoms)
-    matrix = shifted(matrix, 6.0)
-    right = np.random.default_rng(2).normal(size=matrix.shape[0])
-    x = Multifrontal(dissection, freedoms).factor(matrix).solve(right)
-    assert x == pytest.approx(spsolve(matrix, right), rel=1e-8, abs=1e-10)
 
 
 @pytest.mark.parametrize("shift", [60.0, 2.0])
@@ -226,8 +217,8 @@ def test_a_sequence_of_solutions_renews_what_serves_and_leaves_the_rest_to_exact
 
 
 def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
-    loads = [{"disk": "top-centre", "force": [0.0, -12.0]}]
-    problem, rest = at_rest(scene(9, 19, contact__friction=0.2, preparation__gravity="frictionless", loads=loads))
+    smooth = {"preparation__gravity": "frictionless", "loads": pushed(0.0, -12.0)}
+    problem, rest = at_rest(scene(9, 19, contact__friction=0.2, **smooth))
     roughly = counted(monkeypatch, Multifrontal, "rough_factor")
     alone = follow(problem, rest, [1.0])[0]
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
@@ -242,8 +233,8 @@ def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
 def test_no_other_factorisation_is_in_memory_when_eigenvalues_are_looked_for(monkeypatch):
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
     monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
-    loads = [{"disk": "top-centre", "force": [0.0, -28.0]}]
-    problem, rest = at_rest(scene(4, 9, contact__friction=1.0, preparation__gravity="frictionless", loads=loads))
+    smooth = {"preparation__gravity": "frictionless", "loads": pushed(0.0, -28.0)}
+    problem, rest = at_rest(scene(4, 9, contact__friction=1.0, **smooth))
     state = follow(problem, rest, [1.0])[0]
     system = StaticSystem(problem, state)
     trial = system.at(state)

@@ -6,21 +6,6 @@ from observe_states import contacts, opened, pair_index, slab, state
 from refusals import refusals
 
 from granular_response.observe import network
-from granular_response.observe.network import (
-    FALLING,
-    HORIZONTAL,
-    RISING,
-    bulk_disks,
-    contact_angle,
-    contact_angle_histogram,
-    contact_centre,
-    coordination_number,
-    interior_contacts,
-    lattice_direction,
-    mirror_disks,
-    network_asymmetry,
-    rattlers,
-)
 from granular_response.state import FLOOR, OPEN, SLIDING, STICKING
 
 
@@ -37,33 +22,33 @@ def test_lattice_directions_do_not_depend_on_the_order_of_partners():
     position = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, h], [-1.0, h]])
     links = [(0, 1), (1, 0), (0, 2), (2, 0), (0, 3), (3, 0)]
     s = state(position, contacts(links))
-    expected = [HORIZONTAL] * 2 + [RISING] * 2 + [FALLING] * 2
-    assert lattice_direction(s).tolist() == expected
-    np.testing.assert_allclose(contact_angle(s), np.repeat([0.0, np.pi / 3, 2 * np.pi / 3], 2), atol=1e-15)
+    expected = [network.HORIZONTAL] * 2 + [network.RISING] * 2 + [network.FALLING] * 2
+    assert network.lattice_direction(s).tolist() == expected
+    np.testing.assert_allclose(network.contact_angle(s), np.repeat([0.0, np.pi / 3, 2 * np.pi / 3], 2), atol=1e-15)
     tilted = state(position + np.array([[0.0, 1e-17], [0.0, -1e-17], [0.1, 0.0], [0.1, 0.0]]), contacts(links))
-    assert lattice_direction(tilted).tolist() == expected
-    assert np.all((contact_angle(tilted) >= 0.0) & (contact_angle(tilted) < np.pi))
+    assert network.lattice_direction(tilted).tolist() == expected
+    assert np.all((network.contact_angle(tilted) >= 0.0) & (network.contact_angle(tilted) < np.pi))
 
 
 def test_interior_contacts_by_their_centres():
     position = np.array([[1.0, 1.0], [3.0, 1.0], [5.0, 1.0], [7.0, 1.0]])
     s = state(position, contacts([(0, 1), (1, 2), (3, 2)]))
-    assert contact_centre(s)[:, 0].tolist() == [2.0, 4.0, 6.0]
-    assert interior_contacts(s, 8.0, 3.0).tolist() == [False, True, False]
-    assert interior_contacts(s, 8.0, 2.0).tolist() == [True, True, True]
+    assert network.contact_centre(s)[:, 0].tolist() == [2.0, 4.0, 6.0]
+    assert network.interior_contacts(s, 8.0, 3.0).tolist() == [False, True, False]
+    assert network.interior_contacts(s, 8.0, 2.0).tolist() == [True, True, True]
 
 
 def test_coordination_number_of_a_lattice_is_six_in_the_bulk():
     s = slab(9, 15)
-    bulk = bulk_disks(s, 30.0, side_margin=4.0)
+    bulk = network.bulk_disks(s, 30.0, side_margin=4.0)
     assert 0 < bulk.sum() < s.position.shape[0]
-    assert coordination_number(s, bulk) == 6.0
-    assert coordination_number(s, walls=False) == 2.0 * s.pairs.first.size / s.position.shape[0] < 6.0
+    assert network.coordination_number(s, bulk) == 6.0
+    assert network.coordination_number(s, walls=False) == 2.0 * s.pairs.first.size / s.position.shape[0] < 6.0
 
 
 def test_bulk_disks_keep_all_four_margins():
     position = np.array([[5.0, 5.0], [1.0, 5.0], [9.0, 5.0], [5.0, 1.0], [5.0, 9.0]])
-    assert bulk_disks(state(position, contacts([])), 10.0, 2.0, 2.0).tolist() == [True, *[False] * 4]
+    assert network.bulk_disks(state(position, contacts([])), 10.0, 2.0, 2.0).tolist() == [True, *[False] * 4]
 
 
 def chain_with_loose_ends():
@@ -78,67 +63,67 @@ def chain_with_loose_ends():
 
 def test_rattlers_are_removed_one_after_the_other():
     s = chain_with_loose_ends()
-    assert np.flatnonzero(rattlers(s)).tolist() == [3, 4, 5]
+    assert np.flatnonzero(network.rattlers(s)).tolist() == [3, 4, 5]
 
 
 def test_a_disk_that_touches_another_by_rounding_is_a_rattler_still():
     s = chain_with_loose_ends()
     status, force = np.full(6, STICKING), np.append(np.ones(5), 1e-13)
     touching = replace(s, pairs=replace(s.pairs, status=status, normal_force=force))
-    assert np.flatnonzero(rattlers(touching)).tolist() == [3, 4, 5]
+    assert np.flatnonzero(network.rattlers(touching)).tolist() == [3, 4, 5]
     bearing = replace(s, pairs=replace(s.pairs, status=status, normal_force=np.ones(6)))
-    assert np.flatnonzero(rattlers(bearing)).tolist() == [3, 4]
+    assert np.flatnonzero(network.rattlers(bearing)).tolist() == [3, 4]
 
 
 def test_coordination_number_by_definition():
     s = chain_with_loose_ends()
-    assert coordination_number(s) == pytest.approx(13 / 6)
-    assert coordination_number(s, walls=False) == pytest.approx(10 / 6)
-    assert coordination_number(s, without_rattlers=True) == pytest.approx(8 / 3)
-    assert coordination_number(s, without_rattlers=True, walls=False) == pytest.approx(2.0)
-    assert coordination_number(s, np.arange(6) == 2) == 3.0
+    assert network.coordination_number(s) == pytest.approx(13 / 6)
+    assert network.coordination_number(s, walls=False) == pytest.approx(10 / 6)
+    assert network.coordination_number(s, without_rattlers=True) == pytest.approx(8 / 3)
+    assert network.coordination_number(s, without_rattlers=True, walls=False) == pytest.approx(2.0)
+    assert network.coordination_number(s, np.arange(6) == 2) == 3.0
 
 
 def test_contact_angle_histogram_of_a_lattice():
     s = slab(4, 6)
-    centre, density = contact_angle_histogram(s, 18)
+    centre, density = network.contact_angle_histogram(s, 18)
     assert density.sum() * (centre[1] - centre[0]) == pytest.approx(1.0)
     assert np.flatnonzero(density).tolist() == [0, 6, 12]
-    direction = lattice_direction(s)
+    direction = network.lattice_direction(s)
     share = np.bincount(direction) / direction.size
     np.testing.assert_allclose(density[[0, 6, 12]] * np.pi / 18, share)
 
 
 def test_contact_angle_histogram_counts_touching_contacts_only():
     s = slab(4, 6)
-    horizontal = lattice_direction(s) == HORIZONTAL
-    _, density = contact_angle_histogram(opened(s, ~horizontal), 18)
+    horizontal = network.lattice_direction(s) == network.HORIZONTAL
+    _, density = network.contact_angle_histogram(opened(s, ~horizontal), 18)
     assert np.flatnonzero(density).tolist() == [0]
-    assert not contact_angle_histogram(opened(s, np.ones_like(horizontal)), 18)[1].any()
-    _, chosen = contact_angle_histogram(s, 18, contacts=~horizontal)
+    assert not network.contact_angle_histogram(opened(s, np.ones_like(horizontal)), 18)[1].any()
+    _, chosen = network.contact_angle_histogram(s, 18, contacts=~horizontal)
     assert np.flatnonzero(chosen).tolist() == [6, 12]
 
 
 def test_mirror_of_a_slab():
     s = slab(2, 3)  # disks 0 1 2 below, 3 4 above
-    assert mirror_disks(s.position, 3.0).tolist() == [2, 1, 0, 4, 3]
+    assert network.mirror_disks(s.position, 3.0).tolist() == [2, 1, 0, 4, 3]
 
 
 def test_network_asymmetry_counts_contacts_without_an_image():
     s = slab(2, 3)
-    mirror = mirror_disks(s.position, 3.0)
-    assert network_asymmetry(s.pairs, mirror) == 0.0
+    mirror = network.mirror_disks(s.position, 3.0)
+    assert network.network_asymmetry(s.pairs, mirror) == 0.0
     left, right = pair_index(s, 0, 1), pair_index(s, 1, 2)
     lopsided = opened(s, np.array([left]))
-    assert network_asymmetry(lopsided.pairs, mirror) == pytest.approx(1 / (s.pairs.first.size - 1))
-    assert network_asymmetry(opened(s, np.array([left, right])).pairs, mirror) == 0.0
+    assert network.network_asymmetry(lopsided.pairs, mirror) == pytest.approx(1 / (s.pairs.first.size - 1))
+    assert network.network_asymmetry(opened(s, np.array([left, right])).pairs, mirror) == 0.0
 
 
 test_what_cannot_be_is_named = refusals(
     ValueError,
-    (lambda: interior_contacts(slab(2, 3), 8.0, 4.0), "margin"),
-    (lambda: coordination_number(chain_with_loose_ends(), np.arange(6) == 5, without_rattlers=True), "disks"),
-    (lambda: contact_angle_histogram(slab(4, 6), 0), "bins"),
-    (lambda: mirror_disks(slab(2, 3).position, 2.5), "no mirror image"),
-    (lambda: mirror_disks(np.array([[0.0, 0.0], [0.05, 0.0], [10.0, 0.0]]), 5.0), "share"),
+    (lambda: network.interior_contacts(slab(2, 3), 8.0, 4.0), "margin"),
+    (lambda: network.coordination_number(chain_with_loose_ends(), np.arange(6) == 5, without_rattlers=True), "disks"),
+    (lambda: network.contact_angle_histogram(slab(4, 6), 0), "bins"),
+    (lambda: network.mirror_disks(slab(2, 3).position, 2.5), "no mirror image"),
+    (lambda: network.mirror_disks(np.array([[0.0, 0.0], [0.05, 0.0], [10.0, 0.0]]), 5.0), "share"),
 )

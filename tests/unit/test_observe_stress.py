@@ -92,9 +92,8 @@ def test_what_crosses_a_line_does_so_where_the_branch_crosses_it():
     contact = one_contact([1.0, 3.0], [1.0, 2.0], [0.3, 0.8])  # pushes the upper disk up: compression
     at, force = line_forces(contact, 1.5)
     assert (at.tolist(), force.tolist()) == ([0.25], [0.8])
-    assert line_forces(one_contact([0.0, 1.0], [-1.0, -2.0], [-0.3, -0.8]), 1.5)[1].tolist() == [
-        0.8
-    ]  # partners swapped
+    swapped = one_contact([0.0, 1.0], [-1.0, -2.0], [-0.3, -0.8])
+    assert line_forces(swapped, 1.5)[1].tolist() == [0.8]
     assert line_forces(contact, 3.5)[0].size == 0
     x = np.array([0.25, 1.25])
     assert line_stress(contact, 1.5, x, 2.0) == pytest.approx(0.8 * np.exp([0.0, -0.25]) / (2.0 * np.sqrt(np.pi)))

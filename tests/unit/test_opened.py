@@ -7,6 +7,7 @@ import zipfile
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import refuses
 
 from granular_response.store import files as store
 from granular_response.store.variables import variable
@@ -70,7 +71,5 @@ def test_datasets_are_the_same_from_checkout_and_archive(checkout, archive):
 def test_mistakes_are_named(checkout, tmp_path):
     with pytest.raises(ArchiveError, match=r"data/pile.nc: is no dataset of .*, must be one of data/influence.nc"):
         opened.load("data/pile.nc", str(checkout))
-    with pytest.raises(ArchiveError, match="no archive that can be read"):
-        opened.listed(str(tmp_path / "nothing.zip"))
-    with pytest.raises(ArchiveError, match="cannot be downloaded"):
-        opened.listed((tmp_path / "nothing.zip").as_uri())
+    refuses(ArchiveError, "no archive that can be read", opened.listed, str(tmp_path / "nothing.zip"))
+    refuses(ArchiveError, "cannot be downloaded", opened.listed, (tmp_path / "nothing.zip").as_uri())

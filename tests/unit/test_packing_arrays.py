@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import refuses
 from stress.random_scenes import write_table
 
 import granular_response as gr
@@ -58,6 +59,4 @@ def test_a_stored_result_has_the_packing_and_goes_on(tmp_path):
     ],
 )
 def test_mistakes_name_the_key_the_value_and_what_is_allowed(changes, message):
-    with pytest.raises(gr.SceneError) as caught:
-        gr.Scene.from_arrays(**{**PYRAMID, **changes})
-    assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
+    assert refuses(gr.SceneError, None, gr.Scene.from_arrays, **{**PYRAMID, **changes}).startswith(message)

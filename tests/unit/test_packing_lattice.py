@@ -91,12 +91,8 @@ def test_mass_is_area():
 
 
 def test_a_realization_is_seed_and_number():
-    def radius(delta=0.1, seed=0, realization=0, layers=5):
-        return (
-            SlabPacking(layers=layers, disks_per_row=9, polydispersity=delta, seed=seed, realization=realization)
-            .build()
-            .radius
-        )
+    def radius(delta=0.1, **drawn):
+        return SlabPacking(layers=5, disks_per_row=9, polydispersity=delta, **drawn).build().radius
 
     assert (radius() == radius()).all()
     assert not np.allclose(radius(), radius(seed=1))

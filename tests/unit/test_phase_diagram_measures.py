@@ -147,7 +147,6 @@ def test_a_large_ensemble_knows_better_how_far_its_means_dip() -> None:
 
 
 def test_a_crossover_is_seen_in_samples_of_an_ensemble_that_has_one() -> None:
-    """In all samples of packings that go from one peak to two, in none of packings that do not."""
     force = np.array([1.0, 2.0, 4.0])
     path = np.stack([bumps(0.0), bumps(4.0), bumps(12.0)])
     for responses, expected in ((path, 1.0), (path[[0, 0, 0]], 0.0), (path[[2, 2, 2]], 0.0)):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import to_rgba
+from refusals import refuses
 
 import granular_response as gr
 from granular_response.plot import network, pictures, style
@@ -96,8 +97,7 @@ def test_a_packing_has_its_disks_and_values(result, ax):
     assert isinstance(disks, EllipseCollection)
     np.testing.assert_array_equal(disks.get_offsets(), result.loaded[0].position)
     np.testing.assert_array_equal(disks.get_array(), result.loaded[0].angle)
-    with pytest.raises(pictures.PictureError, match=r"values: must have shape \(73,\)"):
-        gr.plot.packing(result, ax=ax, values=[1.0])
+    refuses(pictures.PictureError, r"values: must have shape \(73,\)", gr.plot.packing, result, ax=ax, values=[1.0])
     with pytest.raises(pictures.PictureError, match=r"^values = \{1\.0\}: must be numbers, a disk each$"):
         gr.plot.packing(result, ax=ax, values={1.0})
 
@@ -171,8 +171,7 @@ def test_why_there_is_no_response_is_said(loadless, turned, ax):
     for one, why in ((loadless, "no loads"), (turned, "no load has a force"), (nothing, "the loads apply no force in")):
         with pytest.raises(pictures.PictureError, match=f"^result: {why}[^\n]*, so there is no response; floor draws"):
             gr.plot.response(one, ax=ax)
-        with pytest.raises(pictures.PictureError, match="so there is no response"):
-            gr.plot.page(one, ["response", "forces"])
+        refuses(pictures.PictureError, "so there is no response", gr.plot.page, one, ["response", "forces"])
 
 
 def test_bad_input_is_named(result, ax):
@@ -183,10 +182,8 @@ def test_bad_input_is_named(result, ax):
         "vmax = 0": lambda: gr.plot.forces(result, ax=ax, vmax=0),
         "holds no states": lambda: gr.plot.forces(result.to_dataset()[["radius"]], ax=ax),
     }.items():
-        with pytest.raises(pictures.PictureError, match=message):
-            call()
-    with pytest.raises(TypeError, match="must be a Result or its dataset, not str"):
-        gr.plot.forces("result.nc", ax=ax)
+        refuses(pictures.PictureError, message, call)
+    refuses(TypeError, "must be a Result or its dataset, not str", gr.plot.forces, "result.nc", ax=ax)
 
 
 def test_files_are_pictures_of_results(result, tmp_path):
@@ -196,8 +193,7 @@ def test_files_are_pictures_of_results(result, tmp_path):
     with pytest.raises(pictures.PictureError, match=r"picture\.jpg: format '\.jpg' is unknown, must be"):
         pictures.save(result, tmp_path / "picture.jpg", ["response"])
     (tmp_path / "folder.pdf").mkdir()
-    with pytest.raises(pictures.PictureError, match="cannot be written"):
-        pictures.save(result, tmp_path / "folder.pdf", ["response"])
+    refuses(pictures.PictureError, "cannot be written", pictures.save, result, tmp_path / "folder.pdf", ["response"])
     with pytest.raises(pictures.PictureError, match="is read by the same command"):
         pictures.save(result, path, ["response"], inputs=[path])
     assert path.read_bytes().startswith(b"<?xml")

@@ -39,7 +39,6 @@ def test_a_lost_spring_is_an_error():
 
 @pytest.mark.parametrize("move", [0.0, 0.05, 0.6])
 def test_candidates_hold_every_contact_within_their_limit(move):
-    """Whoever moves by less than the limit touches only listed partners."""
     problem = Problem.from_scene(scene())
     rng = np.random.default_rng(2)
     position = problem.packing.position + rng.uniform(-move, move, (problem.n, 2))
@@ -84,12 +83,10 @@ def test_a_torque_that_nothing_can_balance_is_refused(smooth):
         scene(loads=loads).updated(smooth)
 
 
-def test_a_period_in_which_disks_may_meet_on_both_sides_is_refused(tmp_path):
-    (tmp_path / "two.csv").write_text("x,z,radius\n1,1,1\n3.1,1,1\n")
-
+def test_a_period_in_which_disks_may_meet_on_both_sides_is_refused():
     def problem(width):
-        packing = {"kind": "file", "path": "two.csv", "width": width, "sides": "periodic"}
-        return Problem.from_scene(Scene.from_dict({"packing": packing, "loads": []}, folder=tmp_path))
+        sides = {"width": width, "sides": "periodic"}
+        return Problem.from_scene(Scene.from_arrays([1, 3.1], [1, 1], 1, **sides, scene={"loads": []}))
 
     for width in (4.1, 5.1):
         said = rf"packing.width: the period is {width} mean radii, must be at least 5.2 for disks of this size"
@@ -100,10 +97,8 @@ def test_a_period_in_which_disks_may_meet_on_both_sides_is_refused(tmp_path):
 
 @pytest.mark.parametrize("width", [2.0, 2.2, 2.5, 2.59, 2.7, 5.0])
 @pytest.mark.parametrize("friction", [0.0, 0.5])
-def test_one_disk_between_periodic_sides_does_not_meet_itself(tmp_path, width, friction):
-    (tmp_path / "one.csv").write_text("x,z,radius\n1,1,1\n")
-    packing = {"kind": "file", "path": "one.csv", "width": width, "sides": "periodic"}
-    smooth = {"contact": {"friction": friction}, "wall": {"friction": friction}}
-    solution = solve_scene(Scene.from_dict({"packing": packing, "loads": [], **smooth}, folder=tmp_path))
+def test_one_disk_between_periodic_sides_does_not_meet_itself(width, friction):
+    rubs = {"contact": {"friction": friction}, "wall": {"friction": friction}, "loads": []}
+    solution = solve_scene(Scene.from_arrays([1], [1], 1, width=width, sides="periodic", scene=rubs))
     assert len(solution.rest.pairs.first) == 0
     np.testing.assert_allclose(solution.rest.wall_force(), [[0.0, 1.0]], atol=1e-9)

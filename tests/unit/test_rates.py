@@ -33,13 +33,8 @@ def test_a_disk_on_a_floor_sticks_and_slides_at_the_limit():
 def squeezed(friction=0.1):
     """A disk in a slot that is too narrow for it, pressed down; the springs along the sides are slack at rest."""
     loads = [{"disk": 0, "force": [0.0, -1.0]}]
-    alone, state = free_disks(
-        [[1.0 - 1e-3, 1.0 - 1.0 / 6000.0]],
-        width=2.0 - 2e-3,
-        contact__friction=friction,
-        wall__friction=friction,
-        loads=loads,
-    )
+    rubs = {"contact__friction": friction, "wall__friction": friction}
+    alone, state = free_disks([[1.0 - 1e-3, 1.0 - 1.0 / 6000.0]], width=2.0 - 2e-3, loads=loads, **rubs)
     rest = finish(alone, state)
     return alone.with_loads(rest.position), rest
 

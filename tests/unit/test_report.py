@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from chromium import BROWSER, Chromium
+from claims_data import by_row, dataset, over
 from PIL import Image
-from xarray import Dataset
+from refusals import refuses
 
 from granular_response.store import files as store
-from granular_response.store.variables import variable
 from granular_response_paper import report
 from granular_response_paper.claims import table as claims
 from granular_response_paper.claims.claim import ClaimsError, Data
@@ -38,48 +38,32 @@ def states(friction):
     opened = (np.abs(place[first, 1] - place[second, 1]) < 0.1) & (np.arange(len(first)) % 5 == 0)
     normal = np.stack([np.full(len(first), 0.5 + force) for force in FORCES])
     status = np.stack([np.where(opened & (force > 2.0), 0, 1) for force in FORCES])
-    return Dataset(
-        {
-            "position": variable(("state", "disk", "axis"), np.stack([place] * len(FORCES)), "position"),
-            "contact_disk": variable(("contact",), first, "disk"),
-            "contact_partner": variable(("contact",), second, "other disk"),
-            "contact_status": variable(("state", "contact"), status, "status"),
-            "contact_normal_force": variable(("state", "contact"), np.where(status == 0, 0.0, normal), "force"),
-            "contact_tangential_force": variable(("state", "contact"), friction * normal, "force"),
-            "force": variable(("state",), np.array(FORCES), "applied force"),
-            "loaded_disk": variable((), 10, "loaded disk"),
-        }
+    return dataset(
+        position=("state disk axis", [place] * len(FORCES)),
+        **over("contact", contact_disk=first, contact_partner=second),
+        **over("state contact", contact_status=status, contact_normal_force=np.where(status == 0, 0.0, normal)),
+        contact_tangential_force=("state contact", friction * normal),
+        force=("state", FORCES),
+        loaded_disk=10,
     )
 
 
 def friction_study():
-    x = np.arange(-6.0, 7.0, 2.0)
-    dims = ("friction", "force")
-    response = Dataset(
-        {
-            "floor_response": variable((*dims, "floor_disk"), np.full((3, 3, 7), 1.0 / 7.0), "response"),
-            "peak_count": variable(dims, np.full((3, 3), 2.0), "peaks"),
-            "response_at_centre": variable(dims, np.full((3, 3), 1.0 / 7.0), "response at x = 0"),
-        },
-        {
-            "friction": variable(("friction",), np.array([0.0, 0.2, 1.0]), "friction"),
-            "force": variable(("force",), np.array(FORCES[1:]), "force"),
-            "x": variable(("floor_disk",), x, "place"),
-        },
+    response = dataset(
+        {"friction": [0.0, 0.2, 1.0], "force": list(FORCES[1:]), "x": ("floor_disk", np.arange(-6.0, 7.0, 2.0))},
+        floor_response=("friction force floor_disk", 1.0 / 7.0),
+        **over("friction force", peak_count=2.0, response_at_centre=1.0 / 7.0),
     )
     found = {"response": response, **{f"states_mu_{mu:g}": states(mu) for mu in (0.0, 0.2, 1.0)}}
-    for dataset in found.values():
-        dataset.attrs["scene"] = "contact: {stiffness_ratio: 0.8}\nwall: {friction: 0.0}\n"
+    for one in found.values():
+        one.attrs["scene"] = "contact: {stiffness_ratio: 0.8}\nwall: {friction: 0.0}\n"
     return found
 
 
 def sensitivity_study():
-    return Dataset(
-        {
-            "largest_difference": variable(("variant",), np.array([0.0, 8e-6]), "difference"),
-            "text": variable(("variant",), ["as it is", "time step <halved>"], "what is changed"),
-        },
-        {"variant": variable(("variant",), ["reference", "of_its_own"], "name")},
+    return dataset(
+        {"variant": ["reference", "of_its_own"]},
+        **over("variant", largest_difference=[0.0, 8e-6], text=["as it is", "time step <halved>"]),
     )
 
 
@@ -256,21 +240,12 @@ def test_texts_are_set_with_minus_signs_powers_and_subscripts(plain, typed):
 
 
 def crossovers():
-    case = ("case",)
-    return Dataset(
-        {
-            "force": variable(("width", "case"), [[3.0, 20.0, 5.0, 9.0]], "force"),
-            "kind": variable(("width", "case"), [[0, 2, 1, 0]], "kind"),
-            "interval": variable(
-                ("width", "case", "level"), [[[3.0, 3.0], [20.0, np.inf], [0.0, 6.0], [8.0, 9.5]]], "interval"
-            ),
-        },
-        {
-            "width": variable(("width",), [6.0], "width"),
-            "polydispersity": variable(case, [0.0, 0.0, 0.25, 0.25], "spread"),
-            "friction": variable(case, [1.0, 0.2, 0.2, 1.0], "friction"),
-            "lattice_constant": variable(case, ["touching-largest"] * 3 + ["2.0"], "lattice"),
-        },
+    largest = "touching-largest"
+    cases = [(0.0, 1.0, largest), (0.0, 0.2, largest), (0.25, 0.2, largest), (0.25, 1.0, "2.0")]
+    return dataset(
+        by_row("case", "polydispersity friction lattice_constant", cases) | {"width": [6.0]},
+        **over("width case", force=[[3.0, 20.0, 5.0, 9.0]], kind=[[0, 2, 1, 0]]),
+        interval=("width case level", [[[3.0, 3.0], [20.0, np.inf], [0.0, 6.0], [8.0, 9.5]]]),
     )
 
 
@@ -314,9 +289,7 @@ def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
     if content is not None:
         (tmp_path / "figures").mkdir()
         (tmp_path / "figures" / "claims.json").write_text(content)
-    with pytest.raises(ClaimsError, match=rf"claims\.json: {problem}") as caught:
-        report.page(tmp_path)
-    assert "\n" not in str(caught.value)
+    refuses(ClaimsError, rf"claims\.json: {problem}", report.page, tmp_path)
 
 
 @pytest.fixture(scope="module")

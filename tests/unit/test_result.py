@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 import xarray as xr
-from small_scenes import scene
+from small_scenes import pushed, scene
 
 import granular_response
 from granular_response.scene import Scene
@@ -17,8 +17,8 @@ from granular_response.store.result import ResultError, scene_of, solution_from,
 
 @pytest.fixture(scope="module", params=[0.0, 0.3], ids=["frictionless", "frictional"])
 def solution(request):
-    load = {"disk": "top-centre", "force": [0.5, -3.0], "torque": 0.2 if request.param else 0.0}
-    return solve_scene(scene(contact__friction=request.param, loads=[load]), load_factors=(0.5, 1.0))
+    loads = pushed(0.5, -3.0, 0.2 if request.param else 0.0)
+    return solve_scene(scene(contact__friction=request.param, loads=loads), load_factors=(0.5, 1.0))
 
 
 def equal(a, b) -> bool:
@@ -90,7 +90,7 @@ def test_a_table_that_has_changed_since_is_noticed(tmp_path, width, last):
         granular_response.open_result(tmp_path / "result.nc", folder=tmp_path).continued([2.0])
 
 
-SLAB = scene(5, 11, contact__friction=0.3, loads=[{"disk": "top-centre", "force": [0.0, -1.0]}])
+SLAB = scene(5, 11, contact__friction=0.3, loads=pushed(0.0, -1.0))
 
 
 def assert_same_contacts(one, other) -> None:

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from small_scenes import free_disks, scene, shaken, started
+from small_scenes import free_disks, pushed, scene, shaken, started
 from test_next_changes import added_to_tangent
 from test_statics import dense_tangent, numerical_tangent
 
@@ -73,25 +73,11 @@ def test_a_disk_on_the_floor_holds_a_couple_up_to_its_limit(torque):
     assert state.angle[0] - rest.angle[0] == pytest.approx(torque / problem.wall_rolling.stiffness)
 
 
-def test_a_disk_rolls_to_rest():
-    """Without slip it is slowed by 2/3 mu_R g, so it stops after 3 v^2 / (4 mu_R g)."""
-    speed = 0.5
-    problem, state = free_disks([[500.0, 1.0 - 1.0 / 6000.0]], velocity=[[speed, 0.0]], spin=[-speed], **FLOOR)
-    dynamics = Dynamics(problem, state, time_step=2e-4)
-    dynamics.advance(20_000)
-    assert np.abs(dynamics.v).max() < 1e-3
-    assert dynamics.position[0, 0] - 500.0 == pytest.approx(0.75 * speed**2 / 0.3, rel=5e-3)
-    assert dynamics.state().walls.resists_rolling
-
-
 @pytest.mark.parametrize("body", ["disk", "floor"])
 def test_energy_is_never_gained(body):
     """Collisions with any spin, without gravity: what flies apart has less energy than what met."""
-    rng, strong = (
-        np.random.default_rng(3),
-        EVERYWHERE | {"contact__rolling_friction": 1.0, "wall__rolling_friction": 1.0},
-    )
-    lost = []
+    rng, lost = np.random.default_rng(3), []
+    strong = EVERYWHERE | {"contact__rolling_friction": 1.0, "wall__rolling_friction": 1.0}
     for _ in range(60):
         v, spin = rng.normal(0.0, 0.3, (2, 2)), rng.normal(0.0, 1.0, 2)
         v[0, 1], v[1, 1] = -abs(v[0, 1]) - 0.01, abs(v[1, 1])
@@ -190,9 +176,8 @@ def test_a_changed_status_is_the_difference_of_tangents():
 
 @pytest.fixture(scope="module")
 def solution():
-    loads = [{"disk": "top-centre", "force": [1.0, -6.0]}]
     weak = EVERYWHERE | {"contact__rolling_friction": 0.02, "wall__rolling_friction": 0.02}
-    return solve_scene(scene(5, 9, loads=loads, protocol__load_factors=[0.5, 1.0], **weak))
+    return solve_scene(scene(5, 9, loads=pushed(1.0, -6.0), protocol__load_factors=[0.5, 1.0], **weak))
 
 
 def test_a_path_keeps_the_limits_and_its_energy(solution):
@@ -247,10 +232,9 @@ def test_stiff_rolling_shortens_the_time_step():
 
 def test_an_event_names_the_contact_that_changes():
     """Also where a wall contact and the rolling of a pair change at one load: a disk is where its wall contact is."""
-    load = {"disk": "top-centre", "force": [0.3, -6.0]}
     rolls = {"contact__friction": 0.5, "contact__rolling_friction": 0.05, "contact__rolling_stiffness_ratio": 1.0}
     solved = solve_scene(
-        scene(packing__layers=5, packing__disks_per_row=9, wall__friction=0.3, **rolls, loads=[load]),
+        scene(packing__layers=5, packing__disks_per_row=9, wall__friction=0.3, **rolls, loads=pushed(0.3, -6.0)),
         load_factors=[1.0, 2.0],
     )
     at_wall = [event for state in solved.loaded for event in state.reached.events if event.at_wall]

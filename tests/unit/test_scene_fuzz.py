@@ -49,16 +49,11 @@ slabs = st.fixed_dictionaries(
 piles = st.fixed_dictionaries({"kind": st.just("pile")}, optional={**disorder, "layers": st.integers(10, 20)})
 files = st.fixed_dictionaries({"kind": st.just("file"), "path": names, "width": st.floats(0.0, 1e9, exclude_min=True)})
 stiffness = st.floats(0.0, 5e11, exclude_min=True)
-disks = {"disk": st.just("top-centre") | st.integers(0, 100)}
+pushes = {"force": st.lists(finite, min_size=2, max_size=2)}
+moves = {"displacement": st.tuples(finite, st.none() | finite).map(list)}
+disk = st.just("top-centre") | st.integers(0, 100)
 loads = st.lists(
-    st.fixed_dictionaries(
-        {**disks, "force": st.lists(finite, min_size=2, max_size=2)},
-        optional={"torque": finite},
-    )
-    | st.fixed_dictionaries(
-        {**disks, "displacement": st.tuples(finite, st.none() | finite).map(list)},
-        optional={"torque": finite},
-    ),
+    st.one_of(st.fixed_dictionaries({"disk": disk, **by}, optional={"torque": finite}) for by in (pushes, moves)),
     max_size=3,
 )
 scenes = options(

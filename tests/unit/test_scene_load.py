@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from refusals import refuses
 
 from granular_response.scene import (
     Packing,
@@ -118,9 +119,7 @@ def test_a_place_beyond_the_sides_says_which_load():
 )
 def test_missing_disks(selector, message):
     packing = SlabPacking(layers=4, disks_per_row=7).build()
-    with pytest.raises(SceneError) as caught:
-        resolve_disk(selector, packing, packing.position)
-    assert str(caught.value) == message
+    assert refuses(SceneError, None, resolve_disk, selector, packing, packing.position) == message
 
 
 def test_only_lattices_have_rows():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from refusals import refuses
 from small_scenes import scene
 
 import granular_response as gr
@@ -55,8 +56,7 @@ def test_contacts_at_the_limit_are_refused_unless_they_shall_stick():
     solution = solve_scene(described(changes, 80, [0.0, 0.0, 0.0]))
     state = solution.loaded[0]
     disks = floor_disks([solution.rest, state])
-    with pytest.raises(EquilibriumError, match=r"^\d+ contacts are at the Coulomb limit"):
-        influence(solution.problem, state, disks)
+    refuses(EquilibriumError, r"^\d+ contacts are at the Coulomb limit", influence, solution.problem, state, disks)
     assert np.isfinite(influence(solution.problem, state, disks, sliding="stick")).all()
     with pytest.raises(ValueError, match=r"sliding = 'slip': must be refuse or stick"):
         influence(solution.problem, state, disks, sliding="slip")
@@ -67,14 +67,6 @@ def test_nothing_holds_a_periodic_slab_on_a_smooth_floor_along_x():
     solution = solve_scene(described(changes, 80, [0.0, -1e-4, 0.0]))
     found = influence(solution.problem, solution.rest, floor_disks([solution.rest]))
     assert np.isnan(found[:, :, 0]).all() and np.isfinite(found[:, :, 1]).all()
-
-
-def contact_answers(problem, state, disks, sliding="refuse"):
-    """What a unit force downwards on one disk after another adds to every contact force: (k, m, 2) and (k, w, 2)."""
-    system, trial = sticking(problem, state, sliding)
-    answer = system.answers(trial)
-    added = [added_forces(system, trial, answer(force_on(problem, disk, 1, -1.0))) for disk in disks]
-    return tuple(np.array(one) for one in zip(*added, strict=True))
 
 
 def test_an_unknown_that_a_load_holds_adds_nothing():
@@ -102,19 +94,19 @@ def test_a_result_has_it_labelled_and_a_stored_one_too(tmp_path):
     assert float(found["disk_x"][80]) == pytest.approx(0.0, abs=1e-12)
     result.save(tmp_path / "r.nc")
     assert np.array_equal(gr.open_result(tmp_path / "r.nc").influence(state=0).values, found.values)
-    with pytest.raises(IndexError, match="state = 7"):
-        result.influence(state=7)
+    refuses(IndexError, "state = 7", result.influence, state=7)
 
 
 @pytest.mark.parametrize("changes", CASES.values(), ids=CASES)
 def test_every_contact_answers_as_to_a_small_load(changes):
     solution = solve_scene(described(changes, 80, [0.0, -1e-4, 0.0]))
     rest, loaded = solution.rest, solution.loaded[0]
-    pairs, walls = contact_answers(solution.problem, rest, np.array([19, 80]))
-    assert pairs.shape == (2, len(rest.pairs.first), 2) and walls.shape == (2, len(rest.walls.first), 2)
-    assert pairs[1] == pytest.approx(pair_force_difference(rest, loaded) / 1e-4, abs=1e-4)
-    assert walls[1] == pytest.approx(wall_force_difference(rest, loaded) / 1e-4, abs=1e-4)
-    assert np.abs(pairs[1]).max() > 0.1
+    system, trial = sticking(solution.problem, rest, "refuse")
+    down = force_on(solution.problem, 80, 1, -1.0)
+    pairs, walls = added_forces(system, trial, system.answers(trial)(down))
+    assert pairs == pytest.approx(pair_force_difference(rest, loaded) / 1e-4, abs=1e-4)
+    assert walls == pytest.approx(wall_force_difference(rest, loaded) / 1e-4, abs=1e-4)
+    assert np.abs(pairs).max() > 0.1
 
 
 def test_a_displacement_holds_a_periodic_packing_along_x():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from small_scenes import scene
+from small_scenes import pushed, scene
 
 from granular_response.errors import EquilibriumError
 from granular_response.scene import SceneError
@@ -13,7 +13,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import NotSettled
 from granular_response.solvers.solution import rest_state, solve_scene
 
-LOAD = [{"disk": "top-centre", "force": [0.0, -2.0]}]
+LOAD = pushed(0.0, -2.0)
 
 
 @pytest.mark.parametrize(
@@ -79,9 +79,8 @@ def test_minimise_with_friction_is_refused():
 @pytest.mark.parametrize("method", ["path", "dynamics", "auto"])
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_a_load_that_tears_a_disk_off_is_one_clear_line_and_soon(method, friction):
-    up = [{"disk": "top-centre", "force": [0.0, 3.0]}]
     with pytest.raises(DynamicsError, match=r"^a load lifts disk 22 off the packing for good; nothing can hold it$"):
-        solve_scene(scene(contact__friction=friction, loads=up, protocol__method=method))
+        solve_scene(scene(contact__friction=friction, loads=pushed(0.0, 3.0), protocol__method=method))
 
 
 @pytest.mark.parametrize("steps", [0.99, 1.0, 1.005, 1.009, 1.05, 1.1, 3.0])
@@ -101,7 +100,7 @@ def test_a_path_whose_every_increment_fails_gives_up_after_a_few(monkeypatch, st
     def moves(*_):
         raise Moves
 
-    problem = Problem.from_scene(scene(loads=[{"disk": "top-centre", "force": [0.0, -1.0]}]))
+    problem = Problem.from_scene(scene(loads=pushed(0.0, -1.0)))
     rest = rest_state(problem)
     monkeypatch.setattr(points, "solve_increment", fails)
     monkeypatch.setattr(path, "landed", fails)

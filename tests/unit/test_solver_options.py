@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_scenes import at_rest, scene
+from refusals import refuses
+from small_scenes import at_rest, pushed, scene
 
 from granular_response.errors import EquilibriumError
 from granular_response.solvers import equilibrium, path, system
@@ -16,14 +17,15 @@ from granular_response.solvers.system import StaticSystem
 from granular_response.state import State
 
 
-def settling() -> tuple[Problem, State]:
-    """A packing that is nearly at rest."""
-    problem = Problem.from_scene(scene(contact__friction=0.2, wall__friction=0.2))
-    return problem, relax(Dynamics(problem, problem.bare_state()), Stop(1e-8))
+@pytest.fixture(scope="module")
+def loaded() -> tuple[Problem, State]:
+    """A packing at rest, with the load that it is to bear."""
+    return at_rest(scene(6, 13, contact__friction=0.2, loads=pushed(0.0, -12.0)))
 
 
 def test_newtons_method_ends_where_its_options_say(monkeypatch):
-    problem, state = settling()
+    problem = Problem.from_scene(scene(contact__friction=0.2, wall__friction=0.2))
+    state = relax(Dynamics(problem, problem.bare_state()), Stop(1e-8))  # nearly at rest
     equations, external = StaticSystem(problem, state), external_force(problem, 0.0)
     known = equations.start(state)
     assert newton(equations, known, external)[1].residual < equilibrium.OPTIONS.tolerance
@@ -31,38 +33,31 @@ def test_newtons_method_ends_where_its_options_say(monkeypatch):
     monkeypatch.setattr(equilibrium, "OPTIONS", replace(usual, enough=1.0))
     assert newton(equations, known, external)[1].iterations == 0
     monkeypatch.setattr(equilibrium, "OPTIONS", replace(usual, iterations=0))
-    with pytest.raises(EquilibriumError, match="within 0 Newton iterations"):
-        finish(problem, state)
+    refuses(EquilibriumError, "within 0 Newton iterations", finish, problem, state)
     monkeypatch.setattr(equilibrium, "OPTIONS", replace(usual, farthest=0.0))
-    with pytest.raises(EquilibriumError, match="mean radii away"):
-        finish(problem, state)
+    refuses(EquilibriumError, "mean radii away", finish, problem, state)
     monkeypatch.setattr(equilibrium, "OPTIONS", replace(usual, longest_step=1e-12))
     assert not newton(equations, known, external)[1].converged
 
 
-def test_changed_stiffnesses_make_no_factorisation_up_to_a_number(monkeypatch):
-    loads = [{"disk": "top-centre", "force": [0.0, -12.0]}]
-    problem, rest = at_rest(scene(6, 13, contact__friction=0.2, loads=loads))
-
+def test_changed_stiffnesses_make_no_factorisation_up_to_a_number(loaded, monkeypatch):
     def factorisations() -> int:
-        return follow(problem, rest, [1.0])[0].reached.factorisations
+        return follow(*loaded, [1.0])[0].reached.factorisations
 
     few = factorisations()
     monkeypatch.setattr(system, "OPTIONS", replace(system.OPTIONS, most_changed=0))
     assert factorisations() > 2 * few
 
 
-def test_a_landing_leaves_force_and_a_factorisation_as_its_options_say(monkeypatch):
+def test_a_landing_leaves_force_and_a_factorisation_as_its_options_say(loaded, monkeypatch):
     """Coarser events have other loads, by no more than the force that is left; the floor feels nothing of it."""
-    loads = [{"disk": "top-centre", "force": [0.0, -12.0]}]
-    problem, rest = at_rest(scene(6, 13, contact__friction=0.2, loads=loads))
     usual = path.OPTIONS
 
-    def loaded(**options) -> State:
+    def followed(**options) -> State:
         monkeypatch.setattr(path, "OPTIONS", replace(usual, **options))
-        return follow(problem, rest, [1.0])[0]
+        return follow(*loaded, [1.0])[0]
 
-    exact, coarse, renewed = loaded(passing=1e-12), loaded(), loaded(outdated=0)
+    exact, coarse, renewed = followed(passing=1e-12), followed(), followed(outdated=0)
     for other in (coarse, renewed):
         assert [event.kind for event in other.reached.events] == [event.kind for event in exact.reached.events]
         assert np.abs(other.wall_force() - exact.wall_force()).max() < usual.passing

@@ -5,6 +5,7 @@ import os
 import numpy as np
 import pytest
 import yaml
+from refusals import refuses
 
 from granular_response.scene import SceneError
 from granular_response.store import files as store
@@ -74,11 +75,9 @@ def test_a_run_goes_on_where_it_was_and_stores_what_was_found(file):
 def test_mistakes_are_one_line_each(file, tmp_path):
     with pytest.raises(survey.SurveyError, match=r"^block large: there is none of this name, must be one of small$"):
         survey.ensemble("large", file)
-    with pytest.raises(survey.SurveyError, match=r"none\.yaml: cannot be read"):
-        survey.read_parameters(tmp_path / "none.yaml")
+    refuses(survey.SurveyError, r"none\.yaml: cannot be read", survey.read_parameters, tmp_path / "none.yaml")
     os.mkfifo(tmp_path / "pipe.yaml")  # it was waited for without end
     with pytest.raises(survey.SurveyError, match=r"pipe\.yaml: cannot be read: is not a regular file"):
         survey.read_parameters(tmp_path / "pipe.yaml")
     file.write_text(yaml.safe_dump({**SMALL, "realizations": 0}))
-    with pytest.raises(SceneError, match=r"params\.yaml: realizations = 0"):
-        survey.read_parameters(file)
+    refuses(SceneError, r"params\.yaml: realizations = 0", survey.read_parameters, file)

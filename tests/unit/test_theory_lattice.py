@@ -40,15 +40,6 @@ def test_free_rotations_change_the_shear_modulus_only(springs: Springs) -> None:
         assert expected[2, 2] < suppressed[2, 2]
 
 
-def test_shear_modulus_is_the_one_of_the_bond_energy() -> None:
-    # Energy per area of eq. (5) for eps_xz = 1, summed by hand over the three bonds of length 2:
-    # t.eps.r is 2 for the horizontal bond, n.eps.r is +-sqrt(3), t.eps.r is -1 for the oblique ones.
-    k1n, k2n, k1t, k2t = 0.7, 1.3, 0.2, 0.9
-    energy = 0.5 * (4.0 * k1t + 2.0 * (3.0 * k2n + k2t)) / (2.0 * np.sqrt(3.0))
-    # d eps_xz^2, not d eps_xz^2 / 2 as eq. (6) is printed.
-    assert lattice.moduli(Springs(k1n, k2n, k1t, k2t)).d == pytest.approx(energy, rel=1e-14)
-
-
 def test_r_without_horizontal_springs_is_the_papers_function() -> None:
     for beta in (0.0, 0.1, 0.5, 2.0):
         expected = (beta**2 + 10.0 * beta - 3.0) / (beta**2 + 6.0 * beta + 9.0)

@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from refusals import refusals
+from refusals import refusals, refuses
 
 from granular_response.scene import (
     Contact,
@@ -44,7 +44,6 @@ def test_units_of_the_paper(quantity):
 
 
 def test_laws_hold_in_both_units():
-    """A law of physics does not know its units: a spring's frequency, a falling disk, a weight on a line."""
     units = LaboratoryUnits(radius=0.02, thickness=0.1, density=2500.0, gravity=1.62)
     stiffness, mass = units.to_laboratory("stiffness", 3000.0), units.to_laboratory("mass", 1.0)
     assert units.to_reduced("time", np.sqrt(mass / stiffness)) == pytest.approx(np.sqrt(1.0 / 3000.0))
@@ -119,5 +118,4 @@ def test_what_is_wrong_with_a_table_is_for_the_scene_to_say(tmp_path):
     for given in ({"path": str(tmp_path / "disks.csv")}, {"path": 5}, {"path": "disks.csv", "widht": 3}):
         data = {"packing": {"kind": "file", **given}}
         assert LaboratoryUnits().reduced_scene(data) == data
-        with pytest.raises(SceneError, match=r"^packing\."):
-            Scene.from_dict(data).packing.build()
+        refuses(SceneError, r"^packing\.", lambda data=data: Scene.from_dict(data).packing.build())

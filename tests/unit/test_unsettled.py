@@ -16,11 +16,10 @@ from granular_response.store import files as store
 from granular_response.store.result import solution_from, state_from, to_dataset
 
 
-def test_a_disk_that_falls_from_high_is_not_at_rest_before_it_has_landed(tmp_path):
+def test_a_disk_that_falls_from_high_is_not_at_rest_before_it_has_landed():
     """Slow at first, and without a contact; it used to count as settled on the way, having touched nothing."""
-    (tmp_path / "one.csv").write_text("x,z,radius\n5,10,1\n")
-    packing = {"kind": "file", "path": str(tmp_path / "one.csv"), "width": 10.0}
-    rest = solve_scene(Scene.from_dict({"packing": packing, "loads": [], "protocol": {"static_finish": False}})).rest
+    moving = {"loads": [], "protocol": {"static_finish": False}}
+    rest = solve_scene(Scene.from_arrays([5.0], [10.0], 1.0, width=10.0, scene=moving)).rest
     assert rest.reached.settled
     assert rest.reached.time > np.sqrt(2.0 * 9.0)
     assert rest.position[0, 1] == pytest.approx(1.0 - 1.0 / 6000.0, abs=1e-7)

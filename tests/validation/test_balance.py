@@ -31,7 +31,6 @@ def solution(request):
 
 
 def test_what_states_say_of_themselves_is_so_over_all_pairs_of_disks(solution):
-    """In balance, no overlap without its force, no contact that is not listed, nothing lost or in flight."""
     for state in (solution.rest, *solution.loaded):
         found = check(solution, state)
         assert contradiction(state, found, rounding_of(solution)) == ""

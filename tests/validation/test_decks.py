@@ -19,6 +19,7 @@ import warnings
 
 import numpy as np
 import pytest
+import xarray as xr
 from small_scenes import free_disks
 
 import granular_response as gr
@@ -35,14 +36,14 @@ def damping_ratio(restitution: float, *, pair: bool = False) -> float:
     return ratio / math.sqrt(2.0) if pair else ratio
 
 
-def clocked(z: float, steps: int, *, step: float = STEP, loads=(), factors=(1.0,), **wall) -> tuple[State, ...]:
-    """Disks of radius 1 at height ``z``, moved ``steps`` time steps by gravity and then under each load."""
+def on_the_floor(friction: float, steps: int, load: dict, factors=(1.0,)) -> tuple[State, ...]:
+    """A disk on a floor of stiffness 6000, moved ``steps`` time steps by gravity and then as many under each load."""
     described = {
-        "packing": {"kind": "arrays", "x": [50.0], "z": [z], "radius": [1.0], "width": 100.0},
-        "wall": wall,
-        "loads": list(loads),
+        "packing": {"kind": "arrays", "x": [50.0], "z": [1.0 - 1.0 / 6000.0], "radius": [1.0], "width": 100.0},
+        "wall": {"normal_stiffness": 6000.0, "friction": friction},
+        "loads": [{"disk": 0, **load}],
         "protocol": {
-            "method": "dynamics", "time_step": step, "maximum_steps": steps, "stop_kinetic_energy": 1e-30,
+            "method": "dynamics", "time_step": STEP, "maximum_steps": steps, "stop_kinetic_energy": 1e-30,
             "static_finish": False, "ramp_time": 0.0, "load_factors": list(factors),
         },
     }  # fmt: skip
@@ -62,6 +63,15 @@ def moving(position, velocity, spin=None, *, gravity=0.0, step=STEP, integrator=
 
 # 1: MFIX DEM01, a ball of radius 0.1 m and density 2600 kg/m^3 falls from 0.5 m.
 HEIGHT = 5.0
+
+
+def fall(times, step: float = STEP, **wall) -> tuple[np.ndarray, np.ndarray, xr.Dataset]:
+    """Height and velocity at some times of a disk that falls from there, and its whole motion."""
+    described = {"wall": wall, "loads": [], "protocol": {"time_step": step}}
+    ball = gr.Scene.from_arrays([50.0], [HEIGHT], 1.0, width=100.0, scene=described)
+    found = gr.motion(ball, times, progress=False)
+    z, v = (found[name].sel(axis="z").values[:, 0] for name in ("position", "velocity"))
+    return z, v, found
 
 
 def dem01(time: float, stiffness: float, ratio: float) -> tuple[float, float]:
@@ -94,10 +104,12 @@ def dem01(time: float, stiffness: float, ratio: float) -> tuple[float, float]:
 def test_mfix_dem01_fall_contact_and_rebound(newtons, restitution, error):
     mass = 4.0 / 3.0 * math.pi * 0.1**3 * 2600.0
     stiffness, ratio = newtons * 0.1 / (mass * 9.81), damping_ratio(restitution)
-    for steps in (10_000, 28_000, 29_000, 30_000, 31_000, 32_000, 36_000, 45_000):
-        (state,) = clocked(HEIGHT, steps, normal_stiffness=stiffness, damping_ratio=ratio)
-        found = state.position[0, 1], state.velocity[0, 1]
-        assert found == pytest.approx(dem01(steps * STEP, stiffness, ratio), abs=error)
+    times = STEP * np.array([0, 10_000, 28_000, 29_000, 30_000, 31_000, 32_000, 36_000, 45_000])
+    *found, whole = fall(times, normal_stiffness=stiffness, damping_ratio=ratio)
+    expected = np.transpose([dem01(time, stiffness, ratio) for time in times])
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=error)
+    assert whole["contacts"].values.tolist() == [0, 0, 0, 1, 1, 1, 1, 0, 0]
+    assert restitution < 1.0 or np.ptp(whole["energy"].values) < 1e-4 * float(whole["energy"][0])
 
 
 # 2: MFIX DEM02, heights of bounces of a hard ball: 1 + (h - 1) e^(2 n).
@@ -106,12 +118,10 @@ def test_mfix_dem01_fall_contact_and_rebound(newtons, restitution, error):
     [(0.6, 1, 2.44, 8e-4), (0.8, 3, 2.048576, 2e-3), (1.0, 3, 5.0, 1e-6)],
 )
 def test_mfix_dem02_heights_of_bounces(restitution, bounce, height, error):
-    fall, step = math.sqrt(2.0 * (HEIGHT - 1.0)), 1e-5
-    time = fall * (1.0 + 2.0 * sum(restitution**n for n in range(1, bounce)) + restitution**bounce)
-    steps = 100 * round(time / step / 100)  # near the top, from where the height is found
-    (state,) = clocked(HEIGHT, steps, step=step, normal_stiffness=2e5, damping_ratio=damping_ratio(restitution))
-    z, v = state.position[0, 1], state.velocity[0, 1]
-    assert z + 0.5 * v**2 == pytest.approx(height, rel=error)
+    once = math.sqrt(2.0 * (HEIGHT - 1.0))
+    time = once * (1.0 + 2.0 * sum(restitution**n for n in range(1, bounce)) + restitution**bounce)
+    z, v, _ = fall([time], 1e-5, normal_stiffness=2e5, damping_ratio=damping_ratio(restitution))
+    assert z + 0.5 * v**2 == pytest.approx(height, rel=error)  # near the top, from where the height is found
 
 
 # 3: MFIX DEM03, two disks of densities 2:1 pressed into a box; a displaced disk is the lid.
@@ -141,28 +151,29 @@ def test_mfix_dem03_two_disks_pressed_together(box):
         assert (y1, y2, force) == pytest.approx((0.86649545, 2.73319636, 974.674728), abs=1e-6, rel=1e-9)
 
 
-# 4: MFIX DEM04, a disk that slides begins to roll.
+# 4: MFIX DEM04, a disk that slides begins to roll; also one that turns, or turns back.
+@pytest.mark.parametrize(("speed", "spin"), [(1.0, 0.0), (0.0, -3.0), (-1.0, 5.0), (1.0, -2.0)])
 @pytest.mark.parametrize(("friction", "error"), [(0.2, 1e-5), (0.8, 1e-4)])
-def test_mfix_dem04_slip_to_roll(friction, error):
-    step = 2.5e-5
+def test_mfix_dem04_slip_to_roll(friction, error, speed, spin):
+    step, slip = 2.5e-5, speed + spin
+    error *= max(1.0, abs(slip))
     dynamics = moving(
-        [[50.0, 1.0 - 1.0 / 6000.0]], [(1.0, 0.0)], gravity=1.0, step=step, contact__damping_ratio=0.0,
+        [[50.0, 1.0 - 1.0 / 6000.0]], [(speed, 0.0)], [spin], gravity=1.0, step=step, contact__damping_ratio=0.0,
         wall__friction=friction, wall__normal_stiffness=6000.0,
     )  # fmt: skip
-    dynamics.advance(round(0.99 / (3.0 * friction) / step))
-    while dynamics.v[0] + dynamics.v[2] > 0.0:  # the lowest point of the disk slides
+    dynamics.advance(round(0.99 * abs(slip) / (3.0 * friction) / step))
+    assert dynamics.v[0] == pytest.approx(speed - math.copysign(friction * dynamics.time, slip), abs=error)
+    while slip * (dynamics.v[0] + dynamics.v[2]) > 0.0:  # the lowest point of the disk slides
         dynamics.advance(1)
-    assert friction * dynamics.time == pytest.approx(1.0 / 3.0, abs=error)
-    assert dynamics.v[0] == pytest.approx(2.0 / 3.0, abs=error)
+    assert friction * dynamics.time == pytest.approx(abs(slip) / 3.0, abs=error)
+    assert dynamics.v[0] == pytest.approx((2.0 * speed - spin) / 3.0, abs=error)
 
 
 @pytest.mark.parametrize(("torque", "slides"), [(1.0, True), (0.5, False)])
 def test_mfix_dem04_by_a_torque_that_is_taken_away(torque, slides):
     """Under a torque T the disk slides: v = -mu t, spin = 2 (T - mu) t. Without, until it rolls at (2 v - spin) / 3."""
     friction, steps = 0.3, 20_000
-    about = {"normal_stiffness": 6000.0, "friction": friction}
-    spun_up = {"disk": 0, "force": [0.0, 0.0], "torque": torque}
-    _, driven, released = clocked(1.0 - 1.0 / 6000.0, steps, loads=[spun_up], factors=(1.0, 0.0), **about)
+    _, driven, released = on_the_floor(friction, steps, {"force": [0.0, 0.0], "torque": torque}, factors=(1.0, 0.0))
     time = steps * STEP
     v, spin = driven.velocity[0, 0], driven.angular_velocity[0]
     assert (v, spin) == pytest.approx(
@@ -370,9 +381,7 @@ def test_hertzian_collision():
 )
 def test_disk_on_an_incline(friction, slope, velocity, error):
     """Rolling up to tan = 3 mu, with 2/3 of the acceleration; sliding beyond, with tan - mu."""
-    about = {"normal_stiffness": 6000.0, "friction": friction}
-    load = {"disk": 0, "force": [slope, 0.0]}
-    _, state = clocked(1.0 - 1.0 / 6000.0, round(5.0 / STEP), loads=[load], **about)
+    _, state = on_the_floor(friction, round(5.0 / STEP), {"force": [slope, 0.0]})
     closed = 5.0 * (2.0 / 3.0 * slope if slope < 3.0 * friction else slope - friction)
     assert closed == pytest.approx(velocity, rel=2e-6)
     assert state.velocity[0, 0] == pytest.approx(closed, rel=error)

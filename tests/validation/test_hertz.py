@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from small_scenes import scene
+from small_scenes import pushed, scene
 
 from granular_response.observe.floor import floor_force
 from granular_response.solvers.solution import Solution, solve_scene
@@ -12,9 +12,8 @@ FLOOR = np.arange(9)
 
 def solved(friction: float, method: str, factors=(1.0,)) -> Solution:
     # pressed together along x: without friction there is one equilibrium then
-    loads = [{"disk": "top-centre", "force": [0.0, -1.0]}]
     hertz = {"contact__law": "hertz", "contact__friction": friction, "packing__lattice_constant": 1.999}
-    return solve_scene(scene(5, 9, **hertz, loads=loads, protocol__method=method), load_factors=factors)
+    return solve_scene(scene(5, 9, **hertz, loads=pushed(0.0, -1.0), protocol__method=method), load_factors=factors)
 
 
 def by_hand(solution: Solution) -> None:

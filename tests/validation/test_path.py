@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from small_scenes import at_rest, free_disks, scene
+from small_scenes import at_rest, free_disks, pushed, scene
 
 import granular_response as gr
 from granular_response.observe.floor import floor_force
@@ -20,7 +20,7 @@ from granular_response.store import files as store
 from granular_response.store.result import solution_from, to_dataset
 
 FLOOR = np.arange(13)
-LOAD = [{"disk": "top-centre", "force": [0.0, -1.0]}]
+LOAD = pushed(0.0, -1.0)
 
 
 @pytest.fixture(scope="module")
@@ -69,24 +69,22 @@ def _walls(state):
 
 def test_a_contact_that_slides_for_a_moment_is_seen():
     """From 0.843 to 0.864 of the load."""
-    loads = [{"disk": "top-centre", "force": [0.0134, -0.1184]}]
     rubs = {"normal_stiffness": 1042.1, "stiffness_ratio": 0.8, "friction": 0.011985, "damping_ratio": 0.156}
     slab = {"kind": "slab", "layers": 5, "disks_per_row": 9, "polydispersity": 0.25, "seed": 986}
     slab["lattice_constant"] = 2.0
-    wall = {"friction": 2.89, "normal_stiffness": 928.7}
-    problem, rest = at_rest(gr.Scene.from_dict({"packing": slab, "contact": rubs, "wall": wall, "loads": loads}))
+    wall, load = {"friction": 2.89, "normal_stiffness": 928.7}, pushed(0.0134, -0.1184)
+    problem, rest = at_rest(gr.Scene.from_dict({"packing": slab, "contact": rubs, "wall": wall, "loads": load}))
     (fine,), (state,) = follow(problem, rest, [1.0], together=5e-4 * problem.load_size), follow(problem, rest, [1.0])
     assert np.abs(_walls(state) - _walls(fine)).max() <= 3e-6 * problem.load_size
 
 
 def test_a_small_load_is_not_crossed_in_one_increment():
     """Of a hundredth of a weight on seven disks the first increment was 0.85, and the response wrong by 7 % of it."""
-    loads = [{"disk": "top-centre", "force": [-0.002, -0.0101], "torque": 0.0018}]
     row = {"kind": "slab", "layers": 1, "disks_per_row": 7, "polydispersity": 0.05, "seed": 127}
     row["lattice_constant"] = "touching-largest"
     rubs = {"normal_stiffness": 1941.8, "stiffness_ratio": 0.8, "friction": 0.0}
-    described = {"packing": row, "contact": rubs, "loads": loads, "preparation": {"gravity": "frictionless"}}
-    described["wall"] = {"friction": 0.709, "normal_stiffness": 7966.0}
+    described = {"packing": row, "contact": rubs, "preparation": {"gravity": "frictionless"}}
+    described |= {"wall": {"friction": 0.709, "normal_stiffness": 7966.0}, "loads": pushed(-0.002, -0.0101, 0.0018)}
     problem, rest = at_rest(gr.Scene.from_dict(described))
     fine = follow(problem, rest, [0.5, 1.5], together=1e-4 * problem.load_size)
     for state, other in zip(follow(problem, rest, [0.5, 1.5]), fine, strict=True):
@@ -116,10 +114,6 @@ def test_a_state_that_leaves_in_one_sense_alone_is_left_in_its_mirror_image_too(
 def loaded(changes) -> tuple[Problem, State]:
     """A small scene at rest, its loads on their disks."""
     return at_rest(scene(**{"contact__friction": 0.2, "wall__friction": 0.2, **changes}))
-
-
-def pushed(x, z, torque=0.0):
-    return [{"disk": "top-centre", "force": [x, z], "torque": torque}]
 
 
 KINDS = {
@@ -152,19 +146,12 @@ def test_a_path_is_that_of_small_increments_but_for_their_error(changes):
 
 
 #: Statuses from which and to which each event leads; a contact that closes may slide at once.
-BEFORE = {
-    "opens": {STICKING, SLIDING},
-    "closes": {OPEN},
-    "slides": {STICKING},
-    "sticks": {SLIDING},
-    "reverses": {SLIDING},
-}
-AFTER = {
-    "opens": {OPEN},
-    "closes": {STICKING, SLIDING},
-    "slides": {SLIDING},
-    "sticks": {STICKING},
-    "reverses": {SLIDING},
+LEADS = {
+    "opens": ({STICKING, SLIDING}, {OPEN}),
+    "closes": ({OPEN}, {STICKING, SLIDING}),
+    "slides": ({STICKING}, {SLIDING}),
+    "sticks": ({SLIDING}, {STICKING}),
+    "reverses": ({SLIDING}, {SLIDING}),
 }
 
 
@@ -183,9 +170,9 @@ def test_events_lead_from_the_statuses_of_one_kept_state_to_those_of_the_next(ch
         for event in events:
             kinds.add(event.kind)
             contact = (event.at_wall, event.first, event.second)
-            was = now.get(contact, {OPEN})
-            assert was & BEFORE[event.kind]
-            now[contact] = AFTER[event.kind]
+            expected, becomes = LEADS[event.kind]
+            assert now.get(contact, {OPEN}) & expected
+            now[contact] = becomes
         for contact, status in statuses(after).items():
             assert status in now.get(contact, {OPEN}), contact
     assert kinds
@@ -314,10 +301,8 @@ def test_pieces_of_a_path_with_hertz_contacts_make_the_whole():
 def test_the_load_never_goes_back():
     """An event that Newton's method finds at a smaller load is on another branch: no path goes back to it."""
     packing = {"kind": "slab", "layers": 8, "disks_per_row": 33, "sides": "periodic"}
-    loads = [{"disk": "top-centre", "force": [0.0, -2.0]}]
-    problem, rest = at_rest(
-        gr.Scene.from_dict({"packing": packing, "contact": {"friction": 0.2, "law": "hertz"}, "loads": loads})
-    )
+    hertz = {"friction": 0.2, "law": "hertz"}
+    problem, rest = at_rest(gr.Scene.from_dict({"packing": packing, "contact": hertz, "loads": pushed(0.0, -2.0)}))
     factors: list[float] = []
 
     def progress(factor):
@@ -331,8 +316,7 @@ def test_the_load_never_goes_back():
 
 def test_what_increments_leave_out_is_measured_in_a_short_leg_too():
     """One that a single increment would take, so that one of twice the length is the same."""
-    load = [{"disk": "top-centre", "force": [1.0, -6.0]}]
-    problem, rest = at_rest(scene(loads=load))
+    problem, rest = at_rest(scene(loads=pushed(1.0, -6.0)))
     (exact,) = follow(problem, rest, [0.4])
     (found,) = follow(problem, rest, [0.4], together=4.0)
     off = np.abs(exact.wall_force() - found.wall_force()).max() / (0.4 * problem.load_size)
@@ -359,9 +343,8 @@ def test_a_path_does_not_step_for_ever_where_no_statuses_go_on(monkeypatch):
 
 def test_steps_change_no_point():
     """Taken again from the same point, also by motion to another list of candidates, they lead to the same one."""
-    load = [{"disk": "top-centre", "force": [0.0, -12.0]}]
     packing = {"packing__polydispersity": 0.1, "packing__seed": 1}
-    problem, rest = at_rest(scene(5, 11, contact__friction=0.2, loads=load, **packing))
+    problem, rest = at_rest(scene(5, 11, contact__friction=0.2, loads=pushed(0.0, -12.0), **packing))
     leg = path.Leg(problem, PathRecord(), rest, 1.0, -np.inf, None, path.OPTIONS)
     here = path.step(leg, leg.at(rest), False)
     moved = []
@@ -377,8 +360,7 @@ def test_steps_change_no_point():
 
 def test_progress_does_not_go_back():
     """Also where a path is followed twice, to measure what increments leave out."""
-    load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
-    problem, rest = at_rest(scene(3, 5, contact__friction=0.2, loads=load))
+    problem, rest = at_rest(scene(3, 5, contact__friction=0.2, loads=LOAD))
     reported: list[float] = []
     follow(problem, rest, [1.0, 3.0], together=0.3, progress=reported.append)
     assert reported == sorted(set(reported)) and reported[-1] == 3.0

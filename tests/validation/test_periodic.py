@@ -90,11 +90,8 @@ def test_without_walls_the_elastic_slab_is_near():
 
 
 def test_forces_across_a_line_and_their_stress_are_those_of_one_period():
-    solution = solve_scene(
-        Scene().updated(
-            {"packing.layers": 5, "packing.disks_per_row": 8, "packing.sides": "periodic", "wall.friction": 0.3}
-        )
-    )
+    small = {"packing.layers": 5, "packing.disks_per_row": 8, "packing.sides": "periodic", "wall.friction": 0.3}
+    solution = solve_scene(Scene().updated(small))
     forces = contact_forces(solution.rest)
     assert line_forces(forces, 0.5)[1].sum() == pytest.approx(solution.problem.n)  # the weight above
     width = solution.rest.box.width

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from small_scenes import at_rest, scene
+from small_scenes import at_rest, pushed, scene
 
 from granular_response.scene import Scene
 from granular_response.solvers.path import PathRecord, follow
@@ -64,7 +64,7 @@ def test_paths_end(seed):
 
 def test_a_path_of_no_length_ends():
     """Neighbours in a row touch at no force: whether they are closed is a matter of rounding, and so is stability."""
-    loads = [{"disk": "top-centre", "force": [0.0, -0.05]}]
-    problem, rest = at_rest(scene(3, 10, packing__sides="periodic", contact__friction=0.5, loads=loads))
+    ring = {"packing__sides": "periodic", "contact__friction": 0.5}
+    problem, rest = at_rest(scene(3, 10, loads=pushed(0.0, -0.05), **ring))
     same, loaded = follow(problem, rest, [0.0, 1.0])
     assert same.certificate == rest.certificate and loaded.certificate.stable

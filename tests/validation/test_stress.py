@@ -10,7 +10,7 @@ import pytest
 from observe_states import contacts, state
 from scipy.spatial import Delaunay
 from scipy.special import erf
-from small_scenes import scene
+from small_scenes import pushed, scene
 
 from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.observe.stress import (
@@ -21,7 +21,6 @@ from granular_response.observe.stress import (
     grid_points,
     load_forces,
 )
-from granular_response.scene import Scene
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, State
 
@@ -82,8 +81,7 @@ def random_packing() -> tuple[State, float]:
 @pytest.fixture(scope="module")
 def solved() -> tuple[State, State, float]:
     """A slab at rest and under 12 mg, and its width; walls with friction bear a part of both."""
-    loads = [{"disk": "top-centre", "force": [0.0, -LOAD]}]
-    solution = solve_scene(scene(9, 15, contact__friction=1.0, wall__friction=0.3, loads=loads))
+    solution = solve_scene(scene(9, 15, contact__friction=1.0, wall__friction=0.3, loads=pushed(0.0, -LOAD)))
     return solution.rest, solution.loaded[0], solution.problem.packing.width
 
 
@@ -130,9 +128,8 @@ def test_sigma_zz_just_above_the_floor_carries_the_floor_force(solved):
 def test_divergence_of_the_couple_stress_is_the_torque_of_the_tangential_forces(w):
     """With unequal disks, rolling resistance at disks and walls, and a torque as a load: the torques balance."""
     rolls = {"friction": 0.4, "rolling_friction": 0.1, "rolling_stiffness_ratio": 0.5}
-    load = {"disk": "top-centre", "force": [0.2, -2.0], "torque": 0.3}
-    packing = {"kind": "slab", "layers": 4, "disks_per_row": 8, "polydispersity": 0.2}
-    solved = solve_scene(Scene.from_dict({"packing": packing, "contact": rolls, "wall": rolls, "loads": [load]}))
+    described = scene(4, 8, packing__polydispersity=0.2, loads=pushed(0.2, -2.0, 0.3))
+    solved = solve_scene(described.updated({"contact": rolls, "wall": rolls}))
     s, radius = solved.loaded[-1], solved.problem.packing.radius
     points = grid_points(np.linspace(0.0, 16.0, 7), np.linspace(-0.5, 8.0, 6))
 
