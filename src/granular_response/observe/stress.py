@@ -29,7 +29,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import erf
 
 from ..state import FloatArray, State
 from .difference import pair_force_difference, wall_force_difference
@@ -98,6 +97,8 @@ def coarse_grained_stress(
     away from a point are left out; each would contribute less than exp(-cutoff^2) of its peak.
     Raises ``ValueError`` unless both are positive.
     """
+    from scipy.special import erf  # importing takes a twentieth of a second at the start of every process
+
     check_positive(width=width, cutoff=cutoff)
     flat = points.reshape(-1, 2)
     length = np.linalg.norm(contacts.branch, axis=1)
