@@ -109,6 +109,24 @@ def test_a_result_is_animated(inputs, tmp_path):
     assert (tmp_path / "growing.gif").read_bytes().startswith(b"GIF89a")
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [["run", "scene.yaml", "-o", "r.nc"], ["plot", "result.nc", "-o", "r.png", "--what", "packing"],
+     ["plot", "further.nc", "--animate", "r.gif"], ["export", "result.nc", "-o", "r.csv"]],
+    ids=lambda arguments: arguments[-1],
+)  # fmt: skip
+def test_missing_folders_are_made_but_none_that_should_be_home(inputs, tmp_path, arguments):
+    shutil.copytree(inputs, tmp_path, dirs_exist_ok=True)
+    if "further.nc" in arguments:
+        succeeded("continue", "result.nc", "--to", "2", "-o", "further.nc", folder=tmp_path)
+    *_, name = (one for one in arguments if one.startswith("r."))
+    succeeded(*(f"new/folder/{name}" if one == name else one for one in arguments), folder=tmp_path)
+    assert (tmp_path / "new" / "folder" / name).is_file()
+    said = refused(*(f"~/{name}" if one == name else one for one in arguments), folder=tmp_path)
+    assert f"~/{name}: cannot be written: there is no folder ~ here" in said
+    assert not (tmp_path / "~").exists()
+
+
 @pytest.mark.parametrize("name", ["r.png", "r", "r.nc.txt"])
 def test_the_name_of_a_result_says_what_it_is(inputs, tmp_path, name):
     for arguments in (["run", inputs / "scene.yaml"], ["continue", inputs / "result.nc", "--to", 2]):

@@ -58,3 +58,6 @@ def test_an_equilibrium_stays_and_a_load_moves_it():
         gr.motion(slab, [1.0], start=result)
     with pytest.raises(gr.SceneError, match=r"^start: a state of 20 disks, must be one of this packing of 908$"):
         gr.motion(gr.Scene(loads=[]), [1.0], start=result.rest)
+    for other in ({"packing.polydispersity": 0.1}, {"packing.lattice_constant": 1.999}):
+        with pytest.raises(gr.SceneError, match=r"^start: a state of other radii or in another box, must be"):
+            gr.motion(slab.updated({"loads": [], **other}), [1.0], start=result.rest)

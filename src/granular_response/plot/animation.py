@@ -83,6 +83,7 @@ def check_target(output: str | os.PathLike[str] | None) -> None:
     if (ending := Path(output).suffix) not in FORMATS:
         raise PictureError(f"{output}: format {ending!r} is unknown, must be {', '.join(FORMATS)}")
     with written(output):
+        atomic.make_folder(output)
         atomic.check_writable(output)
 
 

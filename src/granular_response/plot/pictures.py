@@ -553,7 +553,7 @@ def save(
         raise PictureError(f"{path}: format {path.suffix!r} is unknown, must be .pdf, .png or .svg")
     drawn = style.render(page(result, what, state=state, scale=scale, figure=Figure()), path.suffix[1:])
     with written(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
+        atomic.make_folder(path)
         atomic.check_output(path, inputs)
         atomic.write_bytes(path, drawn)
     return path

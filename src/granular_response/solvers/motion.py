@@ -26,6 +26,8 @@ from .work import stored
 
 #: Part of a time step within which a time is that of a whole step.
 SAME = 1e-9
+#: Overlap (mean radii) by which a start may differ from that of the radii of the packing.
+SAME_RADII = 1e-6
 _MOTION = ("position", "velocity", "angular_velocity")
 
 
@@ -87,8 +89,13 @@ def trajectory(
     problem = Problem.from_scene(scene)
     given = scene.motion.of(problem.packing)
     state = problem.bare_state() if start is None else start
-    if len(state.position) != problem.n or state.box != problem.packing.box:
+    if len(state.position) != problem.n:
         raise SceneError(f"start: a state of {len(state.position)} disks, must be one of this packing of {problem.n}")
+    pairs, reach = state.pairs, problem.packing.radius
+    overlap = reach[pairs.first] + reach[pairs.second] - np.linalg.norm(state.pair_separation(), axis=1)
+    other = np.abs(overlap - pairs.overlap)[pairs.touching].max(initial=0.0) > SAME_RADII
+    if other or state.box != problem.packing.box:
+        raise SceneError("start: a state of other radii or in another box, must be one of this packing")
     if start is None or given.any():
         state = replace(state, velocity=given[:, :2].copy(), angular_velocity=given[:, 2].copy())
     problem = problem.with_loads(state.position)

@@ -55,6 +55,14 @@ def write_bytes(
             os.close(folder)
 
 
+def make_folder(path: str | os.PathLike[str]) -> None:
+    """Make the folder of a file to write. OSError, also where a ``~`` would become the name of a new folder."""
+    folder = Path(path).parent
+    if str(folder).startswith("~") and not folder.exists():
+        raise OSError(errno.ENOENT, "there is no folder ~ here; os.path.expanduser gives the home folder", str(path))
+    folder.mkdir(parents=True, exist_ok=True)
+
+
 def check_writable(path: str | os.PathLike[str], inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
     """Raise the OSError that ``write_bytes`` would meet at once, or that of ``check_output``."""
     check_output(path, inputs)

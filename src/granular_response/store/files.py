@@ -91,7 +91,7 @@ def write(
     data = _made(path, groups)
     data += _SEAL + hashlib.sha256(data).digest()
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        atomic.make_folder(path)
         atomic.write_bytes(path, data, check=lambda written: _verify(written, groups))
     except OSError as error:
         kept = _keep(path, data) if keep else None
@@ -116,7 +116,7 @@ def check_writable(path: str | os.PathLike[str], inputs: Iterable[str | os.PathL
     """
     path = _named(path)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        atomic.make_folder(path)
         atomic.check_writable(path, inputs)
     except OSError as error:
         raise _error(path, f"cannot be written: {error.strerror or error}") from error

@@ -88,7 +88,7 @@ class Memory:
             warn(f"{self.folder}: a value is not kept: {error}")
             return
         try:
-            self.shelf.mkdir(parents=True, exist_ok=True)
+            atomic.make_folder(self._path(name))
             # by its seal a file is known that was lost in part
             atomic.write_bytes(self._path(name), data + _seal(name, data), lasting=False)
         except OSError as error:

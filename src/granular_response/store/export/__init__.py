@@ -105,7 +105,7 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
     chosen = chosen_states(dataset, [0, -1 if state is None else state]) if states == "one" else dataset
     only = {} if states != "frames" or state is None else {"only": state % count}
     try:
-        output.parent.mkdir(parents=True, exist_ok=True)
+        atomic.make_folder(output)
         atomic.check_writable(output, read)
         made = writer(chosen, output, **only)
         for path in made:
