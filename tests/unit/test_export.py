@@ -214,7 +214,7 @@ def test_a_series_for_paraview(result, data, tmp_path):
 
 
 #: What a table of the user guide says of a format.
-QUANTITIES = ("place, radius", "mass", "width, sides", "angle", "contact forces", "springs of friction")
+QUANTITIES = ("position, radius", "mass", "width, sides", "angle", "contact forces", "tangential springs")
 
 
 def carried() -> dict[str, dict[str, str]]:
@@ -265,14 +265,14 @@ def comes_back(result: Path, path: Path, name: str) -> bool:
         scene = scene_of(read_result(result), folder=result.parent).updated({"packing": {"kind": "file", **beside}})
         state = Problem.from_scene(scene).bare_state()
         springs = np.concatenate([state.pairs.spring, state.walls.spring])
-        return name == "springs of friction" and np.allclose(springs[springs != 0.0], quantities(last)[name], rtol=1e-9)
+        return name == "tangential springs" and np.allclose(springs[springs != 0.0], quantities(last)[name], rtol=1e-9)
     try:
         packing = FilePacking(path=str(path), sides="periodic").build()
     except SceneError:
         return False
     scale = float(last["radius"].mean())
     again = {
-        "place, radius": (np.column_stack([packing.position, packing.radius]) * scale,
+        "position, radius": (np.column_stack([packing.position, packing.radius]) * scale,
                           np.column_stack([np.mod(last["position"].values[:, 0], last.attrs["width"]),
                                            last["position"].values[:, 1], last["radius"].values])),
         "mass": (packing.mass * float(last["mass"].mean()), last["mass"].values),
