@@ -145,9 +145,9 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
     except ValueError as error:
         raise ReportError(str(error)) from None
     own = collection == PAPER
-    paths = [root / "data" / f"{group}.nc" for group in (*EXPLORED, SENSITIVITY)] if own else []
-    *explored, sensitivity = (store.read(path) if path.exists() else {} for path in paths) if own else ({}, {})
-    states = explorer.payload(*explored) if explored[0] else None
+    paths = {group: root / "data" / f"{group}.nc" for group in (*EXPLORED, SENSITIVITY) if own}
+    data = {group: store.read(path) for group, path in paths.items() if path.exists()}
+    states = explorer.payload(*(data.get(group, {}) for group in EXPLORED)) if EXPLORED[0] in data else None
     numbers: dict[str, set[int]] = {row["group"]: set() for row in claims["table"]}
     for picture in shown.all():
         numbers.setdefault(picture.group, set()).update([picture.number] if picture.number else [])
@@ -179,7 +179,7 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
         "linked": lambda picture: _linked(picture, root, start, collection),
         "states": _json_in_html(states) if states else None,
         "explored": states and sorted(slab["friction"] for slab in states["slabs"]),
-        "readings": readings.table(sensitivity) if sensitivity else None,
+        "readings": readings.table(data[SENSITIVITY]) if SENSITIVITY in data else None,
         "benchmarks": benchmarks.collect(root / "benchmarks", start, embedded=embedded) if own else [],
         "goals": benchmarks.goals(root / "benchmarks") if own else [],
         "groups": groups,
