@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from pydantic import Field
 
+from granular_response.contact import without_friction
 from granular_response.kernels.integrators import Integrator
 from granular_response.scene import Scene
 from granular_response.scene.base import Description, NonNegative
@@ -47,9 +48,6 @@ class Cubic(NamedTuple):
 
     def softened(self, part):
         return self._replace(factor=part**4 * self.factor)
-
-    def without_friction(self):
-        return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)
 
 
 class Cohesion(Description):
@@ -96,9 +94,6 @@ class Cohesive(NamedTuple):
     def softened(self, part):
         return self._replace(normal_stiffness=part**2 * self.normal_stiffness, strength=part * self.strength)
 
-    def without_friction(self):
-        return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)
-
 
 class Euler(NamedTuple):
     """Symplectic Euler: velocities first, then displacements with them."""
@@ -125,5 +120,5 @@ def problem(friction: float) -> Problem:
     made = Problem.from_scene(scene)
     pair, wall = (Cubic.of(k, 50.0, 0.8 * k, 40.0, mu, -math.inf, 0.5) for k, mu in ((3000.0, friction), (6000.0, 0.0)))
     if friction == 0.0:
-        pair = pair.without_friction()
-    return replace(made, pair_law=pair, wall_law=wall.without_friction())
+        pair = without_friction(pair)
+    return replace(made, pair_law=pair, wall_law=without_friction(wall))

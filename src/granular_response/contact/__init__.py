@@ -2,10 +2,10 @@
 
 from .coulomb import CUT, LITERAL, RULES, UNLOADING
 from .hertz import Hertz
-from .law import Law
+from .law import Law, without_friction
 from .linear import Linear
 
 #: By the name that a scene file has for them.
 LAWS: dict[str, type[Law]] = {"linear": Linear, "hertz": Hertz}
 
-__all__ = ["CUT", "LAWS", "LITERAL", "RULES", "UNLOADING", "Hertz", "Law", "Linear"]
+__all__ = ["CUT", "LAWS", "LITERAL", "RULES", "UNLOADING", "Hertz", "Law", "Linear", "without_friction"]

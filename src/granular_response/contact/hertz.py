@@ -56,6 +56,3 @@ class Hertz(NamedTuple):
         # sinking grows like (forces / factor)^(2/3) times the number of layers
         factor = part**2.5 * self.factor
         return self._replace(normal_stiffness=1.5 * factor ** (2.0 / 3.0), factor=factor)
-
-    def without_friction(self) -> Hertz:
-        return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)

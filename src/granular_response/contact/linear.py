@@ -38,6 +38,3 @@ class Linear(NamedTuple):
     def softened(self, part: float) -> Linear:
         # sinking grows like forces over stiffness times the number of layers
         return self._replace(normal_stiffness=part**2 * self.normal_stiffness)
-
-    def without_friction(self) -> Linear:
-        return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)

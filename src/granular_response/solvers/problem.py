@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact import RULES, Law
+from ..contact import RULES, Law, without_friction
 from ..contact.rolling import Rolling, arms
 from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
@@ -116,7 +116,7 @@ def _laws(scene: Scene) -> tuple[Law, Law]:
             m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping,
             m.friction, least, reduced_radius, **m.parameters.model_dump(),
         )  # fmt: skip
-        return whole if m.rubs else whole.without_friction()
+        return whole if m.rubs else without_friction(whole)
 
     pair, wall = law(scene.contact, DISKS), law(scene.resolved_wall, AT_WALL)
     check_parameters(scene.contact.law, pair, wall)
@@ -268,7 +268,7 @@ class Problem:
 
     def without_friction(self) -> Problem:
         """The same packing with smooth disks and walls."""
-        pair, wall = self.pair_law.without_friction(), self.wall_law.without_friction()
+        pair, wall = without_friction(self.pair_law), without_friction(self.wall_law)
         smooth = plan(self.scene, self.packing, pair, rotations=False)
         return replace(self, pair_law=pair, wall_law=wall, pair_rolling=None, wall_rolling=None, plan=smooth)
 
