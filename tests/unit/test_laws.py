@@ -8,7 +8,7 @@ import sys
 import numba as nb
 import numpy as np
 import pytest
-from commands import process
+from commands import process, refused
 from demonstration import Cohesion, Cohesive, Cubic
 from places import ROOT
 from pydantic import Field
@@ -248,21 +248,17 @@ def test_a_law_of_ones_own_on_the_command_line(tmp_path):
     """Its module is named by the option, and in what is said of a result whose law is not known."""
     (tmp_path / "law_of_mine.py").write_text(MINE)
     (tmp_path / "scene.yaml").write_text(SCENE)
-
-    def said(*arguments):
-        done = process(*arguments, folder=tmp_path, env={**os.environ, "PYTHONPATH": PATHS})
-        return done.returncode, done.stderr
-
-    code, line = said("run", "scene.yaml", "-o", "a.nc")
-    assert code == 2 and "contact.law = 'mine': must be linear or hertz, or a law of gr.register_law" in line
+    run = ("run", "scene.yaml", "-o", "a.nc")
+    line = refused(*run, folder=tmp_path)
+    assert "contact.law = 'mine': must be linear or hertz, or a law of gr.register_law" in line
     assert "more mistake" not in line
-    assert said("run", "scene.yaml", "-o", "a.nc", "--import", "law_of_mine") == (0, "")
+    environment = {**os.environ, "PYTHONPATH": PATHS}
+    done = process(*run, "--import", "law_of_mine", folder=tmp_path, env=environment)
+    assert (done.returncode, done.stderr) == (0, "")
     further = ("continue", "a.nc", "--to", "2", "-o", "b.nc")
     needed = "granular-response: a.nc: contact.law = 'mine': is a law of the module law_of_mine, which must be imported"
-    code, line = said(*further)
-    assert code == 2 and line.startswith(needed)
+    assert refused(*further, folder=tmp_path).startswith(needed)
     with pytest.raises(gr.GranularError, match=r"is a law of the module law_of_mine"):
         _ = gr.open_result(tmp_path / "a.nc").scene
-    code, line = said(*further, "--import", "law_of_yours")
     missing = "granular-response: --import law_of_yours: ModuleNotFoundError: No module named 'law_of_yours'\n"
-    assert (code, line) == (2, missing)
+    assert refused(*further, "--import", "law_of_yours", folder=tmp_path) == missing
