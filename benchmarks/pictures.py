@@ -92,7 +92,7 @@ def precision(metrics: Metrics) -> Figure:
         _points(panel, own, "seconds", "error_from_own_limit", "lammps", "LAMMPS, from its own limit", open_=True)
         panel.axhline(known, color=style.MUTED, linewidth=0.8, linestyle=":")
         panel.annotate(
-            "known to here", (1.0, known), (-4, 2), xycoords=("axes fraction", "data"),
+            "accuracy of the reference", (1.0, known), (-4, 2), xycoords=("axes fraction", "data"),
             textcoords="offset points", ha="right", fontsize=7, color=style.MUTED,
         )  # fmt: skip
         _logarithmic(panel, xlabel="run time [s]")
