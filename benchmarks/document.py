@@ -98,7 +98,7 @@ TEXTS = {
     "scale": (
         "Large systems",
         "`granular-response run` from scene file to stored result; wall time on two threads. Slabs are four times as "
-        "wide as deep, and stiffness is proportional to their size. Slabs of a million disks were solved by older code.",
+        "wide as deep, and stiffness is proportional to their size. Slabs of a million disks: older code.",
     ),
     "depth": (
         "The teardrop in deep slabs",
