@@ -94,7 +94,7 @@ def _stages(collection: Collection, root: Path, option: str) -> dict[str, Any]:
                 "desc": "Simulations of the figure group",
                 "cmd": "granular-response-paper simulate ${item}",
                 "deps": [
-                    *code(simulated, [f"{item}/__init__.py", f"{item}/parameters.py", f"{item}/simulate"]),
+                    *code(simulated, [f"{item}/parameters.py", f"{item}/simulate"]),
                     *([near(root / "survey" / "data")] if reads_survey else []),
                 ],
                 "params": ["common", "${item}"],

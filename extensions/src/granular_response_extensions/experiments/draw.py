@@ -13,8 +13,7 @@ from granular_response_extensions.panels import GUIDE
 from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import DOTTED, banded, family, polarised, titles
 
-from . import LATTICE
-from .parameters import Parameters
+from .parameters import LATTICE, Parameters
 
 #: Depths and reach of the profiles, in mean radii, and pixels of images from side to side.
 DEPTHS, REACH, PIXELS = (4.0, 8.0, 12.0, 16.0), 22.0, 560

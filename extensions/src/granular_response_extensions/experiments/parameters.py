@@ -15,6 +15,9 @@ from granular_response_paper.parameters import UNIT_LOAD, Checks, SceneGroup, ov
 Packing = Annotated[SlabPacking | PouredPacking, Field(discriminator="kind")]
 Ends = tuple[Positive, Positive]
 
+#: Direction of the lattice below the horizontal, in degrees.
+LATTICE = 60.0
+
 
 class Case(Description):
     """One packing under one load."""

@@ -21,8 +21,7 @@ from granular_response.state import FLOOR, FloatArray
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import RADII
 from granular_response.studies import LoadPath
-from granular_response_extensions.experiments import LATTICE
-from granular_response_extensions.experiments.parameters import Case, Parameters
+from granular_response_extensions.experiments.parameters import LATTICE, Case, Parameters
 from granular_response_extensions.experiments.simulate.widths import DEFINITIONS, FITS, lengths, powers
 from granular_response_paper.datasets import labelled, pictured
 from granular_response_paper.records import axes, column, labels, record, table
