@@ -50,8 +50,8 @@ $(PAPER): requirements.lock pyproject.toml src/granular_response_paper/pyproject
 	@$(INSTALL) --no-build-isolation -e ".[export,pipeline]" -e "src/granular_response_paper[archive]" -e extensions
 	@touch "$@"
 
-# Tests, documentation and Dask: a third of the time of installing, and xarray imports Dask wherever it is installed,
-# for a quarter of a second in every process.
+# Tests, documentation and Dask: a third of the time of installing. xarray imports Dask wherever it is installed, which
+# takes 0.2 s in every process.
 $(TOOLS): $(PAPER)
 	@echo "Installing the tools of development into .venv"
 	@$(INSTALL) -r requirements.lock

@@ -19,7 +19,7 @@ class Rolls(NamedTuple):
     arm: Floats  #: (slots,) or (w,) reduced radii
     spring: Floats  #: the same; updated in place
     rolling: Any  #: contact.rolling.Rolling
-    couple: Floats  #: (n,) scratch for the couples of pairs
+    couple: Floats | None = None  #: (n,) scratch for the couples of pairs; None at walls
 
 
 class Pairs(NamedTuple):

@@ -82,8 +82,8 @@ class Stop:
     ``least_time`` since the ramps began: what starts without motion and out of balance has no kinetic energy yet.
     ``fallen`` : part of its largest value since then to which the kinetic energy must have fallen.
     ``quiet_energy`` : a relaxation also ends at the first reading below it before which no contact with friction has
-    opened, closed or slid during a whole period of the slowest motion (``Problem.swing_time``). What is left is an
-    elastic vibration: nothing remembers it.
+    opened, closed, slid or rolled at its limit during a whole period of the slowest motion (``Problem.swing_time``).
+    What is left is an elastic vibration: nothing remembers it.
     """
 
     kinetic_energy: float = 1e-13
@@ -149,13 +149,12 @@ class Dynamics:
         if problem.wall_friction:
             self.wall_spring, wall_roll = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
         self.pair_rolls = self.wall_rolls = None
-        couple = aligned_zeros(problem.n)
         if problem.pair_rolling is not None:
             arm, springs = aligned_zeros(len(c.reach)), aligned_zeros(len(c.reach))
             arm[c.slot], springs[c.slot] = problem.pair_arms(c.first, c.second), roll
-            self.pair_rolls = Rolls(arm, springs, problem.pair_rolling, couple)
+            self.pair_rolls = Rolls(arm, springs, problem.pair_rolling, couple=aligned_zeros(problem.n))
         if problem.wall_rolling is not None:
-            self.wall_rolls = Rolls(problem.wall_arms(c.wall_disk), wall_roll, problem.wall_rolling, couple)
+            self.wall_rolls = Rolls(problem.wall_arms(c.wall_disk), wall_roll, problem.wall_rolling)
         #: which listed contacts (pairs, then walls) have friction, and so remember
         self.rubs = np.repeat([problem.pair_friction, problem.wall_friction], [len(c.first), len(c.wall)])
         self.wall_normal = wall_normals(c.wall)

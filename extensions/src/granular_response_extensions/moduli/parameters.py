@@ -37,8 +37,8 @@ class Case(Checked):
     def checks(self) -> Checks:
         for key, counts in (("realizations", self.realizations), ("surveyed", self.further)):
             yield key, len(counts) == len(self.layers), "must have a number for each of the layers"
-        some = all(map(sum, zip(self.realizations, self.further, strict=True)))
-        yield "realizations", some, "must be 1 or more for each of the layers, with those of the survey"
+        each = all(map(sum, zip(self.realizations, self.further, strict=True)))
+        yield "realizations", each, "must be 1 or more for each of the layers, with those of the survey"
 
 
 class Slab(Description):
