@@ -45,44 +45,113 @@ def test_an_edit_of_one_file_reaches_the_kernels_of_another(tmp_path):
     assert kept < set(cache.rglob("*.nbc"))  # nothing is deleted
 
 
-#: Compiles a kernel for one type while another process does so for another one; the index takes long to write.
-KEEP = """
-import sys, time
+#: A module with a kernel, and a script that prints what it gives and whether its code was found.
+SHARED = "from granular_response.machine.machine_code import kernel\ndoubled = kernel(lambda x: x + x)\n"
+CALL = """
+import sys
 import numpy as np
-from numba.core.caching import IndexDataCacheFile
-from granular_response.machine.machine_code import kernel
 from shared_kernel import doubled
-write = IndexDataCacheFile._save_index
-IndexDataCacheFile._save_index = lambda *given: (time.sleep(0.5), write(*given))
 print(doubled(np.dtype(sys.argv[1]).type(3)), sum(doubled.stats.cache_hits.values()))
+"""
+#: The same; it does not end its compilation before another process waits for it (a file says that one does).
+COMPILE_WHILE_ANOTHER_WAITS = """
+import pathlib, time
+from granular_response.machine import machine_code
+pause, save, there = time.sleep, machine_code._Files._save_index, pathlib.Path("waiting").exists
+def waited(*given):
+    until = time.monotonic() + 120.0
+    while not there() and time.monotonic() < until:
+        pause(0.01)
+    save(*given)
+machine_code._Files._save_index = waited
+time.sleep = lambda seconds: (pathlib.Path("waiting").touch(), pause(seconds))
 """
 
 
-@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
-def test_processes_that_compile_a_kernel_at_once_for_different_types_keep_each_their_own(tmp_path):
-    source = "from granular_response.machine.machine_code import kernel\ndoubled = kernel(lambda x: x + x)\n"
-    (tmp_path / "shared_kernel.py").write_text(source)
+@pytest.fixture
+def called(tmp_path):
+    """Calls the shared kernel in new processes that begin at once; what each has printed, and its messages."""
+    (tmp_path / "shared_kernel.py").write_text(SHARED)
     path = os.pathsep.join([str(tmp_path), str(PACKAGE.parent)])
     environment = {**os.environ, "PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+
+    def call(*kinds, before=""):
+        command = [sys.executable, "-c", before + CALL]
+        options = {"env": environment, "cwd": tmp_path, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        running = [subprocess.Popen([*command, kind], text=True, **options) for kind in kinds]
+        ended = [one.communicate() for one in running]
+        return [out.split() for out, _ in ended], [said for _, said in ended]
+
+    return call
+
+
+@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
+def test_processes_that_compile_a_kernel_at_once_for_different_types_keep_each_their_own(called):
     for hits in "0", "1":
-        running = [
-            subprocess.Popen([sys.executable, "-c", KEEP, kind], env=environment, stdout=subprocess.PIPE, text=True)
-            for kind in ("i8", "f8")
-        ]
-        said = [process.communicate()[0].split() for process in running]
-        assert said == [["6", hits], ["6.0", hits]]
+        assert called("i8", "f8")[0] == [["6", hits], ["6.0", hits]]
+
+
+@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
+def test_of_processes_that_need_a_kernel_at_once_one_compiles_it(called, tmp_path):
+    said, _ = called("f8", "f8", before=COMPILE_WHILE_ANOTHER_WAITS)
+    assert (tmp_path / "waiting").exists() and sorted(said) == [["6.0", "0"], ["6.0", "1"]]
+
+
+def _cut(content):
+    return content[: len(content) // 2]
+
+
+def _changed(content):
+    return content[:-40] + bytes([content[-40] ^ 1]) + content[-39:]
+
+
+@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
+@pytest.mark.parametrize("kind", ["nbi", "nbc"])
+@pytest.mark.parametrize("damage", [_cut, _changed, lambda _: b""], ids=["cut", "changed", "empty"])
+def test_damaged_machine_code_is_compiled_again_and_named_once(called, tmp_path, kind, damage):
+    called("f8")
+    (file,) = (tmp_path / "cache").rglob(f"shared_kernel*.{kind}")
+    file.write_bytes(damage(file.read_bytes()))
+    said, messages = called("f8")
+    assert said == [["6.0", "0"]] and messages[0].count("so kernels are compiled again") == 1
+    assert str(tmp_path / "cache") in messages[0]
+    assert called("f8") == ([["6.0", "1"]], [""])
+
+
+@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
+def test_machine_code_that_cannot_be_kept_is_named_once(tmp_path, monkeypatch, caplog):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(machine_code, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(machine_code._Files, "_open_for_write", full)
+    compiled = machine_code.kernel(_doubled)
+    assert (compiled(3.0), compiled(3)) == (6.0, 6)
+    assert caplog.text.count("so kernels are compiled in every process") == 1
 
 
 @pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
 def test_a_pipe_in_the_place_of_the_lock_is_not_waited_for(tmp_path, monkeypatch):
-    os.mkfifo(tmp_path / "lock")
     monkeypatch.setattr(machine_code, "cache_folder", lambda: tmp_path)
-    assert machine_code.kernel(_doubled)(3.0) == 6.0
+    compiled = machine_code.kernel(_doubled)
+    lock = Path(compiled._cache._cache_path) / f"{compiled._cache._impl.filename_base}.lock"
+    os.mkfifo(lock)
+    assert compiled(3.0) == 6.0
     assert list(tmp_path.rglob("*.nbi"))  # kept all the same
 
 
 def _doubled(x):
     return 2.0 * x
+
+
+def test_an_installed_package_keeps_nothing_within_itself(tmp_path, monkeypatch):
+    """Else ``pip uninstall`` leaves a folder that can be imported."""
+    package = tmp_path / "lib" / "site-packages" / "granular_response"
+    monkeypatch.setattr(machine_code, "_PACKAGE", package)
+    found = [*machine_code._bases()]
+    assert found and not [one for one in found if one.is_relative_to(package)]
+    monkeypatch.setattr(machine_code, "_PACKAGE", tmp_path / "src" / "granular_response")
+    assert any(one.is_relative_to(tmp_path / "src") for one in machine_code._bases())
 
 
 def test_the_first_folder_that_can_be_written_is_taken(tmp_path, monkeypatch):

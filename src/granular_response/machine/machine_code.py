@@ -3,6 +3,9 @@
 Numba keeps machine code by the file of a kernel, but a kernel also holds code inlined from other files. So the folder
 is named after all sources that kernels are made of: what was compiled from others is never found again. Nothing is
 ever deleted here.
+
+Kept code decides nothing. Each file has a digest of what it holds, since LLVM ends the process on damaged code. What
+cannot be read is compiled again, and what cannot be written is not kept.
 """
 
 from __future__ import annotations
@@ -10,19 +13,28 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import inspect
+import logging
 import os
+import pickle
+import sys
+import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, suppress
+from contextlib import contextmanager, suppress
 from functools import cache, partial, wraps
 from pathlib import Path
 from typing import Any
 
 import numba as nb
+from numba.core import caching, compiler_lock
 from numba.extending import overload
 
+_log = logging.getLogger(__name__)
 _PACKAGE = Path(__file__).parents[1]
 #: Folders of the package whose files make kernels or are inlined into them.
 SOURCES = ("contact", "kernels", "machine", "linalg", "state")
+
+#: Seconds to wait for another process that compiles the same kernel; the slowest takes 10 s on a quiet core.
+LONGEST_COMPILATION = 120.0
 
 
 def kernel(function: Callable | None = None, **options: Any) -> Any:
@@ -45,7 +57,7 @@ def kernel(function: Callable | None = None, **options: Any) -> Any:
     finally:
         nb.config.CACHE_DIR = before
     if folder is not None and hasattr(compiled, "_cache"):  # not with compilation off
-        _keep_own_types_alone(compiled, folder / "lock")
+        _keep(compiled, folder)
     return compiled
 
 
@@ -71,27 +83,115 @@ def by_type(function: Callable) -> Any:
     return called
 
 
-def _keep_own_types_alone(compiled: Any, lock: Path) -> None:
-    """Code for a law or an integrator from elsewhere is not kept: a process that lacks it could not read the index.
+class _Files(caching.IndexDataCacheFile):
+    """Numba's index and data files of one kernel, each behind the digest of its content."""
+
+    def _load_index(self) -> dict:
+        try:
+            version, packed = pickle.loads(_checked(Path(self._index_path).read_bytes()))
+        except FileNotFoundError:
+            return {}
+        stamp, overloads = pickle.loads(packed) if version == self._version else (None, {})
+        return overloads if stamp == self._source_stamp else {}
+
+    def _save_index(self, overloads: dict) -> None:
+        self._write(self._index_path, (self._version, self._dump((self._source_stamp, overloads))))
+
+    def _load_data(self, name: str) -> Any:
+        return pickle.loads(_checked(Path(self._data_path(name)).read_bytes()))
+
+    def _save_data(self, name: str, data: Any) -> None:
+        self._write(self._data_path(name), data)
+
+    def _write(self, path: str, data: Any) -> None:
+        content = self._dump(data)
+        with self._open_for_write(path) as file:
+            file.write(hashlib.sha256(content).digest() + content)
+
+
+def _checked(content: bytes) -> bytes:
+    digest, content = content[:32], content[32:]
+    if hashlib.sha256(content).digest() != digest:
+        raise ValueError("its content is not what was written")
+    return content
+
+
+def _keep(compiled: Any, folder: Path) -> None:
+    """Keep the machine code of a kernel in a folder, and compile what is not there in one process at a time.
 
     Numba reads the index of a kernel, picks the next free file and writes both. Two processes at once, with code for
     different arguments, would pick the same file, and the index then names the code of one for the arguments of the
-    other. So one process writes at a time.
+    other. Beside that both would compile the same.
     """
-    save = compiled._cache.save_overload
+    kept = compiled._cache
+    kept._cache_file = files = _Files(kept._cache_path, kept._impl.filename_base, kept._impl.locator.get_source_stamp())
+    load, save, compile_now = kept.load_overload, kept.save_overload, compiled.compile
+    lock = Path(kept._cache_path) / f"{kept._impl.filename_base}.lock"
+
+    def load_whole(signature: Any, context: Any) -> Any:
+        try:
+            return load(signature, context)
+        except Exception as problem:  # whatever a damaged or unreadable file leads to
+            _say_once(folder, f"cannot be read ({type(problem).__name__}), so kernels are compiled again")
+            with suppress(OSError):
+                files.flush()
+            return None
 
     def save_own(arguments: Any, data: Any) -> None:
+        """Code for a law or an integrator from elsewhere is not kept: a process that lacks it could not read it."""
         if not all(map(_is_own, arguments)):
             return
-        with ExitStack() as held:
-            with suppress(OSError):  # a file system without locks
-                # a pipe in its place would wait to be opened
-                descriptor = os.open(lock, os.O_WRONLY | os.O_CREAT | os.O_NONBLOCK, 0o666)
-                held.callback(os.close, descriptor)
-                fcntl.lockf(descriptor, fcntl.LOCK_EX)
+        try:
             save(arguments, data)
+        except Exception as problem:  # a full or closed folder, or a damaged index
+            _say_once(folder, f"cannot be written ({type(problem).__name__}), so kernels are compiled in every process")
+            with suppress(OSError):
+                files.flush()
 
-    compiled._cache.save_overload = save_own
+    def compile_alone(signature: Any) -> Any:
+        # Numba's own lock first: a thread that holds the file would wait for one that compiles, and that one for the file
+        with compiler_lock.global_compiler_lock, _held(lock):
+            return compile_now(signature)
+
+    kept.load_overload, kept.save_overload, compiled.compile = load_whole, save_own, compile_alone
+
+
+#: Locks of this process: a kernel may need itself for other arguments.
+_own_locks: set[Path] = set()
+
+
+@contextmanager
+def _held(lock: Path) -> Iterator[None]:
+    """Hold a file against other processes, for which one waits ``LONGEST_COMPILATION`` at most.
+
+    A lock only saves work. Where there can be none one goes on without it.
+    """
+    if lock in _own_locks:
+        yield
+        return
+    _own_locks.add(lock)
+    descriptor = -1
+    try:
+        with suppress(OSError):
+            # a pipe in its place would wait to be opened
+            descriptor = os.open(lock, os.O_WRONLY | os.O_CREAT | os.O_NONBLOCK | os.O_NOFOLLOW, 0o666)
+            latest = time.monotonic() + LONGEST_COMPILATION
+            while time.monotonic() < latest:
+                try:
+                    fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                    break
+                except BlockingIOError:
+                    time.sleep(0.02)
+        yield
+    finally:
+        _own_locks.discard(lock)
+        if descriptor >= 0:
+            os.close(descriptor)
+
+
+@cache
+def _say_once(folder: Path, what: str) -> None:
+    _log.warning("machine code in %s %s", folder, what)
 
 
 def _is_own(kind: Any) -> bool:
@@ -106,7 +206,9 @@ def _is_own(kind: Any) -> bool:
 def cache_folder() -> Path | None:
     """The folder for machine code of these sources; None where nothing may be written.
 
-    In ``NUMBA_CACHE_DIR`` if that is set, else in the package's ``__pycache__``, else in the user's cache.
+    In ``NUMBA_CACHE_DIR`` if that is set. A checkout keeps it in its own ``__pycache__``, else the user's cache does. A
+    package that pip installed keeps it outside of itself, in the user's cache or in the environment's ``var/cache``: what
+    pip removes is gone.
     """
     name = source_digest()
     for base in _bases():
@@ -123,10 +225,14 @@ def cache_folder() -> Path | None:
 def _bases() -> Iterator[Path]:
     if nb.config.CACHE_DIR:
         yield Path(nb.config.CACHE_DIR)
-    yield _PACKAGE / "__pycache__" / "machine_code"
+    installed = _PACKAGE.parent.name in ("site-packages", "dist-packages")
+    if not installed:
+        yield _PACKAGE / "__pycache__" / "machine_code"
     home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     if os.path.isabs(home):
         yield Path(home) / "granular_response"
+    if installed:
+        yield Path(sys.prefix) / "var" / "cache" / "granular_response"
 
 
 def source_digest() -> str:
