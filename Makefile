@@ -29,7 +29,7 @@ export DVC_NO_ANALYTICS := 1
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup tools reproduce extensions figure survey test fuzz broken scenes coverage lint notebooks docs archive restore package matrix
+.PHONY: help setup tools reproduce extensions figure survey test fuzz broken scenes coverage lint notebooks docs archive restore package wheels matrix
 .PHONY: benchmark arena lock clean
 
 help: ## Show this list
@@ -103,6 +103,9 @@ restore: setup ## Take the datasets from an archive in place of computing them: 
 
 package: tools ## Build sdist and wheel, and try the wheel in a fresh environment
 	.ci/package $(PY) $(PYTHON)
+
+wheels: setup ## Ask the package index whether each pinned package has a wheel for Python 3.11 to 3.14 (two minutes)
+	.ci/wheels $(PY) 3.11 3.12 3.13 3.14
 
 matrix: tools ## The same for each of Python 3.11 to 3.13 that there is
 	.ci/package $(PY) python3.11 python3.12 python3.13
