@@ -1,7 +1,6 @@
 """What commands write: never over their inputs, never in place of what is no regular file."""
 
 import errno
-import fcntl
 import os
 import resource
 import shutil
@@ -194,23 +193,6 @@ def test_too_little_memory_is_said_before_it_is_taken(tmp_path):
     assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
     assert "1995000 disks need at least 9.29 GiB of memory, there are " in finished.stderr
     assert not (tmp_path / "a.nc").exists()
-
-
-def test_another_writer_may_come_between_any_two_steps(tmp_path, monkeypatch):
-    """A temporary file that was not locked yet was taken by another writer, who has moved it away."""
-    target = tmp_path / "a.bin"
-    lock, met = fcntl.flock, []
-
-    def late(descriptor, how):
-        if not met:
-            met.append(how)
-            atomic.write_bytes(target, b"other")
-        return lock(descriptor, how)
-
-    monkeypatch.setattr(atomic.fcntl, "flock", late)
-    atomic.write_bytes(target, b"whole")
-    assert len(met) == 1 and target.read_bytes() == b"whole"
-    assert [path.name for path in tmp_path.iterdir()] == ["a.bin"]
 
 
 @pytest.mark.parametrize("ending", ["folder", "read-only"])

@@ -111,7 +111,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
         if "mass" not in chosen:
             raise FormatError("column mass is missing, which tables of granular-response have")
     kept, frame = _last_frame(titles, cells_of, places)
-    rows, moved, places = ([several[k] for k in kept] for several in (rows, moved, places))
+    rows, moved, places = [rows[k] for k in kept], [moved[k] for k in kept], [places[k] for k in kept]
     values = dict(zip(chosen, np.array(rows).T, strict=True))
     for name in turned:
         values[name] = -values[name]
@@ -247,9 +247,7 @@ def _chosen(
     assumed = "mass" in chosen and "mass" not in columns and not units[chosen["mass"]]
     if assumed and (beside := _tracker(titles, chosen)):
         rule = "must have a unit, as mass [g], or packing.columns = {mass: mass} says that it is one"
-        raise FormatError(
-            f"column mass: is a brightness for programs that track disks, as column {beside} shows; {rule}"
-        )
+        raise FormatError(f"column mass: is a brightness where disks are tracked, as column {beside} shows; {rule}")
     if all(name in chosen for name in MATERIAL):
         raise FormatError("columns mass and density: must have one of them, once")
     if not any(name in chosen for name in MATERIAL):
