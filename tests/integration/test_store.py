@@ -202,7 +202,7 @@ LEFT = ".granular-0123456789abcdef.partial"
 
 
 def test_what_others_planted_stays_as_it_is(tmp_path, next_run):
-    """Links and pipes under names of temporary files: a link once emptied somebody else's file, a pipe waited for ever."""
+    """A link under the name of a temporary file once emptied somebody else's file, a pipe there waited for ever."""
     precious = tmp_path / "precious"
     precious.mkdir()
     (precious / "victim").write_bytes(b"precious")

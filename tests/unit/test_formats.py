@@ -1,6 +1,10 @@
 """Packings from other programs, and back."""
 
+import bz2
+import gzip
+import lzma
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -310,6 +314,27 @@ MISTAKES = [
     ("a.txt", "#format x_y_z_r_r\n1 0 1 1 0.5\n", "line 1: format names 'r' 2 times, must name it once"),
     ("a.txt", "#format x_y_z_r\n#format r_x_y_z\n1 0 1 1\n", "line 2: #format: is given twice, in line 1 and here"),
     ("a.txt", "1 0 1 1\n#format x_y_z_r\n", "line 2: format must be one word such as x_y_z_r, above the spheres"),
+    # tables of several frames, of tracked disks, and without a header
+    ("a.csv", "x,z,radius,image\n1,1,1,a.png\n3,1,1,b.png\n3,1,1,b.png\n", "line 2: image = 'a.png': must be a finite"),
+    ("a.csv", "x,z,radius,t\n1,1,1,0\n3,1,1,1\n", "column t: each disk has another one; a table must have"),
+    ("a.csv", "x,z,radius,frame,Frame\n1,1,1,0,0\n", "line 1: column frame is given 2 times, must be given once"),
+    ("a.csv", "x,z,radius,trackid\n1,1,1,7\n3,1,1,7\n", "line 3: trackid '7': is given twice, in line 2 and here"),
+    ("a.csv", "x,z,radius,mass,ecc\n1,1,1,300,0\n", "column mass: is a brightness where disks are tracked, as column "
+     "ecc shows; must have a unit, as mass [g], or packing.columns = {mass: mass} says that it is one"),
+    ("a.csv", "x,z,radius,mass,particle\n1,1,1,300,0\n", "column mass: is a brightness where disks are tracked"),
+    ("a.csv", "1,1,1\n3,1,1\n", "the first line has numbers alone, must be a header that names x, z and radius"),
+    ("a.csv", "x\tz\tradius\n1\t1\t1\n", "columns are separated by blanks or tabs, must be separated by commas"),
+    ("a.csv", "pos,height,size\n1,1,1\n", "are missing, header must name x, z and radius; there are pos, height, size; "
+     "packing.columns says which are meant, as {z: Y, radius: R}"),
+    ("a.csv", "secret;a b\n", "columns x, z and radius are missing, header must name x, z and radius"),
+    # files of another kind than their name says
+    ("a.csv", DUMP, "is of format lammps-dump by its content, not csv: packing.format says so"),
+    ("a.txt", "x,z,radius\n1,1,1\n", "is of format csv by its content, not yade"),
+    ("a.csv", "1 0 1 1\n3 0 1 1\n", "is of format yade by its content, not csv"),
+    ("a.dump", DATA, "is of format lammps-data by its content, not lammps-dump"),
+    ("a.dump", "---\ncreator: LAMMPS\ntimestep: 0\n", "is a LAMMPS dump of style yaml, must be one of style custom"),
+    ("a.csv", '2\nLattice="1 0 0 0 1 0 0 0 1"\nX 1 1\n', "is a file of extended XYZ, which is written and not read"),
+    ("a.dump", DUMP.replace("NUMBER OF ATOMS", "NUMBER OF ENTRIES"), "but of contacts, which packing.springs takes"),
     # files that are not whole
     ("a.data", DATA.replace("3 atoms", "4 atoms"), "is not a whole LAMMPS data file"),
     ("a.data", "", "is not a whole LAMMPS data file"),
@@ -346,7 +371,7 @@ MISTAKES = [
     ("a.csv", f"x [mm],z [mm],radius [cm],mass\n{TWO}", "columns x, z and radius: must have the same unit of length, "
      "not mm, mm, cm; convert them in the table"),
     ("a.csv", f"X,x,z,radius\n{TWO}", "column x is given 2 times, header must name x, z and radius"),
-    ("a.dump", DUMP.replace("diameter", "size"), "line 19: column radius or diameter is missing"),
+    ("a.dump", DUMP.replace("diameter", "size"), "line 19: column radius or diameter is missing; there are id, xs"),
     ("a.dump", DUMP.replace("yu", "vy"), "line 19: column y is missing"),
     ("a.data", DATA.replace("# sphere", "# atomic"), "line 14: atoms must be of style sphere"),
     ("a.txt", "1 0 1\n", "line 1: has 3 values, must have x y z r"),
@@ -392,6 +417,50 @@ def test_what_is_said_twice_alike_is_taken(tmp_path):
     np.testing.assert_allclose(packing.position, [[1, 1], [3, 1.5]])
     text = "x,y,z,radius,diameter\n1,1,0,1,2\n3,1.5,0,1,2\n"  # a camera's plane
     np.testing.assert_allclose(build(tmp_path / "a.csv", text, width=9.0).position, [[1, 1], [3, 1.5]])
+
+
+FRAMES = "x,z,radius,{}\n1,1,1,8\n3,1,1,8\n2,2.7,1,8\n7,1,1,10\n9,1,1,10\n8,2.7,1,10\n5,1,1,9\n"
+
+
+@pytest.mark.parametrize("column", ["frame", "Frame", "time", "t [s]", "STEP", "timestep", "POSITION_T"])
+def test_of_a_table_of_frames_the_last_one_is_taken_and_said(tmp_path, column):
+    """Both frames were one packing."""
+    with pytest.warns(UserWarning, match=r"a\.csv: has several frames; taken is 3 of 3, .* 10$"):
+        packing = build(tmp_path / "a.csv", FRAMES.format(column), width=12.0)
+    np.testing.assert_allclose(packing.position, [[7, 1], [9, 1], [8, 2.7]])
+    assert packing.frame.startswith("3 of 3, ")
+
+
+@pytest.mark.filterwarnings("error")
+def test_the_mass_of_a_tracker_is_one_where_it_has_a_unit_or_is_named(tmp_path):
+    for header, columns in (("x,z,radius,mass [g],frame", None), ("x,z,radius,mass,signal", {"mass": "mass"})):
+        packing = build(tmp_path / "a.csv", f"{header}\n1,1,1,1,0\n3,1,1,3,0\n", width=9.0, columns=columns)
+        np.testing.assert_allclose(packing.mass, [0.5, 1.5])
+
+
+def test_heights_that_point_down_are_asked_about_and_turned(tmp_path):
+    text, turned = "x_px,y_px,r_px\n20,90,10\n40,85,10\n", {"z": "-y_px"}
+    with pytest.warns(UserWarning, match=r"column y is taken as the height; where it points down, .* \{z: -y\} and"):
+        build(tmp_path / "a.csv", text, width=90.0)
+    with warnings.catch_warnings(action="error"):
+        packing = build(tmp_path / "a.csv", text, width=90.0, columns=turned, origin=(0.0, -100.0))
+        assert build(tmp_path / "a.csv", text, width=90.0, columns={"z": "y"}).position[0, 1] == 9.0
+    np.testing.assert_allclose(packing.position, [[2, 1], [4, 1.5]])
+    refuses(SceneError, r"radius = '-r_px': there is no such", build, tmp_path / "a.csv", columns={"radius": "-r_px"})
+    refuses(SceneError, "must name a column once", FilePacking, path="a.csv", columns={"z": "-y", "x": "y"})
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.dump.gz", "a.data", "a.txt", "a.gsd"])
+def test_packed_files_are_named_as_what_they_are(tmp_path, name):
+    """The message went by chance of the bytes."""
+    packed = {
+        "(gzip)": gzip.compress(DUMP.encode()), "(bzip2)": bz2.compress(DUMP.encode()),
+        "(xz)": lzma.compress(DUMP.encode()), "(zstd)": b"\x28\xb5\x2f\xfd\x00", "zip archive": b"PK\x03\x04",
+        "UTF-16": DUMP.encode("utf-16"), "netCDF": b"\x89HDF\r\n\x1a\n",
+    }  # fmt: skip
+    for said, content in packed.items():
+        (tmp_path / name).write_bytes(content)
+        refuses(SceneError, rf"{name}': is .*{re.escape(said)}", build, tmp_path / name)
 
 
 @pytest.mark.parametrize(

@@ -84,7 +84,7 @@ def _of_table(lines: list[str]) -> Iterator[GivenContact]:
             raise FormatError(f"column {shown(name)[1:-1]}: unknown{meant}", "line 1")
     if missing := [one for one in (*_NAMES, *_FORCES) if one not in header]:
         there = f"; there are {listed(header)}" if len(missing) < len((*_NAMES, *_FORCES)) else ""
-        several = f"column{'s' * (len(missing) > 1)} {' and '.join(missing)}"
+        several = f"columns {', '.join(missing)} are" if len(missing) > 1 else f"column {missing[0]} is"
         raise FormatError(f"{several} missing, which a .contacts.csv has{there}", "line 1")
     for place, cells in ((f"line {k}", cells) for k, cells in enumerate(csv.reader(lines), start=1) if k > 1):
         if len(cells) != len(header):
