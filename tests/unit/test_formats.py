@@ -377,7 +377,7 @@ def test_what_is_said_twice_alike_is_taken(tmp_path):
 FRAMES = "x,z,radius,{}\n1,1,1,8\n3,1,1,8\n2,2.7,1,8\n7,1,1,10\n9,1,1,10\n8,2.7,1,10\n5,1,1,9\n"
 
 
-@pytest.mark.parametrize("column", ["frame", "Frame", "time", "t [s]", "STEP", "timestep", "POSITION_T"])
+@pytest.mark.parametrize("column", ["frame", "Frame No.", "time", "t [s]", "STEP", "timestep", "POSITION_T"])
 def test_of_a_table_of_frames_the_last_one_is_taken_and_said(tmp_path, column):
     """Both frames were one packing."""
     with pytest.warns(UserWarning, match=r"a\.csv: has several frames; taken is 3 of 3, .* 10$"):

@@ -41,11 +41,14 @@ REFUSED = {
     **dict.fromkeys(("stiffness", "kn", "k_n", "young", "youngs_modulus", "young_modulus"), "contact.normal_stiffness"),
     "cohesion": "contact.law",
 }
+_NUMBER = "(_?(no|nr|number|id|index))?"
 #: Columns that number frames, the first of which a table has counts, and those that number disks.
 FRAMES = (
-    "frame", "frame_number", "frame_id", "timestep", "time_step", "step", "slice", "image", "time", "t", "position_t",
-)  # fmt: skip
-TRACKS = ("particle", "particle_id", "track", "track_id", "trackid", "id")
+    re.compile(f"(frame|image|img|slice){_NUMBER}"),
+    re.compile("(time_?)?step|time_?(point|frame)"),
+    re.compile("(position_)?t|time(_?(s|ms|sec))?"),
+)
+TRACKS = (re.compile(f"(particle|track|trajectory|traj){_NUMBER}"), re.compile("id"))
 #: Columns by which a table is known as one of tracked disks, beside those of frames and tracks; and any ``intensity``.
 _OF_TRACKERS = {"ecc", "ep", "signal", "raw_mass", "quality"}
 _PIXELS = ("px", "pixel", "pixels")
@@ -93,7 +96,8 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
             titles = _titles(header)
             chosen, turned = _chosen(header, titles, columns or {})
             unit = titles[chosen["x"]][1]
-            for name in (*MOTION, *FRAMES, *TRACKS):
+            others = [title for k, title in enumerate(titles) if k not in chosen.values()]
+            for name in (*MOTION, *_like((*FRAMES, *TRACKS), others)):
                 if (times := [one for one, _ in titles].count(name)) > 1:
                     raise FormatError(f"column {name} is given {times} times, must be given once", place)
             motion = {name: titles.index((name, "")) for name in MOTION if (name, "") in titles}
@@ -110,7 +114,8 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
         mark.check(len(rows), whole)
         if "mass" not in chosen:
             raise FormatError("column mass is missing, which tables of granular-response have")
-    kept, frame = _last_frame(titles, cells_of, places)
+    others = [("", "") if k in chosen.values() else title for k, title in enumerate(titles)]
+    kept, frame = _last_frame(others, cells_of, places)
     rows, moved, places = [rows[k] for k in kept], [moved[k] for k in kept], [places[k] for k in kept]
     values = dict(zip(chosen, np.array(rows).T, strict=True))
     for name in turned:
@@ -135,9 +140,15 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
     )  # fmt: skip
 
 
+def _like(patterns: Sequence[re.Pattern[str]], titles: Sequence[tuple[str, str]]) -> list[str]:
+    """The names of columns that are spelled so, those of the first pattern first."""
+    words = {name: re.sub(r"[\s.\-]+", "_", name).strip("_") for name, _ in titles}
+    return [name for pattern in patterns for name, word in words.items() if pattern.fullmatch(word)]
+
+
 def _tracker(titles: Sequence[tuple[str, str]], chosen: Mapping[str, int]) -> str:
     """A column by which a table is known as one of tracked disks; nothing where it has none."""
-    known = {*FRAMES, *TRACKS, *_OF_TRACKERS} - {"id"}
+    known = {*_like((*FRAMES, *TRACKS), titles), *_OF_TRACKERS} - {"id"}
     others = [name for k, (name, _) in enumerate(titles) if k not in chosen.values()]
     return next((name for name in others if name in known or "intensity" in name), "")
 
@@ -151,7 +162,7 @@ def _last_frame(
     """
     names = [name for name, _ in titles]
     kept, frame = list(range(len(rows))), ""
-    if name := next((one for one in FRAMES if one in names), ""):
+    if name := next(iter(_like(FRAMES, titles)), ""):
         cells = [row[names.index(name)].strip() for row in rows]
         if len(set(cells)) > 1:
             numbered = [number(cell, name, place) for cell, place in zip(cells, places, strict=True)]
@@ -161,7 +172,7 @@ def _last_frame(
             kept = [k for k in kept if numbered[k] == several[-1]]
             if len(several) > 1:
                 frame = f"{len(several)} of {len(several)}, {name} {cells[kept[0]]}"
-    for name in (one for one in TRACKS if one in names):
+    for name in _like(TRACKS, titles):
         once = Once()
         for k in kept:
             if cell := rows[k][names.index(name)].strip():
