@@ -93,6 +93,13 @@ def test_no_command_writes_over_its_inputs(inputs, tmp_path, command):
         assert contents(tmp_path) == before
 
 
+def test_an_animation_never_takes_the_place_of_its_result(inputs, tmp_path):
+    shutil.copy(inputs / "result.nc", tmp_path)
+    before = contents(tmp_path)
+    assert "must be another" in refused("plot", "result.nc", "--animate", "result.nc", folder=tmp_path)
+    assert contents(tmp_path) == before
+
+
 @pytest.mark.parametrize(
     "arguments",
     [["run", "scene.yaml", "-o", "r.nc"], ["plot", "result.nc", "-o", "r.png", "--what", "packing"],

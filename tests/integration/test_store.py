@@ -108,6 +108,8 @@ def test_missing_and_foreign_files(path, tmp_path):
     with netCDF4.Dataset(tmp_path / "classic.nc", "w", format="NETCDF3_CLASSIC"):
         pass
     refuses(StoreError, "not a netCDF-4 file", store.read, tmp_path / "classic.nc")
+    (tmp_path / "packed.nc").write_bytes(b"\x1f\x8b\x08")
+    refuses(StoreError, r"not a netCDF-4 file, it is compressed \(gzip\)", store.read, tmp_path / "packed.nc")
     with netCDF4.Dataset(tmp_path / "foreign.nc", "w") as file:
         file.createDimension("n", 3)
     refuses(StoreError, "not written by granular_response", store.read, tmp_path / "foreign.nc")

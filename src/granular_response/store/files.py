@@ -36,6 +36,7 @@ from xarray.backends import NetCDF4DataStore
 from .. import __version__
 from ..errors import GranularError
 from ..inputs import read_bytes, unreadable
+from ..scene.formats.content import foreign
 from . import atomic
 
 #: What the name of every file of datasets ends with.
@@ -243,7 +244,9 @@ def _bytes(path: str | os.PathLike[str]) -> tuple[bytes, bool]:
     if not data:
         raise _error(path, "is empty")
     if not _SIGNATURE.startswith(data[: len(_SIGNATURE)]):
-        raise _error(path, "is not a netCDF-4 file")
+        raise _error(
+            path, f"is not a netCDF-4 file, it {said}" if (said := foreign(data)) else "is not a netCDF-4 file"
+        )
     start = len(data) - len(_SEAL) - hashlib.sha256().digest_size
     has_seal = start > 0 and data[start : start + len(_SEAL)] == _SEAL
     # before the HDF5 library sees damaged bytes, which can end the process
