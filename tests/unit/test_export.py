@@ -194,6 +194,23 @@ def test_errors_are_one_line(result, tmp_path, monkeypatch):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "study.nc"]
 
 
+ODD = ["my slab", "a#b", "a$b", 'a"b', "a&<b>", "größe", "a%b", "a*b", "a\nshell rm b", "a\x01b"]
+
+
+@pytest.mark.parametrize("stem", ODD)
+def test_names_stand_in_files_as_what_they_are_or_are_refused(result, tmp_path, stem):
+    """Of LAMMPS a blank ended a name, and a line end began a command."""
+    said = refuses(ExportError, r"must have a name of letters a to z", export, result, tmp_path / f"{stem}.lammps")
+    assert "\n" not in said and not list(tmp_path.iterdir())
+    if not stem.isprintable():
+        refuses(ExportError, "control characters", export, result, tmp_path / f"{stem}.pvd")
+        return
+    root = ElementTree.parse(export(result, tmp_path / f"{stem}.pvd")).getroot()
+    assert all(read_vtu(tmp_path / entry.get("file")) for entry in root.iter("DataSet"))
+    for suffix in (".gsd", ".xyz", ".data", ".csv"):
+        assert export(result, tmp_path / f"{stem}{suffix}").stat().st_size > 0
+
+
 def test_a_series_for_paraview(result, data, tmp_path):
     import meshio
 

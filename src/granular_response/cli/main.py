@@ -202,23 +202,12 @@ def continue_(
     _keep(output, solution, started, allow_unsettled, f"load factors {factors}")
 
 
-@commands.command("show slab.nc", "show data/pile_dip.nc", "show slab.nc --json")
-def show(
-    file: Annotated[Path, typer.Argument(help="A stored result or study (netCDF).")],
-    as_json: Annotated[bool, typer.Option("--json", help="As JSON, with all digits.")] = False,
-) -> None:
+@commands.command("show slab.nc", "show data/pile_dip.nc")
+def show(file: Annotated[Path, typer.Argument(help="A stored result or study (netCDF).")]) -> None:
     """Summarise a stored file.
 
     Scene, certificate and floor response of a result; groups and dimensions of a study.
     """
-    if as_json:
-        import json
-
-        from ..store.summary import as_data
-
-        typer.echo(json.dumps(as_data(file), indent=1, allow_nan=False))
-        return
-
     from rich.console import Console
     from rich.text import Text
 

@@ -15,10 +15,14 @@ import numpy as np
 
 from ..state import FLOOR, LEFT_WALL, RIGHT_WALL, Box, FloatArray
 from ..state.box import WALL_MEANINGS, bodies, wall_normals
-from .formats.lammps_dump import WALL_FIXES, read_contacts
-from .formats.table import FormatError, Once, Table, lines_of, number, shown, whole_number
+from .errors import suggestion
+from .formats.lammps_dump import read_contacts
+from .formats.table import FormatError, Once, Table, lines_of, listed, number, shown, whole_number
+from .names import WALL_FIXES
 
-_NAMES, _FORCES = ("first", "second", "wall"), ("normal_force", "tangential_force")
+_NAMES, _FORCES, _ROLLING = ("first", "second", "wall"), ("normal_force", "tangential_force"), "rolling_force"
+#: All columns of a table of contacts.
+_COLUMNS = (*_NAMES, *_FORCES, _ROLLING, "x", "z", "status", "rolling_status")
 
 
 class GivenContact(NamedTuple):
@@ -72,9 +76,16 @@ def read(path: Path, position: FloatArray, box: Box, table: Table) -> tuple[Give
 
 
 def _of_table(lines: list[str]) -> Iterator[GivenContact]:
-    header = next(csv.reader(lines), [])
-    if any(header.count(one) != 1 for one in (*_NAMES, *_FORCES)):
-        raise FormatError(f"must have the columns {', '.join((*_NAMES, *_FORCES))}, as .contacts.csv", "line 1")
+    header = [one.strip() for one in next(csv.reader(lines), [])]
+    for name in header:
+        if name in (*_NAMES, *_FORCES, _ROLLING) and header.count(name) > 1:
+            raise FormatError(f"column {name} is given {header.count(name)} times, must be given once", "line 1")
+        if name not in _COLUMNS and (meant := suggestion(name.casefold(), _COLUMNS)):
+            raise FormatError(f"column {shown(name)[1:-1]}: unknown{meant}", "line 1")
+    if missing := [one for one in (*_NAMES, *_FORCES) if one not in header]:
+        there = f"; there are {listed(header)}" if len(missing) < len((*_NAMES, *_FORCES)) else ""
+        several = f"columns {', '.join(missing)} are" if len(missing) > 1 else f"column {missing[0]} is"
+        raise FormatError(f"{several} missing, which a .contacts.csv has{there}", "line 1")
     for place, cells in ((f"line {k}", cells) for k, cells in enumerate(csv.reader(lines), start=1) if k > 1):
         if len(cells) != len(header):
             raise FormatError(f"has {len(cells)} values, must have {len(header)} as the header", place)
@@ -85,7 +96,8 @@ def _of_table(lines: list[str]) -> Iterator[GivenContact]:
         one, other = whole_number(first), WALL_MEANINGS.index(wall) if wall else whole_number(second)
         if one is None or other is None:
             raise FormatError("first and second: must be numbers of disks, counted from 0", place)
-        normal, tangential, rolling = (number(row.get(name, "0"), name, place) for name in (*_FORCES, "rolling_force"))
+        normal, tangential = (number(row[name], name, place) for name in _FORCES)
+        rolling = number(row[_ROLLING], _ROLLING, place) if _ROLLING in row else np.nan
         yield GivenContact(place, one, other, bool(wall), tangential, rolling, normal)
 
 

@@ -10,7 +10,7 @@ from pydantic import Field
 from ..state import FloatArray
 from .base import Count, Description, Finite, Flag, NonNegative, Positive, Sparse, allowed
 from .errors import SceneError, describe
-from .formats.csv_table import MOTION
+from .names import MOTION
 from .packing import Packing
 
 TimeStep = Annotated[Positive | Literal["auto"], allowed("must be a number greater than 0, or auto")]

@@ -18,10 +18,10 @@ from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
 from .base import MOST_STIFFNESS, PACKING_KINDS, PLACES, Description, PackingDescription, Sparse, refused
 from .errors import Problem, SceneError, SceneFileError, show, show_key, suggestion
-from .formats.csv_table import MOTION
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
 from .material import Contact, Wall
+from .names import MOTION
 from .poured import PouredPacking
 from .protocol import COLUMN, Motion, Preparation, Protocol, Taps
 from .table import FilePacking

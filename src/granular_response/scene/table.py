@@ -40,7 +40,7 @@ def _check_columns(value: Any) -> Any:
     text = isinstance(value, Mapping) and all(isinstance(one, str) and one.strip() for one in value.values())
     if not text or not value or not set(value) <= set(csv_table.NAMED):
         raise Problem(f"must be columns of a CSV table, as {{z: Y, radius: R}}, for {', '.join(csv_table.NAMED)}")
-    if len(set(value.values())) < len(value):
+    if len({one.strip().removeprefix("-") for one in value.values()}) < len(value):
         raise Problem("must name a column once")
     return dict(value)
 
@@ -77,8 +77,8 @@ class FilePacking(Sparse, PackingDescription):
     sides: Sides = "walls"
     columns: Annotated[dict[str, str], BeforeValidator(_check_columns)] | None = Field(
         default=None,
-        description="Columns of a CSV table, such as {z: Y, radius: R}; null: those named x, z (or y), radius (or r, "
-        "diameter, d), mass and density.",
+        description="Columns of a CSV table, such as {z: Y, radius: R}, and {z: -Y} where Y points down; null: those "
+        "named x, z (or y), radius (or r, diameter, d), mass and density.",
     )
     overlaps: Overlaps = "kept"
     springs: FileName | None = Field(
@@ -140,7 +140,8 @@ class FilePacking(Sparse, PackingDescription):
         origin that neither the scene nor the file gives, a disk wider than that, and sides or a period other than those
         that the file says.
 
-        Warns (UserWarning) where a file of another program has disks of several sizes and no masses.
+        Warns (UserWarning) where a file of another program has disks of several sizes and no masses, where a table has
+        several frames, of which the last is taken, and where ``y`` of a picture is taken as the height.
         """
         table = self._table()
         left, floor, width = self._sides(table.box)
@@ -154,6 +155,8 @@ class FilePacking(Sparse, PackingDescription):
             raise self._error(value + problem.allowed, table.places[place]) from None
         if table.remark and np.ptp(table.radius) > ROUNDING * exact_mean(table.radius):
             warnings.warn(f"{self.path}: {table.remark}", stacklevel=2)
+        for note in table.notes:
+            warnings.warn(f"{self.path}: {note}", stacklevel=2)
         if self.springs is None:
             return packing
         from .contacts import read as read_contacts  # few packings have such a file

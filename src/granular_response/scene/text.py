@@ -35,6 +35,8 @@ class _Reader(yaml.SafeLoader):
     yaml_constructors: ClassVar[dict] = {}
 
     def _mapping(self, node: yaml.MappingNode) -> dict:
+        if not isinstance(node, yaml.MappingNode):
+            raise _mistake(node, "must be a mapping, as its tag says")
         result: dict = {}
         for key_node, value_node in node.value:
             key = self.construct_object(key_node, deep=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from typing import Any, Never
 
 import numpy as np
@@ -28,7 +29,12 @@ def read_result(path: str | os.PathLike[str], *, sealed: bool = True) -> xr.Data
 
     Raises StoreError if the file cannot be read, ResultError if it holds something else than a whole result.
     """
-    dataset = files.read(path, sealed=sealed).get("")
+    return result_of(path, files.read(path, sealed=sealed))
+
+
+def result_of(path: str | os.PathLike[str], datasets: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """The result among the datasets of a file, checked. Raises ResultError, with the path."""
+    dataset = datasets.get("")
     try:
         if dataset is None or "contact_spring" not in dataset:
             raise ResultError("holds no states, must be a result of granular-response run")

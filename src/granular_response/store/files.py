@@ -8,6 +8,9 @@ freed, so that opening a file with some repeatedly, or in chunks, ends Python. L
 and every reader sees words. Other texts do not: words would be Python objects, for which Dask chooses no chunks, so
 that plain xarray sees bytes (``b"path"``). ``read`` makes words of both.
 
+A file ends with a digest of what stands before it, by which damage is known: netCDF has checksums for chunks of values
+alone, and a changed byte of a scalar, or of the index of the chunks, would be another value without a word.
+
 The HDF5 library does not recover from running out of space: it gives no reason, and keeps the file open and locked for
 the life of the process. So it makes the file in a folder for temporary files, and the bytes reach their place through
 ``atomic``, with plain writes and plain errors. They depend on the data alone.
@@ -23,7 +26,7 @@ import secrets
 import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import netCDF4
 import numpy as np
@@ -33,6 +36,7 @@ from xarray.backends import NetCDF4DataStore
 from .. import __version__
 from ..errors import GranularError
 from ..inputs import read_bytes, unreadable
+from ..scene.formats.content import foreign
 from . import atomic
 
 #: What the name of every file of datasets ends with.
@@ -50,6 +54,8 @@ _NO_NAME = "memory"
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _SEAL = b"granular_response sha256 "
 _PACKED = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
+#: Letters of a name that the name of a kept file begins with: at most 240 bytes, of the 255 that a name may have.
+_STEM = 50
 _GROUP = re.compile(r"[A-Za-z_][\w.+-]*(/[A-Za-z_][\w.+-]*)*")
 
 
@@ -92,7 +98,7 @@ def write(
     data += _SEAL + hashlib.sha256(data).digest()
     try:
         atomic.make_folder(path)
-        atomic.write_bytes(path, data, check=lambda written: _verify(written, groups))
+        atomic.write_bytes(path, data)
     except OSError as error:
         kept = _keep(path, data) if keep else None
         where = "" if kept is None else f"; what was computed is kept as {kept}"
@@ -102,7 +108,7 @@ def write(
 def _keep(path: Path, data: bytes) -> Path | None:
     """The new name under which ``data`` was written, as near to ``path`` as one can be; None if nowhere."""
     for folder in (path.parent, Path(), Path(tempfile.gettempdir())):
-        place = folder / f"{path.stem}.kept-{secrets.token_hex(4)}{SUFFIX}"
+        place = folder / f"{path.stem[:_STEM]}.kept-{secrets.token_hex(4)}{SUFFIX}"
         with contextlib.suppress(OSError):
             atomic.write_bytes(place, data)
             return place
@@ -129,6 +135,27 @@ def _named(path: str | os.PathLike[str]) -> Path:
     return Path(path)
 
 
+class Stored(NamedTuple):
+    """What a file holds, in memory."""
+
+    datasets: dict[str, xr.Dataset]  #: by the name of their group, as ``read`` gives them
+    attributes: dict[str, Any]  #: of the file as a whole
+    sealed: bool  #: whether it ends with the digest of what it holds
+
+
+def open_file(path: str | os.PathLike[str], *, sealed: bool = True) -> Stored:
+    """All that a file holds, read once. Raises StoreError as ``read`` does."""
+    data, has_seal = _bytes(path)
+    with _open(path, data, has_seal, sealed) as file:
+        try:
+            groups = {name: _load(group) for name, group in _walk(file)}
+            attributes = _attributes(file)
+        except Exception as error:  # a damaged file can make its decoders raise anything
+            raise _error(path, f"is damaged: {error}") from error
+    datasets = {name: dataset for name, dataset in groups.items() if dataset.variables or len(groups) == 1}
+    return Stored(datasets, attributes, has_seal)
+
+
 def read(path: str | os.PathLike[str], *, sealed: bool = True) -> dict[str, xr.Dataset]:
     """All datasets of a file, in memory, by the name of their group.
 
@@ -136,19 +163,18 @@ def read(path: str | os.PathLike[str], *, sealed: bool = True) -> dict[str, xr.D
     datasets of ours that xarray has written too, which have no digest. Raises StoreError if the file is missing,
     truncated, damaged or not one of ours.
     """
-    with _open(path, sealed) as file:
-        try:
-            groups = {name: _load(group) for name, group in _walk(file)}
-        except Exception as error:  # a damaged file can make its decoders raise anything
-            raise _error(path, f"is damaged: {error}") from error
-    return {name: dataset for name, dataset in groups.items() if dataset.variables or len(groups) == 1}
+    return open_file(path, sealed=sealed).datasets
 
 
-def read_attributes(path: str | os.PathLike[str], *, sealed: bool = True) -> dict[str, Any]:
-    """Attributes of the file as a whole. Raises StoreError as ``read`` does."""
-    with _open(path, sealed) as file:
-        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
-    return {name: v.item() if isinstance(v, np.generic) else v for name, v in attributes.items()}
+def read_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Attributes of the file as a whole, without its datasets. Raises StoreError as ``read`` does."""
+    with _open(path, *_bytes(path), True) as file:
+        return _attributes(file)
+
+
+def _attributes(file: netCDF4.Dataset) -> dict[str, Any]:
+    found = {name: file.getncattr(name) for name in file.ncattrs()}
+    return {name: v.item() if isinstance(v, np.generic) else v for name, v in found.items()}
 
 
 def _check(path: Path, group: str, dataset: xr.Dataset) -> None:
@@ -168,8 +194,8 @@ def _check(path: Path, group: str, dataset: xr.Dataset) -> None:
 def _made(path: Path, groups: Mapping[str, xr.Dataset]) -> bytes:
     """The file as bytes."""
     try:
-        with tempfile.TemporaryDirectory(prefix="granular_response_") as folder:
-            made = Path(folder) / "made.nc"
+        with atomic.scratch() as folder:
+            made = folder / "made.nc"
             try:
                 with netCDF4.Dataset(made, mode="w", format="NETCDF4") as file:
                     _fill(file, path, groups)
@@ -209,20 +235,8 @@ def _with_bytes(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.drop_indexes([name for name in dataset.xindexes if name in coded]).assign(coded)
 
 
-def _verify(data: bytes, groups: Mapping[str, xr.Dataset]) -> None:
-    """Decode every variable of every group once before the file counts; raises OSError if one cannot be."""
-    try:
-        with netCDF4.Dataset(_NO_NAME, mode="r", memory=data) as file:
-            for name, dataset in groups.items():
-                group = file[name] if name else file
-                for key, variable in dataset.variables.items():
-                    if group[str(key)][...].shape[: variable.ndim] != variable.shape:
-                        raise OSError(f"variable {name}/{key} reads back with another shape")
-    except (RuntimeError, IndexError, KeyError) as error:
-        raise OSError(f"it does not read back: {error}") from error
-
-
-def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
+def _bytes(path: str | os.PathLike[str]) -> tuple[bytes, bool]:
+    """What a netCDF-4 file holds, and whether it ends with a digest. Raises StoreError, also if that is wrong."""
     try:
         data = read_bytes(path)
     except OSError as error:
@@ -230,8 +244,18 @@ def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
     if not data:
         raise _error(path, "is empty")
     if not _SIGNATURE.startswith(data[: len(_SIGNATURE)]):
-        raise _error(path, "is not a netCDF-4 file")
-    has_seal = _check_seal(path, data)  # before the HDF5 library sees damaged bytes, which can end the process
+        raise _error(
+            path, f"is not a netCDF-4 file, it {said}" if (said := foreign(data)) else "is not a netCDF-4 file"
+        )
+    start = len(data) - len(_SEAL) - hashlib.sha256().digest_size
+    has_seal = start > 0 and data[start : start + len(_SEAL)] == _SEAL
+    # before the HDF5 library sees damaged bytes, which can end the process
+    if has_seal and hashlib.sha256(memoryview(data)[:start]).digest() != data[start + len(_SEAL) :]:
+        raise _error(path, "is damaged: its digest differs from the one made when it was written")
+    return data, has_seal
+
+
+def _open(path: str | os.PathLike[str], data: bytes, has_seal: bool, sealed: bool) -> netCDF4.Dataset:
     try:
         dataset = netCDF4.Dataset(_NO_NAME, mode="r", memory=data)
         attributes = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
@@ -247,21 +271,6 @@ def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
     if re.fullmatch(r"granular_response \d+", str(layout)):
         raise _error(path, f"was written by another version: format = {layout!r}, must be {FORMAT!r}")
     raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
-
-
-def is_sealed(path: str | os.PathLike[str]) -> bool:
-    """Whether a file that can be read ends with the digest of what it holds."""
-    return _check_seal(path, read_bytes(path))
-
-
-def _check_seal(path: str | os.PathLike[str], data: bytes) -> bool:
-    """Whether there is a digest. Raises StoreError if it is wrong."""
-    start = len(data) - len(_SEAL) - hashlib.sha256().digest_size
-    if data[start : start + len(_SEAL)] != _SEAL or start < 0:
-        return False
-    if hashlib.sha256(memoryview(data)[:start]).digest() != data[start + len(_SEAL) :]:
-        raise _error(path, "is damaged: its digest differs from the one made when it was written")
-    return True
 
 
 def _walk(file: netCDF4.Dataset, prefix: str = "") -> list[tuple[str, netCDF4.Dataset]]:

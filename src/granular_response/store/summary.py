@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 from itertools import chain
 from os import PathLike
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -18,7 +17,7 @@ from rich.text import Text
 from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from . import files as store
-from .checked import read_result
+from .checked import result_of
 from .result import events_from, stored_values
 from .variables import EVENT_KINDS, NOT_DETERMINED
 
@@ -40,65 +39,15 @@ _CERTIFICATE = {
 _WORK = ("steps", "increments", "factorisations", "newton_iterations")
 
 
-def as_data(path: str | PathLike[str]) -> dict[str, Any]:
-    """The summary of a file as JSON has it, every number with all its digits; null is what is not known.
-
-    Raises as ``summarise`` does.
-    """
-    datasets, attributes, result = _opened(path)
-    found: dict[str, Any] = {"file": str(path), "sealed": store.is_sealed(path)}
-    for name, value in attributes.items():
-        nested = name in ("method", "method_reason") and isinstance(value, str)
-        found[name] = json.loads(value) if nested else _json(value)
-    if result is None:
-        found["datasets"] = {
-            name or "/": {"dimensions": dict(one.sizes), "variables": list(map(str, one.data_vars))}
-            for name, one in datasets.items()
-        }
-        return found
-    found["scene"] = scene_text.read(str(attributes["scene"]))
-    states = {str(name): result[name] for name in result if result[name].dims == ("state",)}
-    events = events_from(result)
-    found["states"] = [
-        {name.removeprefix("state_"): _known(values.values[k]) for name, values in states.items()}
-        | {"events": dict(Counter(event.kind for state, event in events if state == k))}
-        for k in range(result.sizes["state"])
-    ]
-    for name in ("x", "branch", "total_force", "floor_response", "floor_force_change", "reaction"):
-        if name in result:
-            found[name] = _json(result[name].values)
-    return found
-
-
-def _opened(path: str | PathLike[str]) -> tuple[dict[str, xr.Dataset], dict[str, Any], xr.Dataset | None]:
-    """Datasets and attributes of a file, and the result, if it is one."""
-    datasets, attributes = store.read(path, sealed=False), store.read_attributes(path, sealed=False)
-    root = datasets.get("")
-    result = read_result(path, sealed=False) if root is not None and "floor_response" in root else None
-    return datasets, attributes, result
-
-
-def _known(value: np.generic) -> Any:
-    """A number of a state; None for the whole number that says that it is not known."""
-    return None if isinstance(value, np.integer) and value == NOT_DETERMINED else _json(value)
-
-
-def _json(value: Any) -> Any:
-    """A number, text or array as JSON has it: no NaN and no infinity."""
-    plain = value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
-    if isinstance(plain, list):
-        return [_json(one) for one in plain]
-    return None if isinstance(plain, float) and not np.isfinite(plain) else plain
-
-
 def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     """Parts of the summary of a file, in order.
 
     Raises StoreError if the file cannot be read, ResultError if it is a result that is not whole.
     """
-    datasets, attributes, result = _opened(path)
+    datasets, attributes, sealed = store.open_file(path, sealed=False)
+    result = result_of(path, datasets) if "floor_response" in datasets.get("", ()) else None
     yield _text(path, style="bold")
-    if not store.is_sealed(path):
+    if not sealed:
         yield Text("not sealed: rewritten by another program, so its numbers are not guaranteed", style="bold")
     yield _pairs((name, value) for name, value in attributes.items() if name not in _HIDDEN)
     keys = {name: str(attributes[name]) for name in ("scene", "parameters") if name in attributes}

@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 
+from ...inputs import read_bytes
+from .content import recognised
 from .table import NO_BOX, FileBox, FormatError, Mark, Table
 
 #: Formats of files that hold disks, and the endings of names by which each is known.
@@ -34,7 +36,12 @@ def read(path: Path, file_format: str, columns: Mapping[str, str] | None = None)
     ``columns`` says which columns of a CSV table are meant.
     """
     reader = import_module(f".{_MODULES[file_format]}", __name__).read
-    table: Table = reader(path, columns) if columns else reader(path)
+    try:
+        table: Table = reader(path, columns) if columns else reader(path)
+    except (FormatError, UnicodeError):
+        if (other := recognised(read_bytes(path))) in ("", file_format):
+            raise
+        raise FormatError(f"is of format {other} by its content, not {file_format}: packing.format says so") from None
     return table
 
 

@@ -3,8 +3,12 @@
 Columns are separated by commas or, where the header has more of them, by semicolons; numbers have decimal points. Names
 may be written in any case, with a unit in brackets or, as ``x_mm``, after an underscore: lengths have one unit. Cameras
 and programs that track disks have other names for the same: y for the height where there is no z, r for the radius, or
-a diameter; ``columns`` of a scene says which column is meant where a table has others. Further columns are ignored, and
-so are empty lines and lines that begin with ``#``, but for the mark of our own tables. Each disk has a line of its own.
+a diameter; ``columns`` of a scene says which column is meant where a table has others, and ``-y`` that it points down.
+Further columns are ignored, and so are empty lines and lines that begin with ``#``, but for the mark of our own tables.
+Each disk has a line of its own.
+
+Programs that track disks write all frames to one table, where a column numbers them; as of a dump, the last frame is
+read. Beside such columns ``mass`` is a brightness, unless it has a unit or ``columns`` names it.
 """
 
 from __future__ import annotations
@@ -17,7 +21,8 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import suggestion
-from .table import NO_BOX, FormatError, Mark, Once, Table, lines_of, number, numbers, radii, shown, upward
+from ..names import MOTION
+from .table import NO_BOX, FormatError, Mark, Once, Table, lines_of, listed, number, numbers, radii, shown, upward
 
 #: What is read of a disk, and the names of columns that have it.
 LENGTHS, MATERIAL = ("x", "y", "z", "radius", "diameter"), ("mass", "density")
@@ -30,15 +35,23 @@ METRES = {"m": 1.0, "dm": 1e-1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 _WITH_UNIT = re.compile(
     rf"(x|y|z|radius|r|diameter|d)_({'|'.join(METRES)}|μm|px)|mass_(kg|g|mg|ug|μg)|density_(kg_m3|g_cm3)"
 )
-#: Components of the motion of a disk: columns that are read where they are and have no unit, and taken where the keys
-#: of ``motion`` ask for them.
-MOTION = ("vx", "vz", "spin")
 #: Columns that look as if they were heeded, and cannot be: contacts have one law.
 REFUSED = {
     **dict.fromkeys(("friction", "mu", "µ", "μ", "friction_coefficient"), "contact.friction"),
     **dict.fromkeys(("stiffness", "kn", "k_n", "young", "youngs_modulus", "young_modulus"), "contact.normal_stiffness"),
     "cohesion": "contact.law",
 }
+_NUMBER = "(_?(no|nr|number|id|index))?"
+#: Columns that number frames, the first of which a table has counts, and those that number disks.
+FRAMES = (
+    re.compile(f"(frame|image|img|slice){_NUMBER}"),
+    re.compile("(time_?)?step|time_?(point|frame)"),
+    re.compile("(position_)?t|time(_?(s|ms|sec))?"),
+)
+TRACKS = (re.compile(f"(particle|track|trajectory|traj){_NUMBER}"), re.compile("id"))
+#: Columns by which a table is known as one of tracked disks, beside those of frames and tracks; and any ``intensity``.
+_OF_TRACKERS = {"ecc", "ep", "signal", "raw_mass", "quality"}
+_PIXELS = ("px", "pixel", "pixels")
 _SIZES = frozenset({"radius", "diameter"})
 #: Other words for mass and density.
 _OTHER_WORDS = {"m": "mass", "rmass": "mass", "weight": "mass", "rho": "density", "ρ": "density"}
@@ -53,8 +66,11 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
     moved: list[list[float]] = []
     places: list[str] = []
     header: list[str] = []
+    cells_of: list[list[str]] = []
+    titles: list[tuple[str, str]] = []
     chosen: dict[str, int] = {}
     motion: dict[str, int] = {}
+    turned: set[str] = set()
     unit, between = "", ","
     mark: Mark | None = None
     once = Once()
@@ -78,10 +94,11 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
             once.add("header", place)
             header = cells
             titles = _titles(header)
-            chosen = _chosen(header, titles, columns or {})
+            chosen, turned = _chosen(header, titles, columns or {})
             unit = titles[chosen["x"]][1]
-            for name in MOTION:
-                if (times := titles.count((name, ""))) > 1:
+            others = [title for k, title in enumerate(titles) if k not in chosen.values()]
+            for name in (*MOTION, *_like((*FRAMES, *TRACKS), others)):
+                if (times := [one for one, _ in titles].count(name)) > 1:
                     raise FormatError(f"column {name} is given {times} times, must be given once", place)
             motion = {name: titles.index((name, "")) for name in MOTION if (name, "") in titles}
             continue
@@ -89,6 +106,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
             raise FormatError(f"has {len(cells)} values, must have {len(header)} as the header", place)
         rows.append(numbers([cells[column] for column in chosen.values()], tuple(chosen), place))
         moved.append([_or_nan(cells[column]) for column in motion.values()])
+        cells_of.append(cells)
         places.append(place)
     if not rows:
         raise FormatError("has no disks, must have a header x,z,radius and a line for each disk")
@@ -96,7 +114,12 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
         mark.check(len(rows), whole)
         if "mass" not in chosen:
             raise FormatError("column mass is missing, which tables of granular-response have")
+    others = [("", "") if k in chosen.values() else title for k, title in enumerate(titles)]
+    kept, frame = _last_frame(others, cells_of, places)
+    rows, moved, places = [rows[k] for k in kept], [moved[k] for k in kept], [places[k] for k in kept]
     values = dict(zip(chosen, np.array(rows).T, strict=True))
+    for name in turned:
+        values[name] = -values[name]
     if "density" in values and not (values["density"] > 0.0).all():
         bad = int(np.argmin(values["density"] > 0.0))
         raise FormatError(f"density = {float(values['density'][bad])!r}: must be greater than 0", places[bad])
@@ -107,7 +130,54 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
     mass = values["mass"] if "mass" in values else values["density"] * radius**2 if "density" in values else None
     velocities = dict(zip(motion, np.array(moved).T, strict=True))
     box = NO_BOX if mark is None else mark.box
-    return Table(values["x"], values[up], radius, places, mass, box, columns=velocities or None, unit=unit)
+    notes = [f"has several frames; taken is {frame}"] if frame else []
+    if up == "y" and (unit in _PIXELS or _tracker(titles, chosen)):
+        points = "where it points down, as in pictures, packing.columns = {z: -y} and packing.origin say so"
+        notes.append(f"column y is taken as the height; {points}")
+    return Table(
+        values["x"], values[up], radius, places, mass, box, columns=velocities or None, frame=frame, unit=unit,
+        notes=notes,
+    )  # fmt: skip
+
+
+def _like(patterns: Sequence[re.Pattern[str]], titles: Sequence[tuple[str, str]]) -> list[str]:
+    """The names of columns that are spelled so, those of the first pattern first."""
+    words = {name: re.sub(r"[\s.\-]+", "_", name).strip("_") for name, _ in titles}
+    return [name for pattern in patterns for name, word in words.items() if pattern.fullmatch(word)]
+
+
+def _tracker(titles: Sequence[tuple[str, str]], chosen: Mapping[str, int]) -> str:
+    """A column by which a table is known as one of tracked disks; nothing where it has none."""
+    known = {*_like((*FRAMES, *TRACKS), titles), *_OF_TRACKERS} - {"id"}
+    others = [name for k, (name, _) in enumerate(titles) if k not in chosen.values()]
+    return next((name for name in others if name in known or "intensity" in name), "")
+
+
+def _last_frame(
+    titles: Sequence[tuple[str, str]], rows: Sequence[Sequence[str]], places: Sequence[str]
+) -> tuple[list[int], str]:
+    """The rows of the last frame, and which one it is; all rows, and nothing, of a table of one frame.
+
+    Raises FormatError where frames have no order, or one disk each, and for a disk that a frame has twice.
+    """
+    names = [name for name, _ in titles]
+    kept, frame = list(range(len(rows))), ""
+    if name := next(iter(_like(FRAMES, titles)), ""):
+        cells = [row[names.index(name)].strip() for row in rows]
+        if len(set(cells)) > 1:
+            numbered = [number(cell, name, place) for cell, place in zip(cells, places, strict=True)]
+            several = sorted(set(numbered))
+            if len(several) == len(rows):
+                raise FormatError(f"column {name}: each disk has another one; a table must have the disks of one frame")
+            kept = [k for k in kept if numbered[k] == several[-1]]
+            if len(several) > 1:
+                frame = f"{len(several)} of {len(several)}, {name} {cells[kept[0]]}"
+    for name in _like(TRACKS, titles):
+        once = Once()
+        for k in kept:
+            if cell := rows[k][names.index(name)].strip():
+                once.add(f"{name} {shown(cell)}", places[k])
+    return kept, frame
 
 
 def _or_nan(cell: str) -> float:
@@ -134,17 +204,26 @@ def _titles(header: list[str]) -> list[tuple[str, str]]:
     return [(name, unit.strip().replace("µ", "u").replace("μ", "u")) for name, unit in found]
 
 
-def _chosen(header: list[str], titles: Sequence[tuple[str, str]], columns: Mapping[str, str]) -> dict[str, int]:
-    """The column of each quantity that is read. Raises FormatError for a header that does not say what they are.
+def _chosen(
+    header: list[str], titles: Sequence[tuple[str, str]], columns: Mapping[str, str]
+) -> tuple[dict[str, int], set[str]]:
+    """The column of each quantity that is read, and those of which the sign is turned round.
 
-    What stands in the header is quoted only where it is one of a table of disks: the file may be another one.
+    Raises FormatError for a header that does not say what they are. What stands in it is quoted only where it looks as
+    one of a table of disks: the file may be another one.
     """
+    if len(header) == 1 and len(header[0].split()) >= len(_NEEDED):
+        raise FormatError("columns are separated by blanks or tabs, must be separated by commas or semicolons")
+    if not any(_words(cell) for cell in header):
+        raise FormatError("the first line has numbers alone, must be a header that names x, z and radius")
     names, units = zip(*titles, strict=True)
     chosen: dict[str, int] = {}
+    turned: set[str] = set()
     for name, wanted in columns.items():
-        exact = [k for k, cell in enumerate(header) if cell.strip() == wanted.strip()]
-        folded = wanted.strip().casefold()
-        places = exact or [k for k, cell in enumerate(header) if folded in (names[k], cell.strip().casefold())]
+        places = _named(header, names, wanted)
+        if not places and name in ("x", "z") and wanted.strip().startswith("-"):
+            places = _named(header, names, wanted.strip().removeprefix("-"))
+            turned.add(name)
         if len(places) != 1:
             problem = "there is no such column" if not places else f"is given {len(places)} times"
             raise FormatError(f"columns.{name} = {shown(wanted)}: {problem}{_there(header, names)}")
@@ -161,8 +240,7 @@ def _chosen(header: list[str], titles: Sequence[tuple[str, str]], columns: Mappi
             raise FormatError(f"column {name} {said}, header must name x, z and radius")
         if found:
             chosen[name] = found[0]
-    needed = {"x": {"x"}, "z": {"y", "z"}, "radius": _SIZES}
-    missing = [name for name, instead in needed.items() if not instead & chosen.keys()]
+    missing = [name for name, instead in _NEEDED.items() if not instead & chosen.keys()]
     if missing:
         most = f"{', '.join(missing[:-1])} and {missing[-1]}"
         several = f"columns {most} are" if len(missing) > 1 else f"column {missing[0]} is"
@@ -177,6 +255,10 @@ def _chosen(header: list[str], titles: Sequence[tuple[str, str]], columns: Mappi
     for column, key in REFUSED.items():
         if column in ignored:
             raise FormatError(f"column {column}: must be left out, {key} is that of all disks")
+    assumed = "mass" in chosen and "mass" not in columns and not units[chosen["mass"]]
+    if assumed and (beside := _tracker(titles, chosen)):
+        rule = "must have a unit, as mass [g], or packing.columns = {mass: mass} says that it is one"
+        raise FormatError(f"column mass: is a brightness where disks are tracked, as column {beside} shows; {rule}")
     if all(name in chosen for name in MATERIAL):
         raise FormatError("columns mass and density: must have one of them, once")
     if not any(name in chosen for name in MATERIAL):
@@ -184,12 +266,32 @@ def _chosen(header: list[str], titles: Sequence[tuple[str, str]], columns: Mappi
             if (meant := _OTHER_WORDS.get(column)) or (meant := suggestion(column, MATERIAL)):
                 rule = meant if meant.startswith(",") else f", did you mean {meant}?"
                 raise FormatError(f"column {column}: unknown{rule} (mass or density, or neither)")
-    return {name: chosen[name] for name in NAMES if name in chosen}
+    return {name: chosen[name] for name in NAMES if name in chosen}, turned
+
+
+#: What a table must have, and the quantities that give it.
+_NEEDED: dict[str, set[str] | frozenset[str]] = {"x": {"x"}, "z": {"y", "z"}, "radius": _SIZES}
+
+
+def _named(header: list[str], names: Sequence[str], wanted: str) -> list[int]:
+    """Where the columns are that a key of ``columns`` means: as they are written, else in any case, without unit."""
+    exact = [k for k, cell in enumerate(header) if cell.strip() == wanted.strip()]
+    folded = wanted.strip().casefold()
+    return exact or [k for k, cell in enumerate(header) if folded in (names[k], cell.strip().casefold())]
+
+
+def _words(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return bool(cell.strip())
+    return False
 
 
 def _there(header: list[str], names: Sequence[str]) -> str:
     """The names of a header that has a column of disks, and how a scene says what others are."""
-    if not any(name in words for name in names for words in NAMES.values()):
+    known = any(name in words for name in names for words in NAMES.values())
+    short = len(header) >= len(_NEEDED) and all(len(cell) <= 40 and _words(cell) for cell in header)
+    if not known and not short:
         return ""
-    there = ", ".join(shown(cell)[1:-1] for cell in header[:12]) + (", ..." if len(header) > 12 else "")
-    return f"; there are {there}; packing.columns says which are meant, as {{z: Y, radius: R}}"
+    return f"; there are {listed(header)}; packing.columns says which are meant, as {{z: Y, radius: R}}"

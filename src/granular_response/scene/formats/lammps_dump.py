@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...state import FloatArray
+from ..names import WALL_FIXES
 from .table import (
     NO_MASSES,
     FileBox,
@@ -26,6 +27,7 @@ from .table import (
     bounds,
     by_id,
     lines_of,
+    listed,
     number,
     numbers,
     radii,
@@ -39,8 +41,6 @@ _AXES = "xyz"
 _CONTACT = ("patom1", "patom2", "force", "p1", "p2", "p3")
 #: Items of a frame, and how many lines each has. Beside them are the number of its atoms, or entries, and these.
 _ITEMS = {"UNITS": 1, "TIME": 1, "TIMESTEP": 1, "BOX BOUNDS": 3}
-#: Forces of the walls, by the names that ``fix wall/gran ... contacts`` has in our scripts.
-WALL_FIXES = ("floor", "sides")
 
 
 class _Item(NamedTuple):
@@ -67,7 +67,8 @@ def _frames(lines: list[tuple[str, str]], rows: str = "ATOMS") -> list[dict[str,
         heading = line[len("ITEM:") :].strip()
         name = max((name for name in known if f"{heading} ".startswith(f"{name} ")), key=len, default=None)
         if name is None:
-            raise FormatError(f"ITEM: {shown(heading)[1:-1]}: is no item of a dump of {rows.lower()}", place)
+            local = ", but of contacts, which packing.springs takes" if heading == "NUMBER OF ENTRIES" else ""
+            raise FormatError(f"ITEM: {shown(heading)[1:-1]}: is no item of a dump of {rows.lower()}{local}", place)
         frame = frames[-1]
         # units and time stand above the number of the step, which begins a frame
         if rows in frame and "BOX BOUNDS" in frame and name in ("UNITS", "TIME", "TIMESTEP"):
@@ -164,7 +165,7 @@ def read(path: Path) -> Table:
                 values = column(names.index(name))
                 found[name] = low + size * values if scaled else values
         if not found:
-            raise FormatError(f"column {_AXES[axis]} is missing", heading)
+            raise FormatError(f"column {_AXES[axis]} is missing; there are {listed(names)}", heading)
         (first, values), *others = found.items()
         for name, other in others:
             agree((first, name), values, other, places, size if flags[axis : axis + 1] == ["pp"] else 0.0)
@@ -179,7 +180,7 @@ def read(path: Path) -> Table:
 
     sizes = {name: values for name in ("radius", "diameter") if (values := quantity(name)) is not None}
     if not sizes:
-        raise FormatError("column radius or diameter is missing", heading)
+        raise FormatError(f"column radius or diameter is missing; there are {listed(names)}", heading)
     radius = radii(sizes, places)
     mass, density = quantity("mass", "rmass"), quantity("density")
     if mass is not None and density is not None:

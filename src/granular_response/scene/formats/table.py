@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import GranularError
-from ...inputs import read_text
+from ...inputs import read_bytes
 from ...state import FloatArray
+from .content import foreign
 
 
 class FormatError(GranularError, ValueError):
@@ -60,6 +61,7 @@ class Table:
     ids: Sequence[int] | None = None  #: (n,) by which other files call the disks
     frame: str = ""  #: which frame of its file this is, such as "3 of 3, time step 200", where the format has frames
     unit: str = ""  #: of its lengths, such as mm, where the file says it
+    notes: Sequence[str] = ()  #: what was taken where the file may mean something else
 
 
 @dataclass(frozen=True)
@@ -134,9 +136,13 @@ class Once:
 def lines_of(path: Path) -> tuple[list[tuple[str, str]], bool]:
     """The lines of a text file, each after its place, and whether the last one has an end. OSError, UnicodeError.
 
-    Raises FormatError for what ends lines or pages elsewhere: in a comment it would take the row after it along.
+    Raises FormatError for a file of another kind, and for what ends lines or pages elsewhere: in a comment it would
+    take the row after it along.
     """
-    text = read_text(path).replace("\r\n", "\n").replace("\r", "\n")
+    data = read_bytes(path)
+    if said := foreign(data):
+        raise FormatError(said)
+    text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     found = text.split("\n")[: -1 if text.endswith("\n") else None]
     lines = [(f"line {k}", line) for k, line in enumerate(found, start=1)]
     for place, line in lines:
@@ -166,6 +172,11 @@ def shown(text: str) -> str:
     """What stands in a cell, quoted and cut."""
     text = text.strip()
     return repr(text if len(text) <= 24 else text[:21] + "...")
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first names of a header."""
+    return ", ".join(shown(name)[1:-1] for name in names[:12]) + (", ..." if len(names) > 12 else "")
 
 
 def numbers(cells: Sequence[str], names: Sequence[str], place: str) -> list[float]:

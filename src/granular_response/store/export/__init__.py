@@ -12,6 +12,7 @@ Units are those of the result: mean disk radius, mean disk mass, g.
 from __future__ import annotations
 
 import os
+import re
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -49,6 +50,12 @@ _WRITERS: dict[str, tuple[Writer, str]] = {
 _READ = {suffix for suffixes in formats.SUFFIXES.values() for suffix in suffixes}
 #: Those that take what ``gr.motion`` returns, which has no contacts.
 _OF_MOTION = (lammps.script, text.csv_table, text.lammps_data, text.yade)
+#: What the name of a file may be that stands in its own text: as a word of LAMMPS, where quotes do not help against
+#: ``*``, ``%`` and ``&``, and as an attribute of XML.
+_NAMES = {
+    ".lammps": (re.compile(r"[A-Za-z0-9._+=@,~-]+"), "letters a to z, digits and . _ + = @ , ~ -"),
+    ".pvd": (re.compile(r"[^\x00-\x1f\x7f\ufffe\uffff]+"), "letters without line ends and other control characters"),
+}
 #: By which masses may differ from those of one material, relatively.
 _SAME_MASS = 1e-9
 #: What a file name may end with.
@@ -58,6 +65,9 @@ SUFFIXES = tuple(sorted(_WRITERS))
 class ExportError(GranularError):
     """A result that cannot be exported. The message is one line."""
 
+    def __init__(self, message: str) -> None:
+        super().__init__(" ".join(message.split()))
+
 
 def export(result: Any, output: str | os.PathLike[str], *, state: int | None = None) -> Path:
     """Write a result, its file or dataset, or a motion, as a file for another program; returns its path.
@@ -66,8 +76,9 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
     to write, or of the time of a motion; if None all, or the last one in a file of one state. Of a motion there are
     disks for LAMMPS with their velocities (``.data``, and ``in.lammps`` with a script), and ``.csv``.
 
-    Raises ExportError for what is none of these, another ending, a state that does not exist or of a series of all, or
-    a missing library, StoreError if the result cannot be read, ResultError if it is none.
+    Raises ExportError for what is none of these, another ending, a name that cannot stand in a script, a state that
+    does not exist or of a series of all, or a missing library, StoreError if the result cannot be read, ResultError if
+    it is none.
 
     Warns (UserWarning) of what a format that can be read again as a packing does not carry: masses, and the tangential
     springs of contacts, from which friction goes on.
@@ -84,6 +95,9 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
     if ending not in _WRITERS:
         raise ExportError(f"{output}: format {ending!r} is unknown, must be {' or '.join(SUFFIXES)}")
     writer, states = _WRITERS[ending]
+    pattern, letters = _NAMES.get(ending, (None, ""))
+    if pattern and not pattern.fullmatch(output.name):
+        raise ExportError(f"{output}: must have a name of {letters}, for it stands in the file")
     if states == "every" and state is not None:
         rule = "is a series of all states, must be left out (.vtu holds one state)"
         raise ExportError(f"state = {state}: {output} {rule}")

@@ -8,12 +8,12 @@ periodic sides may stand beyond them); the log entries
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+from .. import atomic
 from .frames import extent, frames, in_plane
 
 
@@ -21,8 +21,8 @@ def files(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path
     """The file as bytes, of all states or the one with the index ``only``."""
     import gsd.hoomd
 
-    with tempfile.TemporaryDirectory() as folder:  # the library writes to disk only
-        made = Path(folder, "export.gsd")
+    with atomic.scratch() as folder:  # the library writes to disk only
+        made = folder / "export.gsd"
         with gsd.hoomd.open(str(made), "w") as file:
             width, height = extent(dataset)
             for index, state, force_change in frames(dataset, only):

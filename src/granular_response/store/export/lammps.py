@@ -20,7 +20,7 @@ from ...contact import Hertz, Law, Linear
 from ...contact.rolling import Rolling
 from ...errors import GranularError
 from ...scene import Packing
-from ...scene.formats.lammps_dump import WALL_FIXES
+from ...scene.names import WALL_FIXES
 from ...solvers.problem import Problem
 from ...solvers.timestep import resolve_time_step
 from ...state import Box, FloatArray, State, wall_normals
