@@ -9,6 +9,7 @@ import os
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Executor
 from types import MappingProxyType
 from typing import Any
 
@@ -23,9 +24,9 @@ from ..scene.given import plain, unordered
 from ..solvers.solution import Solution, checked_problem, load_programme, solve_scene
 from ..store.files import CHARACTERS, TEXT
 from ..store.result import COORDINATES
-from ..sweeps.errors import SweepError
-from ..sweeps.memory import Memory
-from ..sweeps.resources import current, using
+from ..sweeps.errors import SweepError, interrupted
+from ..sweeps.memory import MISSING, Memory
+from ..sweeps.resources import KEPT, current, using
 from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described
 from .terminal import shown
@@ -61,7 +62,7 @@ def sweep(
     *,
     load_factors: Sequence[float] | None = None,
     workers: int | None = None,
-    scheduler: str | None = None,
+    executor: Executor | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     progress: Progress | bool = True,
 ) -> xr.Dataset:
@@ -78,9 +79,14 @@ def sweep(
         a mapping of names to numbers, arrays and ``DataArray``. A function of a notebook or a lambda will do.
     load_factors : multipliers of the scene's loads at which states are kept; those of the scene if left out.
     workers : local processes; all cores if left out, this process if 1.
-    scheduler : address of a Dask scheduler; ``DASK_SCHEDULER_ADDRESS`` is asked if left out.
+    executor : a ``concurrent.futures.Executor`` in place of local processes, as of :func:`map_tasks`.
     checkpoint : folder that keeps each solution, so that an interrupted sweep continues, and another ``measure`` takes
-        what was solved. Workers of a Dask cluster keep their own there, so it is one that all reach.
+        what was solved. **It must be a folder of your own**, and one that all workers reach. A solution is taken if the
+        scene, the files that it names (disks, springs), this package, the installed numba, numpy, scipy and xarray, and
+        the modules of a law or packing of your own, with all of your own that they import, are the same. Files that
+        such a law or packing opens by itself, unless a property ``files`` of the packing lists them, and environment
+        variables are not known. Reading a solution runs no code of the file; files of another owner, and damaged ones,
+        are computed again.
     progress : a line on the terminal, or in a notebook; False for none, or a function that is called as
         ``progress(done, total, what)``.
 
@@ -120,9 +126,16 @@ def sweep(
     for each in scenes:
         checked_problem(each)
     folder = checkpoint or current().checkpoint
-    task = functools.partial(_measured, measure=measure, memory=Memory(folder) if folder else None)
+    memory = Memory(folder, states=True) if folder else None
+    kept = sum(memory.has(memory.name(_solved, one)) for one in scenes) if memory else 0
+    task = functools.partial(_measured, measure=measure, memory=memory)
     with using(checkpoint=None), shown(progress) as report:
-        found = map_tasks(task, scenes, workers=workers, scheduler=scheduler, progress=report, what="scenes")
+        if kept and report:
+            report(kept, len(scenes), KEPT)
+        try:
+            found = map_tasks(task, scenes, workers=workers, executor=executor, progress=report, what="scenes")
+        except KeyboardInterrupt as error:
+            raise (interrupted(f"{error}, solutions are kept in {folder}") if memory else error) from None
     remarks = Counter(remark for _, remarks in found for remark in remarks)
     for remark, count in remarks.items():
         warnings.warn(f"{count} of {len(found)} combinations: {remark}", stacklevel=2)
@@ -136,7 +149,7 @@ def preparations(
     *,
     load_factors: Sequence[float] | None = None,
     workers: int | None = None,
-    scheduler: str | None = None,
+    executor: Executor | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     progress: Progress | bool = True,
 ) -> xr.Dataset:
@@ -149,7 +162,7 @@ def preparations(
     ways : by name, a ``Preparation`` or a mapping of keys that differ from that of the scene. If left out: gravity at
         once (the paper's), ramped over 20, 100 and 500 sqrt(R/g), a start without friction, and ten taps of 0.5 g after
         slow gravity.
-    scene, measure, load_factors, workers, scheduler, checkpoint, progress : as of :func:`sweep`.
+    scene, measure, load_factors, workers, executor, checkpoint, progress : as of :func:`sweep`.
 
     Returns
     -------
@@ -180,7 +193,7 @@ def preparations(
         if (first := chosen.index(chosen[-1])) < len(chosen) - 1:
             twin = list(ways)[first]
             raise SceneError(f"ways[{name!r}]: is the same as {twin!r}; keys that are left out are those of the scene")
-    options: dict[str, Any] = {"load_factors": load_factors, "workers": workers, "scheduler": scheduler}
+    options: dict[str, Any] = {"load_factors": load_factors, "workers": workers, "executor": executor}
     noted = functools.partial(_noted, measure=measure)
     found = sweep(base, {"preparation": chosen}, noted, checkpoint=checkpoint, progress=progress, **options)
     found = found.assign_coords(preparation=("preparation", list(ways), found["preparation"].attrs))
@@ -248,7 +261,18 @@ def _measured(
     scene: Scene, *, measure: Callable[[Result], Any], memory: Memory | None
 ) -> tuple[xr.Dataset | str, list[str]]:
     """What is measured on a scene, or why it has no equilibrium, and the remarks on the solution."""
-    solved = memory.result(_solved, scene) if memory else _solved(scene)
+    name = memory.name(_solved, scene) if memory else None
+    kept = memory.load(name) if memory else MISSING
+    if isinstance(kept, tuple):  # states: the rest of a solution is made from the scene
+        rest, *loaded = kept
+        solved: Solution | str = Solution(scene, checked_problem(scene).with_loads(rest.position), rest, tuple(loaded))
+    elif isinstance(kept, str):
+        solved = kept
+    else:
+        solved = _solved(scene)
+        if memory:
+            made = solved if isinstance(solved, str) else (solved.rest, *solved.loaded)
+            memory.save_result(name, made, _solved, scene)
     if isinstance(solved, str):
         return solved, []
     return as_dataset(measure(Result(solved))), solved.remarks
