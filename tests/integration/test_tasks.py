@@ -12,7 +12,6 @@ import sys
 import threading
 import time
 import warnings
-from multiprocessing import forkserver
 from operator import call
 from pathlib import Path
 
@@ -22,7 +21,7 @@ from commands import python
 from refusals import refuses
 
 from granular_response.scene import Contact, Scene, Wall
-from granular_response.sweeps import keys, tasks
+from granular_response.sweeps import keys
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.memory import MemoryWarning
 from granular_response.sweeps.resources import using
@@ -290,21 +289,19 @@ def test_an_error_beside_an_interruption_is_shown_as_ever(tmp_path):
 def test_the_process_that_forks_workers_may_be_killed_as_it_begins(monkeypatch, times):
     """The first time another one takes its place; then it is one line."""
     killed = []
-    begin = tasks._start_forkserver
+    submit = concurrent.futures.ProcessPoolExecutor.submit
 
-    def begin_and_kill():
-        begin()
+    def cut(pool, *task):
         if len(killed) < times:
-            pid = forkserver._forkserver._forkserver_pid
-            os.kill(pid, signal.SIGKILL)
-            os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
-            killed.append(pid)
+            killed.append(task)
+            raise EOFError("unexpected EOF")  # what multiprocessing says of it
+        return submit(pool, *task)
 
-    monkeypatch.setattr(tasks, "_start_forkserver", begin_and_kill)
+    monkeypatch.setattr(concurrent.futures.ProcessPoolExecutor, "submit", cut)
     if times == 1:
         assert map_tasks(slow_first, range(3), workers=2) == [0, 1, 2]
     else:
-        said = r"worker processes end before they begin \(\w+Error.*\): they were killed; or a script has its calls"
+        said = r"worker processes end before they begin \(EOFError: unexpected EOF\): they were killed; or a script has"
         refuses(SweepError, said, map_tasks, slow_first, range(3), workers=2)
     assert len(killed) == times
 
@@ -389,6 +386,110 @@ def test_a_named_package_counts_with_all_of_its_modules(tmp_path, monkeypatch):
         monkeypatch.delitem(sys.modules, name)
 
 
+HELPED = {
+    "top": ("import helper\ndef task(x): return helper.FACTOR * x\n", "helper.py"),
+    "inside": ("def task(x):\n    import helper\n    return helper.FACTOR * x\n", "helper.py"),
+    "further": ("import between\ndef task(x): return between.helper.FACTOR * x\n", "helper.py"),
+    "by name": (
+        "import importlib\ndef task(x): return importlib.import_module('helper').FACTOR * x\n", "helper.py",
+    ),
+    "package": ("import mine.deep.helper\ndef task(x): return mine.deep.helper.FACTOR * x\n", "mine/deep/helper.py"),
+    "its top": ("import mine.deep.other\ndef task(x): return mine.FACTOR * x\n", "mine/__init__.py"),
+    "without a top": ("from space import helper\ndef task(x): return helper.FACTOR * x\n", "space/helper.py"),
+    "relative": ("from mine.deep.other import task\n", "mine/deep/helper.py"),
+    "all of it": ("from helper import *\ndef task(x): return FACTOR * x\n", "helper.py"),
+}  # fmt: skip
+ASKED = """
+import sys
+import granular_response as gr
+import tasks_of_mine as mine
+print(gr.map_tasks(mine.task, [1, 2, 3], workers=1, checkpoint="kept"))
+"""
+
+
+@pytest.mark.parametrize("where", HELPED)
+def test_a_module_that_a_task_imports_counts_wherever_it_is_imported(tmp_path, where):
+    code, helper = HELPED[where]
+    files = {
+        "helper.py": "FACTOR = 2\n", "between.py": "import helper\n", "space/helper.py": "FACTOR = 2\n",
+        "mine/__init__.py": "FACTOR = 2\n", "mine/deep/__init__.py": "", "mine/deep/helper.py": "FACTOR = 2\n",
+        "mine/deep/other.py": "from . import helper\ndef task(x): return helper.FACTOR * x\n",
+        "tasks_of_mine.py": code, "unrelated.py": "", "run.py": ASKED,
+    }  # fmt: skip
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+
+    def asked():
+        return python("run.py", folder=tmp_path), len(list((tmp_path / "kept").rglob("*.kept")))
+
+    assert asked() == asked() == ("[2, 4, 6]\n", 3)
+    (tmp_path / "unrelated.py").write_text("# another\n")
+    (tmp_path / "run.py").write_text(f"{ASKED}# another\n")
+    assert asked() == ("[2, 4, 6]\n", 3)
+    (tmp_path / helper).write_text("FACTOR = 3\n")
+    assert asked() == ("[3, 6, 9]\n", 6)
+
+
+def test_a_file_in_an_item_counts_by_what_it_holds(tmp_path):
+    (tmp_path / "a.txt").write_text("1")
+    for text in ("1", "2"):
+        (tmp_path / "a.txt").write_text(text)
+        kept = {"workers": 1, "checkpoint": tmp_path / "kept"}
+        assert map_tasks(Path.read_text, [tmp_path / "a.txt", tmp_path / "a.txt"], **kept) == [text, text]
+
+
+def rewritten(path):
+    path.write_text(path.read_text() + "x")
+    return 1
+
+
+def test_a_result_whose_file_changed_while_it_was_made_is_not_kept(tmp_path):
+    (tmp_path / "a.txt").write_text("1")
+    with pytest.warns(MemoryWarning, match="a file that a task reads changed while it ran, so its result is not kept"):
+        map_tasks(rewritten, [tmp_path / "a.txt"], workers=1, checkpoint=tmp_path / "kept")
+    assert not (tmp_path / "kept").exists()
+
+
+@pytest.mark.parametrize("part", ["", "shelf", "file"])
+def test_what_somebody_else_owns_is_not_read(tmp_path, monkeypatch, part):
+    kept, marks = tmp_path / "kept", tmp_path / "marks"
+    marks.mkdir()
+    task = functools.partial(note, folder=marks)
+    map_tasks(task, range(2), workers=1, checkpoint=kept)
+    (shelf,) = kept.iterdir()
+    theirs = {"": [kept], "shelf": [shelf], "file": list(shelf.iterdir())}[part]
+    usual = Path.stat
+
+    def stat(path, **options):
+        found = usual(path, **options)
+        return os.stat_result((*found[:4], found.st_uid + (path in theirs), *found[5:]))
+
+    monkeypatch.setattr(Path, "stat", stat)
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("default")
+        map_tasks(task, range(2), workers=1, checkpoint=kept)
+    assert [len(starts(marks, item)) for item in range(2)] == [2, 2]
+    (said,) = heard
+    assert re.search(r"kept: what another user owns is not read \(user \d+, this is \d+\)$", str(said.message))
+
+
+@pytest.mark.parametrize("damage", [lambda data: data[:-1], lambda data: b"", lambda data: b"x" + data[1:]])
+def test_damaged_results_are_computed_again_and_that_is_said_once(tmp_path, damage):
+    kept, marks = tmp_path / "kept", tmp_path / "marks"
+    marks.mkdir()
+    task = functools.partial(note, folder=marks)
+    expected = map_tasks(task, range(2), workers=1, checkpoint=kept)
+    for path in kept.rglob("*.kept"):
+        path.write_bytes(damage(path.read_bytes()))
+    for k, said in enumerate([["damaged results are computed again"], []]):
+        with warnings.catch_warnings(record=True) as heard:
+            warnings.simplefilter("default")
+            assert map_tasks(task, range(2), workers=1, checkpoint=kept) == expected
+        assert [str(one.message) for one in heard] == [f"{kept}: {one}" for one in said], k
+        assert [len(starts(marks, item)) for item in range(2)] == [2, 2]
+
+
 def test_another_function_or_item_finds_nothing(tmp_path):
     marks = tmp_path / "marks"
     marks.mkdir()
@@ -458,6 +559,7 @@ def warn(item):
 
 
 def test_what_workers_warn_of_is_said(elsewhere):
-    with pytest.warns(UserWarning, match="^only once$") as heard:
-        map_tasks(warn, ["only once"] * 3, **elsewhere)
-    assert len(heard) == 1
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("default")
+        map_tasks(warn, [f"said {elsewhere}"] * 3, **elsewhere)  # another text in each place
+    assert [str(one.message) for one in heard] == [f"said {elsewhere}"]

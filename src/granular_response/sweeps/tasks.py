@@ -95,7 +95,7 @@ def map_tasks(
     what : what the tasks are, for the progress line.
 
     Raises SweepError for a set of items, which has no order; if a task raises or its worker dies (the message names its
-    item), and if something cannot be sent to a worker or back. Raises KeyboardInterrupt, with what is done, if interrupted.
+    item), and if something cannot be sent to a worker or back. KeyboardInterrupt says how much was done.
 
     Examples
     --------
