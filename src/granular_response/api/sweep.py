@@ -363,7 +363,7 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
     objects = {name: one for name, one in gridded.variables.items() if one.dtype.kind == "O"}
     gridded = gridded.assign({name: one.copy(data=_without_objects(one.values)) for name, one in objects.items()})
     if "load" in bare:
-        along = {"long_name": "step of the load programme"}
+        along = next((one["step"].attrs for one in results if "step" in one.coords), {})
         gridded = gridded.assign_coords(step=("load", np.arange(1, gridded.sizes["load"] + 1), along))
     gridded = gridded.assign_coords(
         {name: (name, _coordinate(values[key]), {"key": key}) for key, name in names.items()}
