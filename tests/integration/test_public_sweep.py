@@ -424,7 +424,7 @@ def test_the_scripts_for_a_cluster_run_as_they_stand(tmp_path):
     alone, logs = run(commands[0])
     assert alone["response_below"].sizes == {"friction": 2, "realization": 4} and "kept" not in logs
     shutil.rmtree(tmp_path / "kept")
-    whole, logs = run("array=$(sbatch --parsable array.sh)", commands[2])
+    whole, logs = run(*commands[1:3])
     assert [line for line in logs.splitlines() if line.endswith("kept")] == ["8 of 8 kept"]
     xr.testing.assert_identical(whole, alone)
     pytest.importorskip("distributed")

@@ -363,8 +363,8 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
     objects = {name: one for name, one in gridded.variables.items() if one.dtype.kind == "O"}
     gridded = gridded.assign({name: one.copy(data=_without_objects(one.values)) for name, one in objects.items()})
     if "load" in bare:
-        along = next((one["step"].attrs for one in results if "step" in one.coords), {})
-        gridded = gridded.assign_coords(step=("load", np.arange(1, gridded.sizes["load"] + 1), along))
+        said = next((one["step"].attrs for one in results if "step" in one.coords), {})
+        gridded = gridded.assign_coords(step=("load", np.arange(1, gridded.sizes["load"] + 1), said))
     gridded = gridded.assign_coords(
         {name: (name, _coordinate(values[key]), {"key": key}) for key, name in names.items()}
     )
@@ -395,7 +395,7 @@ def _labelled_alike(results: Sequence[xr.Dataset]) -> tuple[list[xr.Dataset], se
     plain, bare = [one.reset_index([name for name in one.xindexes if name not in one.dims]) for one in results], set()
     for dim in {dim for one in plain for dim in one.dims}:
         labels = [one.get_index(dim) if dim in one.coords else one.sizes.get(dim) for one in plain]
-        if all(np.array_equal(one, labels[0]) for one in labels):
+        if all(np.array_equal(np.asarray(one), np.asarray(labels[0])) for one in labels):
             continue
         if dim in _KEPT_AS or not any(dim in one.coords for one in plain):
             bare.add(dim)
