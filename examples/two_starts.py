@@ -3,8 +3,8 @@
     python examples/two_starts.py --polydispersity 0.01 --realizations 20
 
 Slabs without friction settle from a lattice of two mean radii, on which large disks overlap, or from one on which the
-largest just touch. Then a force of 15 mg acts. Tasks run on all cores of this machine, or on a Dask cluster if
---scheduler or DASK_SCHEDULER_ADDRESS names one. With --checkpoint an interrupted sweep continues.
+largest just touch. Then a force of 15 mg acts. Tasks run on all cores of this machine. With --checkpoint an
+interrupted sweep continues.
 """
 
 import argparse
@@ -76,14 +76,12 @@ def main() -> None:
     parser.add_argument("--polydispersity", type=float, default=0.01)
     parser.add_argument("--realizations", type=int, default=20)
     parser.add_argument("--workers", type=int)
-    parser.add_argument("--scheduler")
     parser.add_argument("--checkpoint")
     options = parser.parse_args()
     table = compare(
         scene(options.polydispersity),
         options.realizations,
         workers=options.workers,
-        scheduler=options.scheduler,
         checkpoint=options.checkpoint,
     )
     for start, row in table.items():

@@ -3,7 +3,7 @@
 A block is one of ``params.yaml``, or a figure group with packings that ``../extensions/params.yaml`` leaves to the
 survey.
 
-``DASK_SCHEDULER_ADDRESS`` sends the tasks to a Dask cluster. What is finished is kept in ``.realizations.checkpoint``.
+``--scheduler`` sends the tasks to a Dask cluster. What is finished is kept in ``.realizations.checkpoint``.
 """
 
 from __future__ import annotations
@@ -21,18 +21,24 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("blocks", nargs="*", metavar="BLOCK")
     parser.add_argument("--workers", type=int, help="processes; all cores if not given")
+    parser.add_argument("--scheduler", help="address of a Dask scheduler, whose workers run the tasks")
     parser.add_argument("--realizations", type=int, help="at most so many of each case of an ensemble")
     given = parser.parse_args()
     floating_point.pin()
     from granular_response.scene import SceneError
     from granular_response.store.files import StoreError
     from granular_response.sweeps.errors import SweepError
+    from granular_response.sweeps.resources import using
     from granular_response_extensions.surveyed import block as packings
     from granular_response_extensions.surveyed import surveyed_groups
     from granular_response_paper.registry import GroupError
     from granular_response_paper.survey.simulate import SurveyError, ensemble, read_parameters, run
 
-    own = HERE / "params.yaml"
+    own, executor = HERE / "params.yaml", None
+    if given.scheduler:
+        from distributed import Client
+
+        executor = Client(given.scheduler).get_executor()
     try:
         groups = surveyed_groups()
         for name in given.blocks or [*read_parameters(own).blocks, *groups]:
@@ -40,7 +46,8 @@ def main() -> None:
                 block = packings(name, HERE.parent / "extensions" / "params.yaml")
             else:
                 block = ensemble(name, own, given.realizations)
-            print(f"\n{run(block, HERE, workers=given.workers, progress=progress)}")
+            with using(executor=executor):
+                print(f"\n{run(block, HERE, workers=given.workers, progress=progress)}")
     except (GroupError, SceneError, StoreError, SurveyError, SweepError) as error:
         sys.exit(f"error: {error}")
 

@@ -3,7 +3,7 @@ An ensemble on Dask
 ===================
 
 Realizations of a disordered packing are solved on a Dask cluster. The picture shows the mean floor response with its
-standard error. The cluster is started here, on this machine; give the address of another cluster to use that one.
+standard error. The cluster is started here, on this machine; ``Client(address).get_executor()`` is that of another one.
 """
 
 import matplotlib.pyplot as plt
@@ -37,7 +37,7 @@ def smoothed(result: gr.Result) -> xr.DataArray:
 if __name__ == "__main__":  # the processes of the cluster read this file, too
     with LocalCluster(n_workers=WORKERS, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster:
         keys = {"packing.realization": range(REALIZATIONS)}
-        found = gr.sweep(scene, keys, smoothed, scheduler=cluster.scheduler_address, progress=False)
+        found = gr.sweep(scene, keys, smoothed, executor=cluster.get_client().get_executor(), progress=False)
     response = found["response"]
     mean = response.mean("realization")
     error = response.std("realization", ddof=1) / REALIZATIONS**0.5

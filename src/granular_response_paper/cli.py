@@ -43,7 +43,6 @@ GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; dat
 @commands.command(
     "simulate frictionless_crossover",
     "simulate polydisperse_averages --workers 8",
-    "simulate phase_diagram --scheduler tcp://10.0.0.5:8786",
     "simulate pile_dip --params other.yaml -o other.nc",
 )
 def simulate(
@@ -51,9 +50,6 @@ def simulate(
     workers: Annotated[
         int | None,
         typer.Option(min=1, envvar="GRANULAR_RESPONSE_WORKERS", help="Local processes; all cores if not given."),
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Address of a running Dask scheduler, in place of local processes.")
     ] = None,
     params: Annotated[Path, typer.Option(help="Parameter file with the sections common and GROUP.")] = Path(
         "params.yaml"
@@ -75,9 +71,7 @@ def simulate(
         )
     try:
         with TerminalProgress() as progress:
-            path = simulation.simulate(
-                group, output, parameter_file=params, workers=workers, scheduler=scheduler, progress=progress
-            )
+            path = simulation.simulate(group, output, parameter_file=params, workers=workers, progress=progress)
     except KeyboardInterrupt:
         if count := simulation.finished(group, output):
             raise KeyboardInterrupt(f"{count} finished tasks are kept and are not run again") from None

@@ -1,6 +1,15 @@
 """Sweeps and events by the public namespace alone."""
 
+import contextlib
+import io
+import json
+import os
+import pickletools
 import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,9 +17,11 @@ import xarray as xr
 from commands import python
 from places import ROOT
 from refusals import refuses
+from rich.console import Console
 
 import granular_response as gr
 from granular_response.api import sweep as sweeping
+from granular_response.api import terminal
 from granular_response.scene import SceneError
 from granular_response.studies import EventNotBracketed
 from granular_response.sweeps.errors import SweepError
@@ -216,11 +227,27 @@ def test_a_sweep_continues_from_its_checkpoint(tmp_path, monkeypatch):
     kept = {"workers": 1, "checkpoint": tmp_path / "kept"}
     one = gr.sweep(SCENE, {"contact.friction": [0.0]}, largest, progress=count, **kept)
     two = gr.sweep(SCENE, {"contact.friction": [0.0, 0.1]}, largest, progress=count, **kept)
-    assert calls == [(0, 1, "scenes"), (1, 1, "scenes"), (0, 2, "scenes"), (1, 2, "scenes"), (2, 2, "scenes")]
+    counts = [(0, 1, "scenes"), (1, 1, "scenes"), (1, 2, "kept"), (0, 2, "scenes"), (1, 2, "scenes"), (2, 2, "scenes")]
+    assert calls == counts
     assert one["floor_response"][0] == two["floor_response"][0]
     monkeypatch.setattr(sweeping, "solve_scene", None)  # another measure takes what was solved
     whole = gr.sweep(SCENE, {"contact.friction": [0.0, 0.1]}, lambda result: result.to_dataset(), **kept)
     np.testing.assert_array_equal(whole["floor_response"].max(["load", "floor_disk"]), two["floor_response"])
+
+
+def test_what_is_kept_is_what_was_computed_and_reading_it_runs_no_code(tmp_path):
+    """To the last bit, the solution itself: another measure may sum over it in its own order."""
+    changes = {"loads.0.force": [0.3, -6.0], "contact.friction": 0.4, "packing.realization": 1}
+    scene = DISORDERED.updated({**changes, "protocol.load_factors": [0.5, 1.0]})
+
+    whole = {"measure": lambda result: result.to_dataset(), "workers": 1, "checkpoint": tmp_path / "kept"}
+    axes = {"packing.layers": [4]}
+    first = gr.sweep(scene, axes, progress=False, **whole)
+    for path in (tmp_path / "kept").rglob("*.kept"):
+        named = {text for _, text, _ in pickletools.genops(path.read_bytes()[:-32]) if isinstance(text, str)}
+        assert not any("Problem" in one or "pydantic" in one for one in named)
+    again = gr.sweep(scene, axes, progress=False, **whole)
+    xr.testing.assert_identical(first, again)
 
 
 def opened(result):
@@ -297,3 +324,110 @@ def test_packings_of_ones_own_are_told_apart():
     assert gr.sweep(gr.Scene(), {"packing": [near, far]}, workers=1, progress=False).sizes["packing"] == 2
     with pytest.raises(ValueError, match=r"packing has .* twice"):
         gr.sweep(gr.Scene(), {"packing": [near, near.model_copy()]}, workers=1)
+
+
+def peak(result):
+    return result.floor_response.max()
+
+
+def test_a_sweep_says_what_it_was_made_from(tmp_path):
+    axes = {"packing.realization": range(2), "preparation": [{"gravity": "at-once"}, gr.Preparation(gravity="slow")]}
+    found = gr.sweep(DISORDERED, axes, peak, load_factors=[0.5, 1.0], workers=1, progress=False)
+    found.to_netcdf(tmp_path / "sweep.nc")
+    with xr.open_dataset(tmp_path / "sweep.nc") as stored:
+        told = stored.attrs
+    assert told == found.attrs
+    assert gr.Scene.from_text(told["scene"]) == DISORDERED.updated({"protocol.load_factors": [0.5, 1.0]})
+    assert json.loads(told["axes"])["packing.realization"] == [0, 1]
+    assert json.loads(told["axes"])["preparation"][1]["gravity"] == "slow"
+    assert json.loads(told["load_factors"]) == [0.5, 1.0]
+    assert told["measure"] == f"{__name__}.peak" and told["package_version"] == gr.__version__
+    assert json.loads(told["versions"]).keys() == {"python", "numba", "numpy", "scipy", "xarray"}
+    ways = {"one": {}, "other": {"gravity": "frictionless"}}
+    of_ways = gr.preparations(SCENE, ways, workers=1, progress=False).attrs
+    assert of_ways["measure"] == "granular_response.api.sweep.floor_response"
+    assert json.loads(of_ways["axes"])["preparation"][1]["gravity"] == "frictionless"
+
+
+def test_a_log_file_gets_a_line_a_minute_and_what_is_kept_at_once(monkeypatch):
+    now = [1000.0]
+    monkeypatch.setattr(terminal.time, "monotonic", lambda: now[0])
+    log = io.StringIO()
+    with terminal.TerminalProgress(Console(file=log)) as progress:
+        progress(206, 400, "kept")
+        assert log.getvalue() == "206 of 400 kept\n"
+        for done in range(206, 401):
+            progress(done, 400, "scenes")
+            now[0] += 1.0
+    assert log.getvalue().splitlines()[1:] == [f"scenes: {206 + k} of 400, {k} s" for k in (60, 120, 180)]
+
+
+CLUSTER = ROOT / "examples" / "cluster"
+#: What takes the place of SLURM: jobs run at once, each part of an array, and write the file that a job would.
+SBATCH = """\
+#!/bin/bash
+set -e
+for script; do :; done
+tasks=$(sed -n 's/^#SBATCH --array=0-//p' "$script")
+export SLURM_JOB_ID=$((1 + $(ls slurm-*.out 2>/dev/null | wc -l)))
+for k in $(seq 0 "${tasks:-0}"); do
+    [ -z "$tasks" ] || export SLURM_ARRAY_TASK_ID=$k SLURM_ARRAY_TASK_COUNT=$((tasks + 1))
+    bash "$script" > "slurm-${SLURM_JOB_ID}_$k.out" 2>&1
+done
+echo "$SLURM_JOB_ID"
+"""
+
+
+def test_the_scripts_for_a_cluster_run_as_they_stand(tmp_path):
+    """Those of the page, in their order, with a smaller sweep and fewer parts."""
+    for path in CLUSTER.iterdir():
+        text = path.read_text()
+        for old, new in {
+            'layers": 10': 'layers": 3',
+            'row": 41': 'row": 7',
+            "range(200)": "range(4)",
+            "0-9": "0-1",
+        }.items():
+            text = text.replace(old, new)
+        (tmp_path / path.name).write_text(text)
+    programs = tmp_path / "bin"
+    programs.mkdir()
+    for name, text in {"sbatch": SBATCH, "srun": '#!/bin/bash\nexec "$@"\n'}.items():
+        (programs / name).write_text(text)
+        (programs / name).chmod(0o755)
+    page = (ROOT / "docs" / "many-scenes.md").read_text()
+    commands = [line.strip() for line in page.splitlines() if "sbatch" in line and line.startswith("    ")]
+    assert [re.search(r"\w+\.sh", line)[0] for line in commands] == [
+        "node.sh",
+        "array.sh",
+        "node.sh",
+        "mpi.sh",
+        "dask.sh",
+    ]
+    path = os.pathsep.join([str(programs), str(Path(sys.executable).parent), os.environ["PATH"]])
+
+    def run(*lines):
+        with contextlib.suppress(FileNotFoundError):
+            (tmp_path / "sweep.nc").unlink()
+        done = subprocess.run(
+            ["bash", "-ec", "\n".join(lines)],
+            cwd=tmp_path,
+            env={**os.environ, "PATH": path},
+            capture_output=True,
+            text=True,
+        )
+        logs = "".join(one.read_text() for one in sorted(tmp_path.glob("slurm-*.out")))
+        assert done.returncode == 0, done.stderr + logs
+        with xr.open_dataset(tmp_path / "sweep.nc") as found:
+            return found.load(), logs
+
+    alone, logs = run(commands[0])
+    assert alone["response_below"].sizes == {"friction": 2, "realization": 4} and "kept" not in logs
+    shutil.rmtree(tmp_path / "kept")
+    whole, logs = run(*commands[1:3])
+    assert [line for line in logs.splitlines() if line.endswith("kept")] == ["8 of 8 kept"]
+    xr.testing.assert_identical(whole, alone)
+    pytest.importorskip("distributed")
+    shutil.rmtree(tmp_path / "kept")
+    of_dask, _ = run(commands[4])
+    xr.testing.assert_identical(of_dask, alone)

@@ -1,4 +1,4 @@
-"""A study gives the same file wherever its sweeps run: by its command, with a real Dask cluster on this machine."""
+"""A study gives the same file wherever its sweeps run: by its command, and on a real Dask cluster on this machine."""
 
 import contextlib
 import io
@@ -10,6 +10,7 @@ import yaml
 
 from granular_response.store import files as store
 from granular_response.sweeps import tasks
+from granular_response.sweeps.resources import using
 from granular_response_paper import cli
 from granular_response_paper.pipeline import simulation
 
@@ -56,29 +57,19 @@ def expected(tmp_path_factory):
     return path.read_bytes()
 
 
-@pytest.fixture
-def only_dask(monkeypatch):
-    """No task runs here or in a process of ours."""
-
-    def refuse(*_):
-        raise AssertionError("not on the cluster")
-
-    monkeypatch.setattr(tasks, "_here", refuse)
-    monkeypatch.setattr(tasks, "over_processes", refuse)
-
-
-def command(monkeypatch, *arguments: str) -> bytes:
-    """The file that the command wrote."""
-    monkeypatch.setattr(sys, "argv", ["granular-response-paper", "simulate", GROUP, "-o", "here.nc", *arguments])
+def test_its_command_writes_the_same_bytes_with_workers(folder, expected, monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["", "simulate", GROUP, "-o", "here.nc", "--workers", "2"])
     with contextlib.redirect_stdout(io.StringIO()), pytest.raises(SystemExit) as ended:
         cli.main()
     assert ended.value.code == 0
-    return Path("here.nc").read_bytes()
+    assert Path("here.nc").read_bytes() == expected
 
 
-@pytest.mark.parametrize("by", ["command line", "environment"])
-def test_a_named_cluster_writes_the_same_bytes(folder, expected, cluster, only_dask, monkeypatch, by) -> None:
-    named = ["--scheduler", cluster.scheduler_address] if by == "command line" else []
-    if not named:
-        monkeypatch.setenv(tasks.SCHEDULER_VARIABLE, cluster.scheduler_address)
-    assert command(monkeypatch, *named) == expected
+def test_a_cluster_writes_the_same_bytes(folder, expected, cluster, monkeypatch):
+    sent = []
+    submitted = tasks._submitted
+    monkeypatch.setattr(tasks, "_submitted", lambda *given: (sent.append(given[0]), submitted(*given)))
+    with cluster.get_client() as client, using(executor=client.get_executor()) as resources:
+        simulation.simulate(GROUP, Path("here.nc"))
+        assert sent and set(sent) == {resources.executor}
+    assert Path("here.nc").read_bytes() == expected

@@ -1,9 +1,11 @@
 """One map: same results wherever it runs, nothing finished is lost, every failure names its task."""
 
+import concurrent.futures
+import contextlib
 import functools
 import importlib
-import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -19,7 +21,7 @@ from commands import python
 from refusals import refuses
 
 from granular_response.scene import Contact, Scene, Wall
-from granular_response.sweeps import executor, keys, processes
+from granular_response.sweeps import keys
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.memory import MemoryWarning
 from granular_response.sweeps.resources import using
@@ -60,21 +62,42 @@ def starts(folder, item):
 ITEMS = [(seed, 50 + seed) for seed in range(7)]
 
 
+class Refusing(concurrent.futures.Executor):
+    """Takes a few tasks, in threads of this process, and then no more."""
+
+    def __init__(self, most):
+        self.most, self.pool = most, concurrent.futures.ThreadPoolExecutor(1)
+
+    def submit(self, *task, **more):
+        if not self.most:
+            raise RuntimeError("cannot schedule new futures after shutdown")
+        self.most -= 1
+        return self.pool.submit(*task, **more)
+
+
+@contextlib.contextmanager
 def resources(place, request):
     """Where tasks run, as keyword arguments of ``map_tasks``."""
-    if place != "cluster":
-        return {"here": {"workers": 1}, "processes": {"workers": 2}, "anywhere": {}}[place]
-    return {"scheduler": request.getfixturevalue("cluster").scheduler_address}
+    if place == "cluster":
+        with request.getfixturevalue("cluster").get_client() as client:
+            yield {"executor": client.get_executor()}
+    elif place == "threads":
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            yield {"executor": pool}
+    else:
+        yield {"here": {"workers": 1}, "processes": {"workers": 2}, "anywhere": {}}[place]
 
 
-@pytest.fixture(params=["here", "processes", "anywhere", "cluster"])
+@pytest.fixture(params=["here", "processes", "anywhere", "threads", "cluster"])
 def everywhere(request):
-    return resources(request.param, request)
+    with resources(request.param, request) as given:
+        yield given
 
 
 @pytest.fixture(params=["processes", "cluster"])
 def elsewhere(request):
-    return resources(request.param, request)
+    with resources(request.param, request) as given:
+        yield given
 
 
 def test_results_are_the_same_everywhere(everywhere):
@@ -198,8 +221,8 @@ def test_a_killed_worker_loses_only_what_was_in_flight(tmp_path):
 
 def test_a_task_that_kills_every_worker_is_named(tmp_path):
     task = functools.partial(note, folder=tmp_path, die_at=3, always=True)
-    refuses(SweepError, r"task 4 of 6 \(3\) killed its worker process 3 times", map_tasks, task, range(6), workers=2)
-    assert len(starts(tmp_path, 3)) == processes.ATTEMPTS
+    refuses(SweepError, r"task 4 of 6 \(3\) killed its worker process twice", map_tasks, task, range(6), workers=2)
+    assert len(starts(tmp_path, 3)) == 2
 
 
 def test_an_interrupted_sweep_continues(tmp_path):
@@ -213,7 +236,7 @@ def test_an_interrupted_sweep_continues(tmp_path):
             raise KeyboardInterrupt
 
     task = functools.partial(note, folder=marks)
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt, match=r"^3 of 8 tasks are kept in "):
         map_tasks(task, range(8), workers=2, checkpoint=kept, progress=interrupt)
     finished = len(list(kept.rglob("*.kept")))
     assert finished == 3
@@ -221,7 +244,7 @@ def test_an_interrupted_sweep_continues(tmp_path):
     goes_on = {"workers": 2, "checkpoint": kept, "progress": lambda done, total, what: seen.append((done, what))}
     result = map_tasks(task, range(8), **goes_on)
     assert result == [item * item for item in range(8)]
-    assert seen == [(done, "tasks, 3 of 8 taken from the checkpoint") for done in range(3, 9)]
+    assert seen == [(3, "kept"), *((done, "tasks") for done in range(3, 9))]
     assert sum(len(starts(marks, item)) for item in range(8)) <= 8 + 2  # again: at most one per worker
 
 
@@ -230,25 +253,57 @@ import sys
 sys.path.insert(0, sys.argv[1])
 from test_tasks import map_tasks, slow_first
 if __name__ == "__main__":
-    print("begins", flush=True)
-    map_tasks(slow_first, [0] * 400, workers=4)
+    def progress(done, total, what):
+        print(done, flush=True)
+    map_tasks(slow_first, [0] * 400, workers=int(sys.argv[2]), progress=progress)
 """
 
 
-@pytest.mark.parametrize("seconds", [0.02, 0.3, 1.0])
-def test_a_terminal_that_interrupts_while_workers_begin_has_one_traceback(tmp_path, seconds):
-    """The signal goes to all processes of the terminal: those that are only just importing said so too."""
+@pytest.mark.parametrize(("workers", "done"), [(1, 2), (4, 0), (4, 3)])
+def test_a_terminal_that_interrupts_has_one_line(tmp_path, workers, done):
+    """The signal goes to all processes of the terminal, those that are only just importing too."""
     script = tmp_path / "script.py"
     script.write_text(INTERRUPTED)
     run = subprocess.Popen(
-        [sys.executable, script, Path(__file__).parent], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        [sys.executable, script, Path(__file__).parent, str(workers)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         text=True, start_new_session=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )  # fmt: skip
-    assert run.stdout.readline() == "begins\n"
-    time.sleep(seconds)
+    while int(run.stdout.readline()) < done:
+        pass
     os.killpg(run.pid, signal.SIGINT)
-    said = run.communicate(timeout=120)[1]
-    assert said.count("Traceback") == 1 and said.rstrip().endswith("KeyboardInterrupt"), said
+    said = run.communicate(timeout=300)[1].splitlines()
+    assert len(said) == 1 and re.fullmatch(r"interrupted; \d+ of 400 tasks are done", said[0]), said
+    assert run.returncode == -signal.SIGINT
+
+
+def test_an_error_beside_an_interruption_is_shown_as_ever(tmp_path):
+    (tmp_path / "script.py").write_text(
+        "from granular_response.sweeps.errors import interrupted\n"
+        "try:\n    raise interrupted('x')\nexcept KeyboardInterrupt:\n    pass\nraise ValueError('other')\n"
+    )
+    with pytest.raises(AssertionError, match=r"Traceback .*\n.*\n.*\nValueError: other"):
+        python(tmp_path / "script.py")
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_the_process_that_forks_workers_may_be_killed_as_it_begins(monkeypatch, times):
+    """The first time another one takes its place; then it is one line."""
+    killed = []
+    submit = concurrent.futures.ProcessPoolExecutor.submit
+
+    def cut(pool, *task):
+        if len(killed) < times:
+            killed.append(task)
+            raise EOFError("unexpected EOF")  # what multiprocessing says of it
+        return submit(pool, *task)
+
+    monkeypatch.setattr(concurrent.futures.ProcessPoolExecutor, "submit", cut)
+    if times == 1:
+        assert map_tasks(slow_first, range(3), workers=2) == [0, 1, 2]
+    else:
+        said = r"worker processes end before they begin \(EOFError: unexpected EOF\): they were killed; or a script has"
+        refuses(SweepError, said, map_tasks, slow_first, range(3), workers=2)
+    assert len(killed) == times
 
 
 KILLED = """
@@ -265,7 +320,7 @@ def test_a_killed_sweep_continues_and_leaves_no_workers(tmp_path):
     marks.mkdir()
     script.write_text(KILLED)
     run = subprocess.Popen([sys.executable, script, Path(__file__).parent, marks, kept])
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + 600
     workers: set[int] = set()
     while len(list(kept.rglob("*.kept"))) < 5 or len(workers) < 2:  # one that begins later would leave its mark later
         assert time.monotonic() < deadline
@@ -331,6 +386,110 @@ def test_a_named_package_counts_with_all_of_its_modules(tmp_path, monkeypatch):
         monkeypatch.delitem(sys.modules, name)
 
 
+HELPED = {
+    "top": ("import helper\ndef task(x): return helper.FACTOR * x\n", "helper.py"),
+    "inside": ("def task(x):\n    import helper\n    return helper.FACTOR * x\n", "helper.py"),
+    "further": ("import between\ndef task(x): return between.helper.FACTOR * x\n", "helper.py"),
+    "by name": (
+        "import importlib\ndef task(x): return importlib.import_module('helper').FACTOR * x\n", "helper.py",
+    ),
+    "package": ("import mine.deep.helper\ndef task(x): return mine.deep.helper.FACTOR * x\n", "mine/deep/helper.py"),
+    "its top": ("import mine.deep.other\ndef task(x): return mine.FACTOR * x\n", "mine/__init__.py"),
+    "without a top": ("from space import helper\ndef task(x): return helper.FACTOR * x\n", "space/helper.py"),
+    "relative": ("from mine.deep.other import task\n", "mine/deep/helper.py"),
+    "all of it": ("from helper import *\ndef task(x): return FACTOR * x\n", "helper.py"),
+}  # fmt: skip
+ASKED = """
+import sys
+import granular_response as gr
+import tasks_of_mine as mine
+print(gr.map_tasks(mine.task, [1, 2, 3], workers=1, checkpoint="kept"))
+"""
+
+
+@pytest.mark.parametrize("where", HELPED)
+def test_a_module_that_a_task_imports_counts_wherever_it_is_imported(tmp_path, where):
+    code, helper = HELPED[where]
+    files = {
+        "helper.py": "FACTOR = 2\n", "between.py": "import helper\n", "space/helper.py": "FACTOR = 2\n",
+        "mine/__init__.py": "FACTOR = 2\n", "mine/deep/__init__.py": "", "mine/deep/helper.py": "FACTOR = 2\n",
+        "mine/deep/other.py": "from . import helper\ndef task(x): return helper.FACTOR * x\n",
+        "tasks_of_mine.py": code, "unrelated.py": "", "run.py": ASKED,
+    }  # fmt: skip
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+
+    def asked():
+        return python("run.py", folder=tmp_path), len(list((tmp_path / "kept").rglob("*.kept")))
+
+    assert asked() == asked() == ("[2, 4, 6]\n", 3)
+    (tmp_path / "unrelated.py").write_text("# another\n")
+    (tmp_path / "run.py").write_text(f"{ASKED}# another\n")
+    assert asked() == ("[2, 4, 6]\n", 3)
+    (tmp_path / helper).write_text("FACTOR = 3\n")
+    assert asked() == ("[3, 6, 9]\n", 6)
+
+
+def test_a_file_in_an_item_counts_by_what_it_holds(tmp_path):
+    (tmp_path / "a.txt").write_text("1")
+    for text in ("1", "2"):
+        (tmp_path / "a.txt").write_text(text)
+        kept = {"workers": 1, "checkpoint": tmp_path / "kept"}
+        assert map_tasks(Path.read_text, [tmp_path / "a.txt", tmp_path / "a.txt"], **kept) == [text, text]
+
+
+def rewritten(path):
+    path.write_text(path.read_text() + "x")
+    return 1
+
+
+def test_a_result_whose_file_changed_while_it_was_made_is_not_kept(tmp_path):
+    (tmp_path / "a.txt").write_text("1")
+    with pytest.warns(MemoryWarning, match="a file that a task reads changed while it ran, so its result is not kept"):
+        map_tasks(rewritten, [tmp_path / "a.txt"], workers=1, checkpoint=tmp_path / "kept")
+    assert not (tmp_path / "kept").exists()
+
+
+@pytest.mark.parametrize("part", ["", "shelf", "file"])
+def test_what_somebody_else_owns_is_not_read(tmp_path, monkeypatch, part):
+    kept, marks = tmp_path / "kept", tmp_path / "marks"
+    marks.mkdir()
+    task = functools.partial(note, folder=marks)
+    map_tasks(task, range(2), workers=1, checkpoint=kept)
+    (shelf,) = kept.iterdir()
+    theirs = {"": [kept], "shelf": [shelf], "file": list(shelf.iterdir())}[part]
+    usual = Path.stat
+
+    def stat(path, **options):
+        found = usual(path, **options)
+        return os.stat_result((*found[:4], found.st_uid + (path in theirs), *found[5:]))
+
+    monkeypatch.setattr(Path, "stat", stat)
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("default")
+        map_tasks(task, range(2), workers=1, checkpoint=kept)
+    assert [len(starts(marks, item)) for item in range(2)] == [2, 2]
+    (said,) = heard
+    assert re.search(r"kept: what another user owns is not read \(user \d+, this is \d+\)$", str(said.message))
+
+
+@pytest.mark.parametrize("damage", [lambda data: data[:-1], lambda data: b"", lambda data: b"x" + data[1:]])
+def test_damaged_results_are_computed_again_and_that_is_said_once(tmp_path, damage):
+    kept, marks = tmp_path / "kept", tmp_path / "marks"
+    marks.mkdir()
+    task = functools.partial(note, folder=marks)
+    expected = map_tasks(task, range(2), workers=1, checkpoint=kept)
+    for path in kept.rglob("*.kept"):
+        path.write_bytes(damage(path.read_bytes()))
+    for k, said in enumerate([["damaged results are computed again"], []]):
+        with warnings.catch_warnings(record=True) as heard:
+            warnings.simplefilter("default")
+            assert map_tasks(task, range(2), workers=1, checkpoint=kept) == expected
+        assert [str(one.message) for one in heard] == [f"{kept}: {one}" for one in said], k
+        assert [len(starts(marks, item)) for item in range(2)] == [2, 2]
+
+
 def test_another_function_or_item_finds_nothing(tmp_path):
     marks = tmp_path / "marks"
     marks.mkdir()
@@ -342,73 +501,65 @@ def test_another_function_or_item_finds_nothing(tmp_path):
     assert [len(starts(marks, item)) for item in range(4)] == [1, 2, 2, 2]
 
 
-class TestDask:
-    """A real cluster."""
+class TestExecutors:
+    """Where somebody else runs the tasks; a real cluster of Dask among them."""
 
     def test_a_killed_worker_loses_only_what_was_in_flight(self, cluster, tmp_path):
         marks = tmp_path / "marks"
         marks.mkdir()
         task = functools.partial(note, folder=marks, die_at=12)
-        result = map_tasks(task, range(16), scheduler=cluster.scheduler_address, checkpoint=tmp_path / "kept")
+        with cluster.get_client() as client:
+            result = map_tasks(task, range(16), executor=client.get_executor(), checkpoint=tmp_path / "kept")
         assert result == [item * item for item in range(16)]
         again = [item for item in range(16) if len(starts(marks, item)) > 1]
         assert 12 in again
-        assert len(again) <= 3  # with what it had not yet handed over; not all that it ever finished
+        assert len(again) < 16  # what it had not yet handed over goes with it; not all that it ever finished
         assert len(list((tmp_path / "kept").rglob("*.kept"))) == 16
 
+    def test_a_task_that_kills_every_worker_is_named(self, cluster, tmp_path):
+        task = functools.partial(note, folder=tmp_path, die_at=3, always=True)
+        with cluster.get_client() as client:
+            said = r"task [1-6] of 6 \([0-5]\) was lost: KilledWorker: "
+            refuses(SweepError, said, map_tasks, task, range(6), executor=client.get_executor())
+
     def test_workers_that_round_otherwise_are_reported(self, cluster, monkeypatch):
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            map_tasks(response, ITEMS[:2], scheduler=cluster.scheduler_address)
-        monkeypatch.setenv("OMP_NUM_THREADS", "7")
-        with pytest.warns(UserWarning, match=r"Dask workers, the first of them tcp://.* last digits may differ"):
-            map_tasks(response, ITEMS[:2], scheduler=cluster.scheduler_address)
+        with cluster.get_client() as client:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                map_tasks(response, ITEMS[:2], executor=client.get_executor())
+            monkeypatch.setenv("OMP_NUM_THREADS", "7")
+            with pytest.warns(UserWarning, match=r"workers are not set to round as this .* last digits may differ"):
+                map_tasks(response, ITEMS[:2], executor=client.get_executor())
 
-    def test_no_cluster_is_an_error_of_one_line(self, monkeypatch):
-        with pytest.raises(SweepError, match=r"no Dask scheduler answers at nowhere://") as caught:
-            map_tasks(response, ITEMS, scheduler="nowhere://127.0.0.1:1")
-        assert "\n" not in str(caught.value)
+    def test_what_is_no_executor_is_one_line(self, cluster):
+        said = r"executor = .*: must be a concurrent.futures.Executor"
+        refuses(SweepError, said, map_tasks, response, ITEMS, executor="tcp://127.0.0.1:8786")
+        with cluster.get_client() as client:
+            refuses(SweepError, rf"{said}; of a Dask client it is client.get", map_tasks, response, [], executor=client)
+        with concurrent.futures.ThreadPoolExecutor(1) as pool:
+            said = "workers = 2: must be left out with an executor"
+            refuses(SweepError, said, map_tasks, response, ITEMS, executor=pool, workers=2)
 
-    def test_without_distributed_the_error_says_what_to_install(self, monkeypatch):
-        monkeypatch.setitem(sys.modules, "distributed", None)
-        refuses(SweepError, r"granular-response\[dask\]", map_tasks, response, ITEMS, scheduler="tcp://127.0.0.1:8786")
+    def test_an_executor_that_takes_no_more_ends_the_sweep_in_one_line(self, tmp_path):
+        said = r"Refusing takes no tasks: RuntimeError: cannot schedule new futures after shutdown"
+        refuses(SweepError, said, map_tasks, slow_first, range(4), executor=Refusing(2))
 
+    def test_the_executor_of_the_resources_is_used_unless_workers_are_named(self):
+        with using(executor=Refusing(0)):
+            refuses(SweepError, "Refusing takes no tasks", map_tasks, slow_first, range(2))
+            assert map_tasks(slow_first, range(2), workers=1) == [0, 1]
 
-def one_process(*command):
-    """A process of a cluster that is stopped here; it can import this file."""
-    paths = os.pathsep.join([os.environ.get("PYTHONPATH", ""), str(Path(__file__).parent)])
-    return subprocess.Popen(
-        [sys.executable, "-m", *command],
-        env={**os.environ, "PYTHONPATH": paths},
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-
-
-@pytest.fixture
-def scheduler(tmp_path):
-    """A scheduler without workers in a process of its own, and its address."""
-    pytest.importorskip("distributed")
-    told = tmp_path / "scheduler.json"
-    process = one_process(
-        "distributed.cli.dask_scheduler", "--port", "0", "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file",
-        str(told),
-    )  # fmt: skip
-    deadline = time.monotonic() + 60
-    while not told.exists() or not told.read_text().endswith("}"):
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
-    yield process, json.loads(told.read_text())["address"]
-    process.kill()
-    process.wait()
+    def test_threads_of_this_process_warn_by_themselves(self):
+        with concurrent.futures.ThreadPoolExecutor(1) as pool, pytest.warns(UserWarning, match="^3$"):
+            map_tasks(warn, [3], executor=pool)
 
 
-def test_a_scheduler_that_is_killed_is_an_error_of_one_line(scheduler, capfd, monkeypatch):
-    process, address = scheduler
+def warn(item):
+    warnings.warn(str(item), stacklevel=1)
 
-    monkeypatch.setattr(executor, "PATIENCE", 0.2)
-    monkeypatch.setattr(warnings, "showwarning", lambda *_: process.kill())  # it is said that there is no worker
-    with pytest.raises(SweepError) as caught:
-        map_tasks(slow_first, range(3), scheduler=address)
-    assert str(caught.value) == f"the Dask scheduler at {address} was lost, with 3 of 3 tasks to do"
-    assert capfd.readouterr().err == ""
+
+def test_what_workers_warn_of_is_said(elsewhere):
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("default")
+        map_tasks(warn, [f"said {elsewhere}"] * 3, **elsewhere)  # another text in each place
+    assert [str(one.message) for one in heard] == [f"said {elsewhere}"]

@@ -3,6 +3,7 @@
 import dataclasses
 import enum
 import functools
+import importlib
 import threading
 from pathlib import Path
 
@@ -12,7 +13,8 @@ from commands import python
 from refusals import refuses
 
 from granular_response.scene import Scene
-from granular_response.sweeps.keys import Indistinct, key
+from granular_response.scene.material import KNOWN_LAWS, KnownLaw
+from granular_response.sweeps.keys import Indistinct, _imports, key
 
 
 @dataclasses.dataclass(frozen=True)
@@ -101,3 +103,71 @@ def test_functions_of_a_script_count_by_its_file_and_those_of_a_notebook_not_at_
     assert first == again != python(tmp_path / "script.py")
     with pytest.raises(AssertionError, match="Indistinct: function measure stands in no module that can be imported"):
         python("-c", lines)
+
+
+def test_the_springs_of_a_packing_count_by_their_content(tmp_path):
+    (tmp_path / "disks.csv").write_text("x,z,radius\n2,1,1\n5,1,1\n")
+    text = "packing: {kind: file, path: disks.csv, width: 10, springs: disks.contacts.csv}\nloads: []\n"
+    keys = []
+    for force in ("0.1", "-0.05", "0.1"):
+        (tmp_path / "disks.contacts.csv").write_text(
+            f"first,second,wall,normal_force,tangential_force\n0,,floor,1,{force}\n"
+        )
+        keys.append(key(Scene.from_text(text, folder=tmp_path)))
+    assert keys[0] != keys[1] and keys[0] == keys[2]
+    (tmp_path / "disks.contacts.csv").unlink()
+    refuses(Indistinct, r"disks.contacts.csv cannot be read", key, Scene.from_text(text, folder=tmp_path))
+
+
+PACKING = """
+from pathlib import Path
+from typing import Literal
+from granular_response.scene.base import PackingDescription
+class Mine(PackingDescription):
+    kind: Literal["mine"] = "mine"
+    @property
+    def files(self):
+        return [Path(__file__).with_suffix(".txt")]
+"""
+
+
+def test_files_that_a_packing_of_ones_own_lists_count(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "packing_of_mine.py").write_text(PACKING)
+    (tmp_path / "packing_of_mine.txt").write_text("1")
+    mine = importlib.import_module("packing_of_mine").Mine()
+    before = key(mine)
+    assert key(mine) == before
+    (tmp_path / "packing_of_mine.txt").write_text("2")
+    assert key(mine) != before
+
+
+LAW = """
+import granular_response as gr
+from granular_response.contact import Linear
+import constants_of_mine
+class Stiffer(Linear):
+    def elastic_force(self, overlap, shape):
+        return constants_of_mine.PART * self.normal_stiffness * overlap
+"""
+
+
+def test_a_module_that_a_law_imports_counts(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "law_of_mine.py").write_text(LAW)
+    (tmp_path / "constants_of_mine.py").write_text("PART = 1.0\n")
+    law = importlib.import_module("law_of_mine").Stiffer
+    monkeypatch.setitem(KNOWN_LAWS, "stiffer", KnownLaw(law=law))
+    scene = Scene().updated({"contact.law": "stiffer"})
+    of_problem = law.of(1.0, 1.0, 1.0, 1.0, 0.2, 0.0, 0.5)  # as in the name of a rest state
+    before = key(scene), key(of_problem)
+    assert (key(scene), key(of_problem)) == before
+    (tmp_path / "constants_of_mine.py").write_text("PART = 2.0\n")
+    assert not {*before} & {key(scene), key(of_problem)}
+
+
+def test_a_module_that_cannot_be_parsed_or_goes_beyond_its_package_counts_by_itself():
+    assert _imports(b"from ... import beyond, other\nimport a.b\nfrom .c import d\n", "top") == {
+        "a.b", "top.c", "top.c.d",
+    }  # fmt: skip
+    assert _imports(b"def (:", "top") == frozenset()

@@ -9,7 +9,7 @@ from refusals import refuses
 
 import granular_response as gr
 import granular_response_paper as paper
-from granular_response.sweeps.executor import WorkerError
+from granular_response.sweeps.tasks import WorkerError
 
 SMALL = {"packing": {"kind": "slab", "layers": 5, "disks_per_row": 21}, "loads": [{"disk": 93, "force": [0, -4]}]}
 

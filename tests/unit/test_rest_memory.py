@@ -1,7 +1,9 @@
 """A packing of one material is settled once, and a kept rest state is exactly the computed one."""
 
+import multiprocessing
 import os
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +14,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.store import atomic
 from granular_response.sweeps import rest as settled
 from granular_response.sweeps.keys import key
-from granular_response.sweeps.memory import MemoryWarning
+from granular_response.sweeps.memory import Memory, MemoryWarning
 from granular_response.sweeps.resources import using
 
 SCENE = Scene.from_dict(
@@ -110,7 +112,8 @@ def test_a_damaged_state_is_computed_again(folder, computed):
     data = bytearray(kept.read_bytes())
     data[len(data) // 2] ^= 1
     kept.write_bytes(data)
-    again = settled.rest_state(Problem.from_scene(SCENE))
+    with pytest.warns(MemoryWarning, match="kept: damaged results are computed again"):
+        again = settled.rest_state(Problem.from_scene(SCENE))
     assert len(computed) == 2
     np.testing.assert_array_equal(again.position, first.position)
 
@@ -120,7 +123,8 @@ def test_a_state_under_the_name_of_another_is_not_taken(folder, computed):
     (kept,) = files(folder)
     other = Problem.from_scene(SCENE.updated({"contact.friction": 0.5}))
     kept.with_name(f"{settled.name(other)}.kept").write_bytes(kept.read_bytes())
-    settled.rest_state(other)
+    with pytest.warns(MemoryWarning, match="kept: damaged results are computed again"):
+        settled.rest_state(other)
     assert len(computed) == 2
 
 
@@ -144,3 +148,49 @@ def test_a_full_disk_costs_a_warning(folder, computed, monkeypatch):
     with pytest.warns(MemoryWarning, match="No space left on device"):
         settled.rest_state(Problem.from_scene(SCENE))
     assert len(computed) == 1 and files(folder) == []
+
+
+class Runs:
+    """Reads as a call, as any pickle may."""
+
+    def __reduce__(self):
+        return (print, ("ran",))
+
+
+def test_reading_a_state_runs_no_code(folder, computed, capsys):
+    name = settled.name(Problem.from_scene(SCENE))
+    Memory(folder, settled._PARTS).save(name, Runs())
+    assert files(folder)
+    with pytest.warns(MemoryWarning, match="cannot be read are computed again: UnpicklingError: builtins.print is no"):
+        settled.rest_state(Problem.from_scene(SCENE))
+    assert len(computed) == 1 and capsys.readouterr().out == ""
+
+
+def settle_where(folder):
+    """Settle in this process; the number of times that it was computed here."""
+    calls = []
+    original = solve.rest_state
+
+    def count(problem):
+        calls.append(problem)
+        return original(problem)
+
+    solve.rest_state = count
+    with using(rest_states=folder):
+        settled.rest_state(Problem.from_scene(SCENE))
+    return len(calls)
+
+
+def test_one_process_at_a_time_makes_a_state(tmp_path):
+    """The second one waits for the first, and takes what that has made."""
+    memory, name = Memory(tmp_path, settled._PARTS, states=True), settled.name(Problem.from_scene(SCENE))
+    with multiprocessing.get_context("forkserver").Pool(1) as pool:
+        with memory.making(name):
+            found = pool.apply_async(settle_where, [tmp_path])
+            lock = f":{(memory.shelf / f'{name}.lock').stat().st_ino} "
+            while not any("->" in line and lock in line for line in Path("/proc/locks").read_text().splitlines()):
+                assert not found.ready()
+                time.sleep(0.01)
+            memory.save(name, solve.rest_state(Problem.from_scene(SCENE)))
+        assert found.get(timeout=600) == 0
+    assert not list(tmp_path.rglob("*.lock"))

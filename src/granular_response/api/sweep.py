@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import functools
 import itertools
+import json
 import numbers
 import os
+import platform
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Executor
+from importlib import metadata
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from pandas import MultiIndex
 
+from .. import __version__
 from ..errors import SolveError
 from ..scene import Preparation, Scene, SceneError, Taps
 from ..scene.base import Description
@@ -23,9 +29,9 @@ from ..scene.given import plain, unordered
 from ..solvers.solution import Solution, checked_problem, load_programme, solve_scene
 from ..store.files import CHARACTERS, TEXT
 from ..store.result import COORDINATES
-from ..sweeps.errors import SweepError
-from ..sweeps.memory import Memory
-from ..sweeps.resources import current, using
+from ..sweeps.errors import SweepError, interrupted
+from ..sweeps.memory import MISSING, Memory
+from ..sweeps.resources import KEPT, current, using
 from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described
 from .terminal import shown
@@ -35,6 +41,9 @@ from .terminal import shown
 _KEPT_AS = {"load": "load_factor", "floor_disk": "floor_disk_index"}
 #: The dimension of floor disks in a sweep that joins them by their numbers, where others are counted from the left.
 _BY_NUMBER = "floor_disk_number"
+
+#: The dimension of all combinations, before they are a grid.
+_PLACE = "combination of keys"
 
 #: Preparations that are compared unless others are given.
 WAYS: Mapping[str, Preparation] = MappingProxyType(
@@ -61,7 +70,7 @@ def sweep(
     *,
     load_factors: Sequence[float] | None = None,
     workers: int | None = None,
-    scheduler: str | None = None,
+    executor: Executor | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     progress: Progress | bool = True,
 ) -> xr.Dataset:
@@ -78,9 +87,14 @@ def sweep(
         a mapping of names to numbers, arrays and ``DataArray``. A function of a notebook or a lambda will do.
     load_factors : multipliers of the scene's loads at which states are kept; those of the scene if left out.
     workers : local processes; all cores if left out, this process if 1.
-    scheduler : address of a Dask scheduler; ``DASK_SCHEDULER_ADDRESS`` is asked if left out.
+    executor : a ``concurrent.futures.Executor`` in place of local processes, as of :func:`map_tasks`.
     checkpoint : folder that keeps each solution, so that an interrupted sweep continues, and another ``measure`` takes
-        what was solved. Workers of a Dask cluster keep their own there, so it is one that all reach.
+        what was solved. **It must be a folder of your own**, and one that all workers reach. A solution is taken if the
+        scene, the files that it names (disks, springs), this package, the installed numba, numpy, scipy and xarray, and
+        the modules of a law or packing of your own, with all of your own that they import, are the same. Files that
+        such a law or packing opens by itself, unless a property ``files`` of the packing lists them, and environment
+        variables are not known. Reading a solution runs no code of the file; files of another owner, and damaged ones,
+        are computed again.
     progress : a line on the terminal, or in a notebook; False for none, or a function that is called as
         ``progress(done, total, what)``.
 
@@ -92,7 +106,8 @@ def sweep(
     What has no coordinate of its own and another length in each result is filled up with NaN. So are floor disks that
     differ: they are then numbered from the left, and ``floor_disk_index`` says which each is. Load programmes that
     differ are put side by side step by step: ``load`` then has no labels, but ``step`` and, for each combination,
-    ``load_factor``. Attributes are those that all results share.
+    ``load_factor``. Attributes are those that all results share, and texts that say what was done: ``scene`` (with its
+    seed), ``axes``, ``load_factors``, the name of the ``measure``, ``package_version`` and ``versions``.
 
     A combination without equilibrium is NaN throughout; the variable ``error`` then has its message, empty for the
     others, and a warning says how many there are. What :func:`solve` warns of is said once, with the number of
@@ -120,13 +135,21 @@ def sweep(
     for each in scenes:
         checked_problem(each)
     folder = checkpoint or current().checkpoint
-    task = functools.partial(_measured, measure=measure, memory=Memory(folder) if folder else None)
+    memory = Memory(folder, states=True) if folder else None
+    kept = sum(memory.has(memory.name(_solved, one)) for one in scenes) if memory else 0
+    task = functools.partial(_measured, measure=measure, memory=memory)
     with using(checkpoint=None), shown(progress) as report:
-        found = map_tasks(task, scenes, workers=workers, scheduler=scheduler, progress=report, what="scenes")
+        if kept and report:
+            report(kept, len(scenes), KEPT)
+        try:
+            found = map_tasks(task, scenes, workers=workers, executor=executor, progress=report, what="scenes")
+        except KeyboardInterrupt as error:
+            raise (interrupted(f"{error}, solutions are kept in {folder}") if memory else error) from None
     remarks = Counter(remark for _, remarks in found for remark in remarks)
     for remark, count in remarks.items():
         warnings.warn(f"{count} of {len(found)} combinations: {remark}", stacklevel=2)
-    return _gridded(values, [measured for measured, _ in found])
+    gridded = _gridded(values, [measured for measured, _ in found])
+    return gridded.assign_attrs(_provenance(base.updated(programme), values, measure))
 
 
 def preparations(
@@ -136,7 +159,7 @@ def preparations(
     *,
     load_factors: Sequence[float] | None = None,
     workers: int | None = None,
-    scheduler: str | None = None,
+    executor: Executor | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     progress: Progress | bool = True,
 ) -> xr.Dataset:
@@ -149,7 +172,7 @@ def preparations(
     ways : by name, a ``Preparation`` or a mapping of keys that differ from that of the scene. If left out: gravity at
         once (the paper's), ramped over 20, 100 and 500 sqrt(R/g), a start without friction, and ten taps of 0.5 g after
         slow gravity.
-    scene, measure, load_factors, workers, scheduler, checkpoint, progress : as of :func:`sweep`.
+    scene, measure, load_factors, workers, executor, checkpoint, progress : as of :func:`sweep`.
 
     Returns
     -------
@@ -180,7 +203,7 @@ def preparations(
         if (first := chosen.index(chosen[-1])) < len(chosen) - 1:
             twin = list(ways)[first]
             raise SceneError(f"ways[{name!r}]: is the same as {twin!r}; keys that are left out are those of the scene")
-    options: dict[str, Any] = {"load_factors": load_factors, "workers": workers, "scheduler": scheduler}
+    options: dict[str, Any] = {"load_factors": load_factors, "workers": workers, "executor": executor}
     noted = functools.partial(_noted, measure=measure)
     found = sweep(base, {"preparation": chosen}, noted, checkpoint=checkpoint, progress=progress, **options)
     found = found.assign_coords(preparation=("preparation", list(ways), found["preparation"].attrs))
@@ -198,6 +221,29 @@ def preparations(
     low = {f"{name}_low": one.min("preparation", keep_attrs=True) for name, one in over.items()}
     high = {f"{name}_high": one.max("preparation", keep_attrs=True) for name, one in over.items()}
     return found.assign(low | high)
+
+
+def _provenance(scene: Scene, values: Mapping[str, list[Any]], measure: Callable[[Result], Any]) -> dict[str, str]:
+    """What a sweep was made from, and by what: texts, as netCDF takes them."""
+    while isinstance(measure, functools.partial):
+        measure = measure.keywords.get("measure", measure.func)
+    named = measure if hasattr(measure, "__qualname__") else type(measure)
+    own = "protocol.load_factors" in values
+    versions = {name: metadata.version(name) for name in ("numba", "numpy", "scipy", "xarray")}
+    return {
+        "package": "granular_response",
+        "package_version": __version__,
+        "versions": json.dumps({"python": platform.python_version(), **versions}),
+        "scene": scene.to_yaml(),
+        "scene_note": "what all combinations have in common; the axes change it",
+        "axes": json.dumps(values, default=_as_json),
+        **({} if own else {"load_factors": json.dumps(scene.protocol.load_factors)}),
+        "measure": f"{named.__module__}.{named.__qualname__}",
+    }
+
+
+def _as_json(value: Any) -> Any:
+    return value.model_dump(mode="json") if isinstance(value, Description) else str(value)
 
 
 def _noted(result: Result, *, measure: Callable[[Result], Any]) -> xr.Dataset:
@@ -248,7 +294,18 @@ def _measured(
     scene: Scene, *, measure: Callable[[Result], Any], memory: Memory | None
 ) -> tuple[xr.Dataset | str, list[str]]:
     """What is measured on a scene, or why it has no equilibrium, and the remarks on the solution."""
-    solved = memory.result(_solved, scene) if memory else _solved(scene)
+    name = memory.name(_solved, scene) if memory else None
+    kept = memory.load(name) if memory else MISSING
+    if isinstance(kept, tuple):  # states: the rest of a solution is made from the scene
+        rest, *loaded = kept
+        solved: Solution | str = Solution(scene, checked_problem(scene).with_loads(rest.position), rest, tuple(loaded))
+    elif isinstance(kept, str):
+        solved = kept
+    else:
+        solved = _solved(scene)
+        if memory:
+            made = solved if isinstance(solved, str) else (solved.rest, *solved.loaded)
+            memory.save_result(name, made, _solved, scene)
     if isinstance(solved, str):
         return solved, []
     return as_dataset(measure(Result(solved))), solved.remarks
@@ -288,48 +345,40 @@ def as_dataset(measured: Any) -> xr.Dataset:
 def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str]) -> xr.Dataset:
     """One dataset of those of all combinations, which are in the order of the product of ``values``."""
     errors = [one if isinstance(one, str) else "" for one in found]
-    good = [(place, one) for place, one in enumerate(found) if not isinstance(one, str)]
+    good = [place for place, one in enumerate(found) if not isinstance(one, str)]
     if not good:
         raise SweepError(f"none of {len(found)} combinations has an equilibrium, the first: {errors[0]}")
+    results = [one for one in found if not isinstance(one, str)]
     names = _names(values)
-    taken = {str(name) for _, one in good for name in (*one.variables, *one.dims)} & {*names.values(), "error"}
+    taken = {str(name) for one in results for name in (*one.variables, *one.dims)} & {*names.values(), "error"}
     if taken:
         raise SweepError(f"measure: {min(taken)} is the name of an axis, must be another one")
-    measured, bare = _labelled_alike([one for _, one in good])
-    coordinates = {str(name) for one in measured for name in one.coords}
-    shape = tuple(len(given) for given in values.values())
-    grid = list(np.ndindex(shape))
-    places = [grid[place] for place, _ in good]
-    labelled = {dim: size for one in measured for dim, size in one.sizes.items() if dim not in bare}
-    variables: dict[str, Any] = {}
-    for name in dict.fromkeys(str(name) for one in measured for name in one.variables if name not in bare):
-        those = {place: one.variables[name] for place, one in zip(places, measured, strict=True) if name in one}
-        dims = tuple(dict.fromkeys(dim for one in those.values() for dim in one.dims))
-        sizes = [{dim: one.sizes.get(dim, labelled.get(dim, 1)) for dim in dims} for one in those.values()]
-        whole = (one.set_dims(given).values for one, given in zip(those.values(), sizes, strict=True))
-        arrays = dict(zip(those, map(_without_objects, whole), strict=True))
-        attributes, longest = next(iter(those.values())).attrs, max(arrays.values(), key=np.size)
-        heads = (longest[: len(one)] if name == "step" and one.ndim else longest for one in arrays.values())
-        everywhere = name in coordinates and len(those) == len(measured)
-        if dims == (name,) or (everywhere and all(map(_same, arrays.values(), heads))):
-            variables[name] = (dims, longest, attributes)
-        else:
-            variables[name] = ((*names.values(), *dims), _stacked(arrays, shape), attributes)
-    for key, name in names.items():
-        variables[name] = (name, _coordinate(values[key]), {"key": key})
+    measured, bare = _labelled_alike(results)
+    same: dict[str, Any] = {"join": "outer", "compat": "equals", "combine_attrs": "override"}
+    joined = xr.concat(measured, _PLACE, data_vars="all", coords="different", **same).drop_vars(bare, errors="ignore")
+    joined = joined.assign_coords({_PLACE: good}).reindex({_PLACE: range(len(found))})
+    grid = MultiIndex.from_product([range(len(given)) for given in values.values()], names=list(names.values()))
+    gridded = joined.assign_coords(xr.Coordinates.from_pandas_multiindex(grid, _PLACE)).unstack(_PLACE)
+    gridded = gridded.transpose(*names.values(), ...)
+    objects = {name: one for name, one in gridded.variables.items() if one.dtype.kind == "O"}
+    gridded = gridded.assign({name: one.copy(data=_without_objects(one.values)) for name, one in objects.items()})
+    if "load" in bare:
+        said = next((one["step"].attrs for one in results if "step" in one.coords), {})
+        gridded = gridded.assign_coords(step=("load", np.arange(1, gridded.sizes["load"] + 1), said))
+    gridded = gridded.assign_coords(
+        {name: (name, _coordinate(values[key]), {"key": key}) for key, name in names.items()}
+    )
     if any(errors):
         failed = [error for error in errors if error]
         said = {"long_name": "why there is no equilibrium"}
-        variables["error"] = (tuple(names.values()), np.array(errors).reshape(shape), said)
+        gridded["error"] = (tuple(names.values()), np.array(errors).reshape([len(v) for v in values.values()]), said)
         warnings.warn(
             f"{len(failed)} of {len(found)} combinations have no equilibrium, see the variable error; the first: "
             f"{failed[0]}",
             stacklevel=3,
         )
-    first, *others = (one.attrs for _, one in good)
-    shared = {k: v for k, v in first.items() if all(np.array_equal(v, np.asarray(one.get(k))) for one in others)}
-    gridded = xr.Dataset(variables, attrs=shared)
-    gridded = gridded.set_coords([*names.values(), *(name for name in coordinates if name in variables)])
+    first, *others = (one.attrs for one in results)
+    gridded.attrs = {k: v for k, v in first.items() if all(np.array_equal(v, np.asarray(one.get(k))) for one in others)}
     for one in gridded.variables.values():
         if one.dtype.kind in TEXT:
             one.encoding = dict(CHARACTERS)
@@ -342,49 +391,33 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
 
 
 def _labelled_alike(results: Sequence[xr.Dataset]) -> tuple[list[xr.Dataset], set[Any]]:
-    """Results with the same labels along each dimension, and the dimensions that have none."""
-    plain = [one.reset_index([name for name in one.xindexes if name not in one.dims]) for one in results]
-    for dim in {dim for one in plain for dim in one.dims if dim in one.coords}:
-        labels = [one.get_index(dim) if dim in one.dims else None for one in plain]
-        if all(one is not None and one.equals(labels[0]) for one in labels):
+    """Results that can be joined by labels, and the dimensions that have none of their own and are numbered."""
+    plain, bare = [one.reset_index([name for name in one.xindexes if name not in one.dims]) for one in results], set()
+    for dim in {dim for one in plain for dim in one.dims}:
+        labels = [one.get_index(dim) if dim in one.coords else one.sizes.get(dim) for one in plain]
+        if all(np.array_equal(np.asarray(one), np.asarray(labels[0])) for one in labels):
             continue
-        if dim in _KEPT_AS:
-            plain = [_without_labels(one, dim) for one in plain]
-        elif not all(one is None or one.is_unique for one in labels):
+        if dim in _KEPT_AS or not any(dim in one.coords for one in plain):
+            bare.add(dim)
+            plain = [_numbered(one, dim) for one in plain]
+        elif not all(dim not in one.coords or one.get_index(dim).is_unique for one in plain):
             raise SweepError(f"measure: {dim} has a label twice, must have different ones or the same in each result")
-    bare = {dim for one in plain for dim in one.dims if dim not in one.coords}
-    return list(xr.align(*plain, join="outer", exclude=bare)), bare
+    return plain, bare
 
 
-def _without_labels(one: xr.Dataset, dim: str) -> xr.Dataset:
-    """Without labels along ``dim``, which a coordinate of ``_KEPT_AS`` has in place of them."""
-    if dim in one.coords and _KEPT_AS[dim] not in one.variables:
-        one = one.assign_coords({_KEPT_AS[dim]: one[dim].variable.to_base_variable()})
-    return one.drop_vars(dim, errors="ignore")
+def _numbered(one: xr.Dataset, dim: Any) -> xr.Dataset:
+    """With numbers along ``dim``, and what it had as labels in a coordinate of ``_KEPT_AS``."""
+    kept = _KEPT_AS.get(dim)
+    if kept and dim in one.coords and kept not in one.variables:
+        one = one.assign_coords({kept: one[dim].variable.to_base_variable()})
+    numbered = one.assign_coords({dim: np.arange(one.sizes[dim])}) if dim in one.dims else one
+    return numbered.drop_vars("step", errors="ignore") if dim == "load" else numbered
 
 
 def _without_objects(values: np.ndarray) -> np.ndarray:
     """Text or truth values with gaps as text, or as numbers."""
-    if values.dtype.kind != "O":
-        return values
     text = any(isinstance(value, str) for value in values.flat)
     return np.where(values == values, values, "").astype(str) if text else values.astype(float)
-
-
-def _same(one: np.ndarray, other: np.ndarray) -> bool:
-    return np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
-
-
-def _stacked(arrays: Mapping[tuple[int, ...], np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
-    """Arrays at their places in a grid of this shape; NaN, or no text, where there is none and behind shorter ones."""
-    sizes = tuple(max(along) for along in zip(*(one.shape for one in arrays.values()), strict=True))
-    kind = np.result_type(*{one.dtype for one in arrays.values()})
-    if kind.kind not in "fcSU" and any(arrays.get(place, np.empty(0)).shape != sizes for place in np.ndindex(shape)):
-        kind = np.dtype(float)
-    found = np.full(shape + sizes, "" if kind.kind in "SU" else np.nan if kind.kind in "fc" else 0, kind)
-    for place, one in arrays.items():
-        found[place + tuple(slice(size) for size in one.shape)] = one
-    return found
 
 
 def _names(values: Iterable[str]) -> dict[str, str]:

@@ -14,6 +14,8 @@ from numba.core import event
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from ..sweeps.resources import KEPT
+
 LOG = logging.getLogger("granular_response")
 TEXT = "compiling kernels, which takes up to a minute and is kept for the next time"
 #: The stage of a progress in which nothing else goes on.
@@ -35,14 +37,14 @@ def shown(progress: Callable[..., Any] | bool) -> Iterator[Callable[..., Any] | 
 class TerminalProgress:
     """A line with bar, elapsed time and time left on standard error: ``progress(done, total, what)``.
 
-    Each new ``what`` starts over. Silent for ``patience`` seconds, and where standard error is neither a terminal nor
-    that of a notebook, which gets a line of text.
+    Each new ``what`` starts over. Silent for ``patience`` seconds. A notebook gets a line of text; what is neither a
+    terminal nor a notebook, a log file, a line after each ``pause`` seconds. What a checkpoint has is said at once.
     """
 
-    def __init__(self, console: Console | None = None, patience: float = 2.0) -> None:
+    def __init__(self, console: Console | None = None, patience: float = 2.0, pause: float = 60.0) -> None:
         self._console = console or Console(stderr=True, width=columns())
-        self._patience = patience
-        self._started = time.monotonic()
+        self._patience, self._pause = patience, pause
+        self._started = self._logged = time.monotonic()
         self._bars: Progress | None = None
         self._task: TaskID | None = None
         self._what: str | None = None
@@ -61,6 +63,10 @@ class TerminalProgress:
 
     def __call__(self, done: float, total: float, what: str = "") -> None:
         now = time.monotonic()
+        if what == KEPT:
+            self._console.file.write(f"{done:.4g} of {total:.4g} kept\n")
+            self._console.file.flush()
+            return
         if now - self._started < self._patience:
             return
         if self._console.is_jupyter:
@@ -70,6 +76,10 @@ class TerminalProgress:
                 self._told = now
             return
         if not self._console.is_terminal:
+            if now - self._logged >= self._pause:
+                self._logged, elapsed = now, f"{now - self._started:.0f} s"
+                self._console.file.write(f"{what or 'working'}: {done:.4g} of {total:.4g}, {elapsed}\n")
+                self._console.file.flush()
             return
         if self._bars is None:
             self._bars = Progress(

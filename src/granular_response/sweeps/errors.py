@@ -6,6 +6,7 @@ import functools
 import inspect
 import numbers
 import reprlib
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +26,27 @@ class SweepError(GranularError, RuntimeError):
         super().__init__(" ".join(message.split()))
 
 
+def interrupted(message: str) -> KeyboardInterrupt:
+    """The interruption of a sweep: where nobody handles it, Python ends with this line and without a traceback."""
+    error = KeyboardInterrupt(message)
+    error._render_traceback_ = lambda: [f"interrupted; {message}"]  # type: ignore[attr-defined]  # asked by notebooks
+    _end_in_one_line()
+    return error
+
+
+@functools.cache
+def _end_in_one_line() -> None:
+    usual = sys.excepthook
+
+    def say(kind: type[BaseException], error: BaseException, trace: Any) -> None:
+        if isinstance(error, KeyboardInterrupt) and hasattr(error, "_render_traceback_"):
+            print(f"interrupted; {error}", file=sys.stderr)
+        else:
+            usual(kind, error, trace)
+
+    sys.excepthook = say
+
+
 def failed(index: int, items: Sequence[Any], problem: str) -> SweepError:
     """The error of one task, named by what tells it from the others."""
     own, others = parts(items[index]), [parts(one) for k, one in enumerate(items[:_COMPARED]) if k != index]
@@ -34,9 +56,11 @@ def failed(index: int, items: Sequence[Any], problem: str) -> SweepError:
     return SweepError(f"task {index + 1} of {len(items)} ({said}) {problem}")
 
 
-def raised(index: int, items: Sequence[Any], error: BaseException, said: str | None = None) -> SweepError:
+def raised(
+    index: int, items: Sequence[Any], error: BaseException, said: str | None = None, came: str = "failed"
+) -> SweepError:
     """The error of a task that raised; ``said`` is what the exception says, if not its type and text."""
-    failure = failed(index, items, f"failed: {said or f'{type(error).__name__}: {error}'}")
+    failure = failed(index, items, f"{came}: {said or f'{type(error).__name__}: {error}'}")
     failure.__cause__ = error
     return failure
 

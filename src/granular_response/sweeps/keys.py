@@ -1,49 +1,60 @@
 """Keys made from content: equal values have equal keys in every process, others have others.
 
-A key is the digest of a value written as canonical JSON: a scene by its keys, its table and its law from outside, a
-dataclass by its fields, an array by its bytes, a function or class by its name and the file it stands in. What stands
-under its name in no file (a lambda, a function of a notebook) has no key: nothing is kept under it, and nothing of
-another value is found.
+A key is the digest of a value written as canonical JSON: a scene by its keys, the files that it names and its law from
+outside, a dataclass by its fields, an array by its bytes, a ``Path`` by its name and what the file holds. A function or
+class goes by its name, the module it stands in and every module of the user's own that this one imports, directly or
+not: at its top, inside a function, by a relative import, or by ``import_module`` with a name that is written there. The
+user's own are those outside the standard library and the folders of installed packages. What stands under its name in
+no file (a lambda, a function of a notebook) has no key: nothing is kept under it, and nothing of another value is
+found.
 """
 
 from __future__ import annotations
 
+import ast
 import dataclasses
 import functools
 import hashlib
+import itertools
 import json
 import operator
 import sys
+import sysconfig
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from enum import Enum
 from importlib import metadata
-from importlib.util import find_spec
+from importlib.machinery import ModuleSpec, PathFinder
+from importlib.util import find_spec, resolve_name
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from ..errors import GranularError
 from ..inputs import read_bytes
-from ..scene.base import Description
+from ..scene.base import Description, PackingDescription
 from ..scene.material import KNOWN_LAWS, Contact
-from ..scene.table import FilePacking
 
 _PACKAGE = Path(__file__).parents[1]
+
+#: Folders of what is installed.
+_INSTALLED = tuple({sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")})
 
 
 class Indistinct(GranularError, ValueError):
     """A value that cannot be told from others by its content. One line that names it."""
 
 
-def key(*values: Any, packages: Collection[str] = ()) -> str:
+def key(*values: Any, packages: Collection[str] = (), code: dict[str, str] | None = None) -> str:
     """32 hexadecimal digits for values, the same in every process: equal values, equal keys.
 
-    What stands in ``packages`` goes by its name alone, as what stands in this one: :func:`sources` has its code. Raises
-    Indistinct for values of another kind than those above, and a table that cannot be read.
+    What stands in ``packages`` goes by its name alone, as what stands in this one: :func:`sources` has its code.
+    ``code`` holds the digests of modules that were read for other keys, which are then not read again. Raises
+    Indistinct for values of another kind than those above, and a file that cannot be read.
     """
     by_name = {__name__.partition(".")[0], "numpy", *packages, *sys.stdlib_module_names} - {"__main__"}
-    return _sha256(json.dumps(_plain(values, by_name)).encode())[:32]
+    return _sha256(json.dumps(_Content(by_name, {} if code is None else code).plain(values)).encode())[:32]
 
 
 @functools.cache
@@ -73,67 +84,143 @@ def _files(part: str) -> Iterator[tuple[str, Path]]:
         yield path.relative_to(base).as_posix(), path
 
 
-def _plain(value: Any, by_name: Collection[str]) -> Any:
-    """A value as JSON has it: numbers, truth values and text as they are, others as a list with their class first."""
-    if value is None or type(value) in (bool, int, float, str):
-        return value
-    if isinstance(value, type) or (callable(value) and hasattr(value, "__qualname__")):
-        return ["named", *_named(value, by_name)]
-    return [*_named(type(value), by_name), *_parts(value, by_name)]
+class _Content:
+    """Values as JSON has them; packages ``by_name``, and digests of modules in ``code``."""
+
+    def __init__(self, by_name: Collection[str], code: dict[str, str]) -> None:
+        self.by_name, self.code = by_name, code
+
+    def plain(self, value: Any) -> Any:
+        """Numbers, truth values and text as they are, others as a list with their class first."""
+        if value is None or type(value) in (bool, int, float, str):
+            return value
+        if isinstance(value, type) or (callable(value) and hasattr(value, "__qualname__")):
+            return ["named", *self.named(value)]
+        return [*self.named(type(value)), *self.parts(value)]
+
+    def parts(self, value: Any) -> list[Any]:
+        """What tells a value from others of its class."""
+
+        def plain(values: Iterable[Any]) -> list[Any]:
+            return list(map(self.plain, values))
+
+        if isinstance(value, (bytes, bytearray)):
+            return [_sha256(value)]
+        if isinstance(value, (np.ndarray, np.generic)) and not value.dtype.hasobject:
+            return [repr(value.dtype.descr), value.shape, _sha256(value.tobytes())]
+        if isinstance(value, Path):
+            return [str(value), *([_content(value)] if value.is_file() else [])]
+        if isinstance(value, range):
+            return [str(value)]
+        if isinstance(value, Enum):
+            return [value.name]
+        if isinstance(value, (list, tuple)):
+            return plain(value)
+        if isinstance(value, (Mapping, set, frozenset)):
+            return sorted(plain(value.items() if isinstance(value, Mapping) else value), key=json.dumps)
+        if isinstance(value, functools.partial):
+            return plain((value.func, value.args, value.keywords))
+        if isinstance(value, Description):
+            files = getattr(value, "files", ()) if isinstance(value, PackingDescription) else ()
+            outside = KNOWN_LAWS[value.law].law if isinstance(value, Contact) else None
+            law = [outside] if outside else []
+            fields = plain(getattr(value, name) for name in type(value).model_fields)
+            return [*fields, *map(_content, files), *plain(law)]
+        if dataclasses.is_dataclass(value):
+            return plain(getattr(value, field.name) for field in dataclasses.fields(value))
+        raise Indistinct(f"a value of class {type(value).__qualname__} cannot be told from others by its content")
+
+    def named(self, value: Any) -> list[Any]:
+        """Module and name of a function or class, and its code where it is not one of the packages ``by_name``."""
+        kind = "class" if isinstance(value, type) else "function"
+        module = sys.modules.get(getattr(value, "__module__", None) or "")
+        try:
+            known = operator.attrgetter(value.__qualname__)(module) is value
+        except AttributeError:
+            known = False
+        file = getattr(module, "__file__", None)
+        main = value.__module__ in ("__main__", "__mp_main__")  # the second: in a worker
+        if not known or module is None or (main and (file is None or not Path(file).is_file())):
+            raise Indistinct(f"{kind} {value.__qualname__} stands in no module that can be imported")
+        name = ["__main__" if main else value.__module__, value.__qualname__]
+        if value.__module__.partition(".")[0] in self.by_name or not (file and file.endswith(".py")):
+            return name
+        if value.__module__ not in self.code:
+            self.code[value.__module__] = self._code(module, Path(file))
+        return [*name, self.code[value.__module__]]
+
+    def _code(self, module: ModuleType, file: Path) -> str:
+        """Digest of a module and of all of the user's own that it imports."""
+        package = module.__package__ or ""
+        waiting, found = [(module.__name__, package, file)], dict[str, str]()
+        while waiting:
+            name, package, path = waiting.pop()
+            data = read_bytes(path)
+            found[name] = _sha256(data)
+            for imported in _imports(data, package) if path.suffix == ".py" else ():
+                ancestors = list(itertools.accumulate(imported.split("."), "{}.{}".format))
+                if ancestors[0] in self.by_name:
+                    continue
+                for one in ancestors:
+                    spec = None if one in found else _spec(one)
+                    if spec and spec.origin and _own(origin := Path(spec.origin)):
+                        waiting.append((one, spec.parent or "", origin))
+        return _sha256(json.dumps(sorted(found.items())).encode())
 
 
-def _parts(value: Any, by_name: Collection[str]) -> list[Any]:
-    """What tells a value from others of its class."""
-
-    def plain(values: Iterable[Any]) -> list[Any]:
-        return [_plain(one, by_name) for one in values]
-
-    if isinstance(value, (bytes, bytearray)):
-        return [_sha256(value)]
-    if isinstance(value, (np.ndarray, np.generic)) and not value.dtype.hasobject:
-        return [repr(value.dtype.descr), value.shape, _sha256(value.tobytes())]
-    if isinstance(value, (Path, range)):
-        return [str(value)]
-    if isinstance(value, Enum):
-        return [value.name]
-    if isinstance(value, (list, tuple)):
-        return plain(value)
-    if isinstance(value, (Mapping, set, frozenset)):
-        return sorted(plain(value.items() if isinstance(value, Mapping) else value), key=json.dumps)
-    if isinstance(value, functools.partial):
-        return plain((value.func, value.args, value.keywords))
-    if isinstance(value, Description):
-        table = [_table(value)] if isinstance(value, FilePacking) else []
-        outside = KNOWN_LAWS[value.law].law if isinstance(value, Contact) else None
-        law = [outside] if outside else []
-        return [*plain(getattr(value, name) for name in type(value).model_fields), *table, *plain(law)]
-    if dataclasses.is_dataclass(value):
-        return plain(getattr(value, field.name) for field in dataclasses.fields(value))
-    raise Indistinct(f"a value of class {type(value).__qualname__} cannot be told from others by its content")
-
-
-def _named(value: Any, by_name: Collection[str]) -> list[Any]:
-    """Module and name of a function or class, and the file where it is not one of the packages ``by_name``."""
-    kind = "class" if isinstance(value, type) else "function"
-    module = sys.modules.get(getattr(value, "__module__", None) or "")
+@functools.lru_cache(maxsize=1000)
+def _imports(code: bytes, package: str) -> frozenset[str]:
+    """Names of all modules, and of what may be one, that a source imports anywhere."""
     try:
-        known = operator.attrgetter(value.__qualname__)(module) is value
-    except AttributeError:
-        known = False
-    file = getattr(module, "__file__", None)
-    if not known or (value.__module__ == "__main__" and (file is None or not Path(file).is_file())):
-        raise Indistinct(f"{kind} {value.__qualname__} stands in no module that can be imported")
-    name = [value.__module__, value.__qualname__]
-    if value.__module__.partition(".")[0] in by_name or not (file and file.endswith(".py")):
-        return name
-    return [*name, _sha256(read_bytes(file))]
+        tree = ast.parse(code)
+    except (SyntaxError, ValueError):  # a script in another language
+        return frozenset()
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found |= {one.name for one in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = "." * node.level + (node.module or "")
+            found |= {base, *(f"{base}{'' if base.endswith('.') else '.'}{one.name}" for one in node.names)}
+        elif isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
+            called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            if called in ("import_module", "__import__") and isinstance(node.args[0].value, str):
+                found.add(node.args[0].value)
+    return frozenset(filter(None, (_absolute(name, package) for name in found)))
 
 
-def _table(packing: FilePacking) -> str:
+def _absolute(name: str, package: str) -> str:
     try:
-        return _sha256(read_bytes(packing.file))
+        return resolve_name(name, package).removesuffix(".*").rstrip(".")
+    except ImportError:  # beyond the top of the package
+        return ""
+
+
+def _spec(name: str) -> ModuleSpec | None:
+    """Where a module is, without importing it or its package, which may have effects."""
+    if name in sys.modules:
+        return getattr(sys.modules[name], "__spec__", None)
+    above = name.rpartition(".")[0]
+    try:
+        if not above:
+            return find_spec(name)
+        places = getattr(_spec(above), "submodule_search_locations", None)
+        return PathFinder.find_spec(name, list(places)) if places else None
+    except (ImportError, ValueError):
+        return None
+
+
+def _own(file: Path) -> bool:
+    """Whether a module is the user's own."""
+    installed = {"site-packages", "dist-packages"} & set(file.parts) or str(file).startswith(_INSTALLED)
+    return file.is_file() and not installed
+
+
+def _content(file: Path) -> str:
+    try:
+        return _sha256(read_bytes(file))
     except OSError as error:
-        raise Indistinct(f"{packing.file} cannot be read: {error.strerror}") from None
+        raise Indistinct(f"{file} cannot be read: {error.strerror}") from None
 
 
 def _sha256(data: bytes | bytearray) -> str:

@@ -1,4 +1,4 @@
-"""What a computation may use beside its arguments: processes, a scheduler, and folders that remember.
+"""What a computation may use beside its arguments: processes, an executor, and folders that remember.
 
 Studies call ``map_tasks`` and ``rest_state`` deep inside; who starts a study says once what these find:
 
@@ -11,11 +11,15 @@ It holds within the block, in this thread, and for rest states in the worker pro
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
+
+#: The name under which a progress is told how many tasks a checkpoint had, before the first one begins.
+KEPT = "kept"
 
 
 class Progress(Protocol):
@@ -29,7 +33,7 @@ class Resources:
     """What is there to be used; None: nothing of the kind."""
 
     workers: int | None = None  #: number of local processes; None: all cores
-    scheduler: str | None = None  #: address of a Dask scheduler
+    executor: Executor | None = None  #: in place of local processes
     progress: Progress | None = None  #: who is told how far each sweep is
     checkpoint: Path | None = None  #: folder for the results of finished tasks
     rest_states: Path | None = None  #: folder for states at rest

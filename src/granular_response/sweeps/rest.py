@@ -29,13 +29,17 @@ def rest_state(problem: Problem) -> State:
     folder = current().rest_states
     if folder is None:
         return solvers.rest_state(problem)
-    memory, kept = Memory(folder, _PARTS), name(problem)
+    memory, kept = Memory(folder, _PARTS, states=True), name(problem)
     state = memory.load(kept)
-    if not isinstance(state, State):
-        state = solvers.rest_state(problem)
-        if not memory.shelf.is_dir():  # the first one of these sources
-            memory.clear()
-        memory.save(kept, state)
+    if isinstance(state, State):
+        return state
+    if not memory.shelf.is_dir():  # the first one of these sources
+        memory.clear()
+    with memory.making(kept):
+        state = memory.load(kept)  # another process may just have made it
+        if not isinstance(state, State):
+            state = solvers.rest_state(problem)
+            memory.save(kept, state)
     return state
 
 

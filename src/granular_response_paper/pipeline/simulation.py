@@ -79,7 +79,6 @@ def simulate(
     *,
     parameter_file: Path = PARAMETERS,
     workers: int | None = None,
-    scheduler: str | None = None,
     progress: Progress | None = None,
 ) -> Path:
     """Run the simulations of a group and store its datasets; returns the path of the file.
@@ -97,7 +96,7 @@ def simulate(
     kept = _checkpoint(output)
     folders = {"checkpoint": kept, "rest_states": output.parent.absolute() / REST_STATES}
     packages = dict.fromkeys((PACKAGE, collection_of(group).package.partition(".")[0]))
-    resources = using(workers=workers, scheduler=scheduler, progress=progress, packages=(*packages,), **folders)
+    resources = using(workers=workers, progress=progress, packages=(*packages,), **folders)
     with _alone(kept, output), resources:
         try:
             datasets = function(described)

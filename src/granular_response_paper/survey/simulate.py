@@ -5,7 +5,7 @@ group that a pipeline has no time for.
 
 Every finished task is kept, under a name made from the sources that its outcome depends on and from the task itself.
 So a run that was stopped goes on where it was, a block with more realizations computes the new ones alone, and a change
-of what is measured on stored responses costs nothing. Tasks run in this process, over all cores or over a Dask cluster,
+of what is measured on stored responses costs nothing. Tasks run in this process, over all cores or over an executor,
 as those of every sweep.
 """
 
