@@ -8,7 +8,6 @@ from typing import Annotated
 
 import typer
 
-from granular_response import __version__
 from granular_response.cli.command_line import CommandLine, loaded, output_option
 
 from .registry import PAPER, collection, collections
@@ -36,7 +35,6 @@ CollectionName = Annotated[
 ]
 #: Folders and files that several commands take.
 Root = Annotated[Path, typer.Option(help="Folder of the checkout.")]
-LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
 GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
 
 
@@ -198,14 +196,6 @@ def groups(name: CollectionName = PAPER.name, root: Root = Path(".")) -> None:
         typer.echo(f"{group:26} {shown:22} {seconds:>6}  {captions.question(group)}")
 
 
-@commands.command("stages", "stages --collection extensions")
-def stages(name: CollectionName = PAPER.name, root: Root = Path(".")) -> None:
-    """Write the pipeline (dvc.yaml) of a collection from its figure groups and what their modules import."""
-    from .pipeline import stages as made
-
-    typer.echo(str(made.write(collection(name), root)))
-
-
 @commands.command("reproduce", "reproduce --collection extensions", "reproduce --force")
 def reproduce(
     name: CollectionName = PAPER.name,
@@ -247,43 +237,6 @@ def report(
     typer.echo(str(reporting.write(output, root, collection=one, embedded=embedded)))
     for path in reporting.write_fragments(fragments, root, collection=one) if fragments else ():
         typer.echo(str(path))
-
-
-@commands.command("archive", "archive -o slabs.zip")
-def archive(
-    output: Annotated[Path, output_option(help="Archive to make (RO-Crate, zip).")] = Path(
-        f"granular-response-{__version__}.zip"
-    ),
-    root: LockFolder = Path("."),
-) -> None:
-    """Archive the reproduction: datasets, figures, claims, sources and how each was made.
-
-    Everything must be up to date with dvc.lock.
-    """
-    from .archive import crate
-
-    loaded()
-    names = crate.write(output, root)
-    typer.echo(f"{output}: {len(names)} files, {output.stat().st_size / 1e6:.1f} MB")
-
-
-@commands.command("restore granular-response-0.1.0.zip", "restore https://example.org/granular-response-0.1.0.zip")
-def restore(
-    archive: Annotated[str, typer.Argument(help="An archive of this project: a file, or its address.")],
-    root: LockFolder = Path("."),
-) -> None:
-    """Copy the datasets from an archive, in place of computing them.
-
-    They must be those of dvc.lock. Existing datasets are kept.
-    """
-    from .archive import restore as restoring
-
-    loaded()
-    with restoring.local(archive) as file:
-        restored = restoring.restore(file, root)
-    for path in restored:
-        typer.echo(str(root / path))
-    typer.echo(f"{archive}: {len(restored)} datasets restored, those there already are the same")
 
 
 #: Entry point.
