@@ -10,7 +10,8 @@ import typer
 
 from granular_response.cli.command_line import CommandLine, loaded, output_option
 
-from .registry import PAPER, collection, collections
+from . import checkout
+from .registry import PAPER, collection, collection_of, collections
 
 commands = CommandLine(
     "granular-response-paper",
@@ -67,6 +68,7 @@ def simulate(
     from .pipeline import simulation
 
     loaded()
+    checkout.check(collection_of(group))
     if before := simulation.finished(group, output):
         commands.say(
             f"{group}: {before} finished tasks are kept; those of this code and these parameters are not run again"
@@ -94,6 +96,7 @@ def draw(
     from .pipeline import drawing
 
     loaded()
+    checkout.check(collection_of(group))
     others = [name.strip() for name in formats.split(",") if name.strip()]
     for path in drawing.draw(group, data, output, others):
         typer.echo(str(path))
@@ -130,6 +133,8 @@ def claims(
     one = collection(name)
     output, data = output or one.here / table.OUTPUT, data or one.here / "data"
     if not every:
+        checkout.check(one)
+        kept.check(others or kept.OUTPUT)
         _keep_verdicts(output, [group for group in table.groups_read(one) if not (data / f"{group}.nc").exists()])
     found = table.read(output) if every else table.write(output, data, others or kept.OUTPUT, collection=one)
     rows = [row for row in found["table"] if figure is None or figure in row["figures"]]
@@ -173,6 +178,7 @@ def summary(
     from .claims import preparations as writing
 
     loaded()
+    checkout.check(collection_of(writing.PREPARATION))
     typer.echo(str(writing.write(data or writing.SOURCE, output or writing.OUTPUT)))
 
 
@@ -182,10 +188,10 @@ def groups(name: CollectionName = PAPER.name, root: Root = Path(".")) -> None:
     from granular_response.inputs import read_json
 
     from . import captions
-    from .pipeline.reproduce import stored_times
 
-    one = collection(name)
-    times, _ = stored_times(one, root)
+    one, stored = collection(name), root / "benchmarks" / "pipeline.json"
+    runs = read_json(stored)["runs"] if stored.exists() else []
+    times = {row["stage"]: row["seconds"] for row in runs if row["collection"] == name}
     for group in one.groups:
         file = root / one.folder / "figures" / group / captions.FILE
         said = read_json(file) if file.exists() else {}  # a new group is not drawn yet
@@ -201,15 +207,12 @@ def reproduce(
     name: CollectionName = PAPER.name,
     root: Root = Path("."),
     force: Annotated[bool, typer.Option("--force", help="Run every stage, also those that are up to date.")] = False,
-    keep_times: Annotated[
-        bool, typer.Option("--keep-times", help="Store the seconds of all stages in benchmarks/pipeline.json.")
-    ] = False,
 ) -> None:
     """Run every stage of a collection that is out of date, and show the progress."""
     from .pipeline import reproduce as running
 
     arguments = ["--force"] if force else []
-    status = running.reproduce(collection(name), root, arguments=arguments, keep_times=keep_times, say=typer.echo)
+    status = running.reproduce(collection(name), root, arguments=arguments, say=typer.echo)
     if status:
         raise typer.Exit(status)
 
@@ -233,6 +236,7 @@ def report(
 
     loaded()
     one = collection(name)
+    checkout.check(one)
     output, root = output or one.here / reporting.OUTPUT, root or one.here
     typer.echo(str(reporting.write(output, root, collection=one, embedded=embedded)))
     for path in reporting.write_fragments(fragments, root, collection=one) if fragments else ():
