@@ -29,7 +29,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce extensions figure survey test fuzz broken scenes coverage lint notebooks docs archive restore package matrix
+.PHONY: help setup reproduce extensions figure survey test fuzz broken scenes coverage lint notebooks docs package matrix
 .PHONY: benchmark arena lock clean
 
 help: ## Show this list
@@ -47,7 +47,7 @@ $(PAPER): requirements.lock pyproject.toml src/granular_response_paper/pyproject
 	@echo "Installing the pinned versions into .venv (a minute or two the first time)"
 	@test -x "$(BIN)/python" || $(PYTHON) -m venv "$(VENV)"
 	@$(INSTALL) hatchling editables
-	@$(INSTALL) --no-build-isolation -e ".[export,pipeline]" -e "src/granular_response_paper[archive]" -e extensions
+	@$(INSTALL) --no-build-isolation -e ".[export,pipeline]" -e src/granular_response_paper -e extensions
 	@touch "$@"
 
 # Tests, documentation and Dask: a third of the time of installing. xarray imports Dask wherever it is installed, which
@@ -106,15 +106,6 @@ docs: $(TOOLS) ## Build the documentation site into docs/_build/html, running ev
 	"$(BIN)/python" -m sphinx -W --keep-going -q -b html docs docs/_build/html
 	"$(BIN)/python" .ci/links docs/_build/html
 
-archive: setup ## Write datasets, figures, claims and how each was made into one RO-Crate
-	"$(BIN)/granular-response-paper" archive
-
-restore: setup ## Take the datasets from an archive in place of computing them: make restore ARCHIVE=path or address
-	@test -n "$(ARCHIVE)" || { echo "make restore ARCHIVE=path or address" >&2; exit 1; }
-	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
-	"$(BIN)/granular-response-paper" restore "$(ARCHIVE)"
-	"$(BIN)/dvc" commit simulate < /dev/null
-
 package: $(TOOLS) ## Build sdist and wheel, and try the wheel in a fresh environment
 	.ci/package "$(BIN)/python" "$(PYTHON)"
 
@@ -125,15 +116,13 @@ benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
 	"$(BIN)/dvc" repro benchmarks/dvc.yaml
 
 arena: setup ## Steps, responses and bounces beside other codes that are installed; says how to install those that are not
-	"$(BIN)/python" benchmarks/bounces.py benchmarks/bounces.json
-	"$(BIN)/python" benchmarks/arena.py benchmarks/arena.json
-	"$(BIN)/python" benchmarks/responses.py benchmarks/responses.json
+	cd benchmarks && for name in bounces arena responses; do "$(BIN)/python" -m peers.$$name peers/$$name.json || exit; done
 	"$(BIN)/python" benchmarks/document.py
 
 lock: ## Renew requirements.lock with the newest versions that pyproject.toml allows
 	$(PYTHON) -m venv --clear "$(VENV)-lock"
 	"$(VENV)-lock/bin/python" -m pip install -qq hatchling editables ".[dask,docs,export,pipeline,test]" \
-	  "./src/granular_response_paper[archive]"
+	  ./src/granular_response_paper
 	{ sed -n '/^#/p' requirements.lock; \
 	  "$(VENV)-lock/bin/python" -m pip freeze --exclude granular-response --exclude granular-response-paper --exclude granular-response-extensions; } > requirements.lock.new
 	mv requirements.lock.new requirements.lock

@@ -22,12 +22,12 @@ from granular_response.store import files as store
 from granular_response_paper import checkout
 from granular_response_paper.claims import preparations
 from granular_response_paper.claims.claim import ClaimsError
-from granular_response_paper.pipeline import dvc, drawing, reproduce, simulation
+from granular_response_paper.pipeline import drawing, dvc, reproduce, simulation
 from granular_response_paper.registry import PAPER, Collection, GroupError, collection_of, collections
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C, where PyYAML has it: every process reads these files
 COLLECTIONS = collections()
-STAGES = {"simulate": "simulation", "draw": "drawing"}
+STAGES = {"simulate": "pipeline.simulation", "draw": "pipeline.drawing", "summary": "claims.preparations"}
 IDS = {"ids": lambda one: one.name}
 
 
@@ -68,11 +68,12 @@ def pipeline(folder: Path) -> dict[str, dict]:
 @pytest.mark.parametrize("collection", COLLECTIONS, **IDS)
 def test_each_stage_depends_on_what_it_imports_and_every_group_has_both(collection):
     stages, checked = pipeline((ROOT / collection.folder).resolve()), 0
-    groups = {f"{kind}@{group}" for kind in STAGES for group in collection.groups}
+    groups = {f"{kind}@{group}" for kind in ("simulate", "draw") for group in collection.groups}
     assert groups == {name for name in stages if "@" in name}
     for name in sorted(stages):
         kind, _, group = name.partition("@")
-        starts = [f"granular_response_paper.{'pipeline.' + STAGES[kind] if group else {'summary': 'claims.preparations'}.get(kind, kind)}"]
+        module = STAGES.get(kind, kind)
+        starts = [f"granular_response_paper.{module}"]
         if group:
             starts += [f"{collection.package}.{group}.{part}" for part in ("parameters", kind)]
         if kind in ("claims", "report"):
@@ -234,7 +235,7 @@ def test_a_lock_is_whole_while_dvc_writes_it(tmp_path):
     dvc.dump(lock, "after", dumper)
     assert seen == ["before"] and lock.read_text() == "after"
     environment = in_pipeline(tmp_path, "stages: {one: {cmd: 'true'}}\n")
-    script = "import sys, runpy, granular_response.store.atomic as atomic; atomic.write_bytes = lambda path, data: print(path);"
+    script = "import sys, runpy, granular_response.store.atomic as atomic; atomic.write_bytes = lambda path, _: print(path);"
     script += f"sys.argv = ['dvc', 'repro']; runpy.run_module('{dvc.__name__}', run_name='__main__')"
     lock.unlink()
     run = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True)
@@ -271,14 +272,16 @@ def test_a_copy_runs_until_its_sources_differ(copied, tmp_path):
             said = refuses(checkout.CheckoutError, None, checkout.check, PAPER, folder)
             assert said.startswith(f"granular_response runs from {ROOT / 'src' / 'granular_response'}, whose kernels/")
         model.write_bytes(content)
-    run = "simulate theory --workers 1 -o theory.nc".split()
+    run = ["simulate", "theory", "--workers", "1", "-o", "theory.nc"]
     done = subprocess.run([sys.executable, "-m", COMMAND, *run], cwd=copied, capture_output=True, text=True)
-    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1) and "whose kernels/new.py" in done.stderr
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert "whose kernels/new.py" in done.stderr
     own = {"PYTHONPATH": str(copied / "src")}
     assert "theory.nc" in python("-m", COMMAND, *run, folder=copied, **own)
     # an installed package, or another checkout, where this one's pipeline runs
     script = "from granular_response_paper import checkout; checkout.check()"
-    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, env=os.environ | own, capture_output=True, text=True)
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, cwd=ROOT, env=os.environ | own, capture_output=True, text=True)
     assert "CheckoutError: granular_response runs from " + str(copied) in done.stderr
     model.with_name("new.py").unlink()
 
