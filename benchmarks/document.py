@@ -102,7 +102,8 @@ def goals(found: Stored) -> list[dict[str, Any]]:
         ("Speed of a step over LAMMPS, friction, 908 disks", "least", over(908), 10.0, times),
         ("Speed of a step over LAMMPS, friction, 99,950 disks", "least", over(99_950), 4.0, times),
         ("Speed over LAMMPS to a response: friction 0.2, force 15, error 1e-5", "least", lammps("friction"), 50, times),
-        ("Speed over LAMMPS to a response: no friction, force 4, error 1e-6", "least", lammps("frictionless"), 1e3, times),
+        ("Speed over LAMMPS to a response: no friction, force 4, error 1e-6", "least", lammps("frictionless"), 1e3,
+         times),
         ("Processor time of a path to 15 mg, friction 0.2, 908 disks", "most", slab, 0.15, "{:.2g} s".format),
         ("Error of paths that lose no equilibrium", "most", max(exact), 1e-8, tiny),
         (f"Response of 100,000 disks with friction, {wall}", "most", large(100_000, path, "seconds"), 60, seconds),
@@ -147,7 +148,8 @@ def page(found: Stored) -> str:
                            scenes="scenes", events="events", exact="error at most 1e-8", error="largest error"),
         "costs": costs(found),
         "depth": table(found["depth"]["growth"], layers="layers", from_force="from force [mg]",
-                       to_force="to force [mg]", exponent_of_depth="exponent of depth in force", exponent_of_width="of width"),
+                       to_force="to force [mg]", exponent_of_depth="exponent of depth in force",
+                       exponent_of_width="of width"),
         "depth_on": found["depth"]["measured_on"],
     }  # fmt: skip
     text = (HERE / "benchmarks.md.in").read_text(encoding="utf-8")

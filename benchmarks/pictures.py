@@ -15,6 +15,7 @@ from granular_response.plot import style
 Metrics = dict[str, Any]
 Rows = list[dict[str, Any]]
 
+
 def pick(rows: Iterable[dict[str, Any]], **values: Any) -> Rows:
     """The records that have all these values."""
     return [row for row in rows if all(row.get(key) == value for key, value in values.items())]

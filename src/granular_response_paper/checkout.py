@@ -27,7 +27,8 @@ def check(collection: Collection = PAPER, start: Path = Path(".")) -> None:
     here = start.resolve()
     folders = [one for above in (here, *here.parents) for one in (above, above / collection.folder)]
     checkouts = [one for one in folders if (one / "dvc.yaml").is_file()]
-    for package in dict.fromkeys(("granular_response", "granular_response_paper", collection.package.partition(".")[0])):
+    names = ("granular_response", "granular_response_paper", collection.package.partition(".")[0])
+    for package in dict.fromkeys(names):
         own = next((one for top in checkouts if (one := top / "src" / package).is_dir()), None)
         spec = find_spec(package)
         if own is None or spec is None or spec.origin is None:

@@ -176,9 +176,10 @@ def summary(
 ) -> None:
     """Write the forces of the events of the slab in other preparations, which the claims read."""
     from .claims import preparations as writing
+    from .claims.claim import PREPARATION
 
     loaded()
-    checkout.check(collection_of(writing.PREPARATION))
+    checkout.check(collection_of(PREPARATION))
     typer.echo(str(writing.write(data or writing.SOURCE, output or writing.OUTPUT)))
 
 

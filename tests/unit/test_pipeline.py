@@ -235,7 +235,7 @@ def test_a_lock_is_whole_while_dvc_writes_it(tmp_path):
     dvc.dump(lock, "after", dumper)
     assert seen == ["before"] and lock.read_text() == "after"
     environment = in_pipeline(tmp_path, "stages: {one: {cmd: 'true'}}\n")
-    script = "import sys, runpy, granular_response.store.atomic as atomic; atomic.write_bytes = lambda path, _: print(path);"
+    script = "import sys, runpy, granular_response.store.atomic as one; one.write_bytes = lambda path, _: print(path);"
     script += f"sys.argv = ['dvc', 'repro']; runpy.run_module('{dvc.__name__}', run_name='__main__')"
     lock.unlink()
     run = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True)

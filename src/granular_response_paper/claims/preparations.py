@@ -53,11 +53,8 @@ def check(summary: Path = OUTPUT) -> None:
     lock = summary.parent / "dvc.lock"
     if not (summary.exists() and lock.exists()):
         return
-    simulated = re.search(
-        rf"^  simulate@{PREPARATION}:\n(?:   .*\n)*?    - path: data/{PREPARATION}\.nc\n(?:      .*\n)*?      md5: (\w+)",
-        read_text(lock),
-        re.MULTILINE,
-    )
+    written = rf"    - path: data/{PREPARATION}\.nc\n(?:      .*\n)*?      md5: (\w+)"
+    simulated = re.search(rf"^  simulate@{PREPARATION}:\n(?:   .*\n)*?{written}", read_text(lock), re.MULTILINE)
     if simulated and simulated[1] != store.read_attributes(summary).get("source_md5"):
         raise ClaimsError(
             f"{summary}: is older than {PREPARATION}.nc of {lock}; renew it by dvc repro summary in {summary.parent}"

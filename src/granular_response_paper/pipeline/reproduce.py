@@ -94,7 +94,8 @@ def reproduce(
         say("\n".join(last))
         return run.returncode
     ended()
-    say(f"{collection.title}: {ran} stages run, {number - ran} were up to date, {_clock(time.monotonic() - start)} gone")
+    gone = _clock(time.monotonic() - start)
+    say(f"{collection.title}: {ran} stages run, {number - ran} were up to date, {gone} gone")
     return 0
 
 
