@@ -18,8 +18,7 @@ from typing import Any
 
 import kernel
 import numpy as np
-import ours
-from peers import codes, processes
+from peers import codes, ours, processes
 from timing import write
 
 from granular_response import __version__
