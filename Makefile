@@ -29,7 +29,7 @@ export DVC_NO_ANALYTICS := 1
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup tools reproduce extensions figure survey test fuzz broken scenes coverage lint notebooks docs archive restore package wheels matrix
+.PHONY: help setup tools reproduce extensions figure survey test fuzz broken scenes coverage lint notebooks docs package wheels matrix
 .PHONY: benchmark arena lock clean
 
 help: ## Show this list
@@ -93,14 +93,6 @@ docs: tools ## Build the documentation site into docs/_build/html, running every
 	$(PY) -m sphinx -W --keep-going -q -b html docs docs/_build/html
 	$(PY) .ci/links docs/_build/html
 
-archive: setup ## Write datasets, figures, claims and how each was made into one RO-Crate
-	$(PY) -m granular_response_paper archive
-
-restore: setup ## Take the datasets from an archive in place of computing them: make restore ARCHIVE=path or address
-	@test -n "$(ARCHIVE)" || { echo "make restore ARCHIVE=path or address" >&2; exit 1; }
-	$(PY) -m granular_response_paper restore "$(ARCHIVE)"
-	$(PY) -m dvc commit simulate < /dev/null
-
 package: tools ## Build sdist and wheel, and try the wheel in a fresh environment
 	.ci/package $(PY) $(PYTHON)
 
@@ -114,19 +106,16 @@ benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
 	$(PY) -m dvc repro benchmarks/dvc.yaml
 
 arena: setup ## Steps, responses and bounces beside other codes that are installed; says how to install those that are not
-	$(PY) benchmarks/bounces.py benchmarks/bounces.json
-	$(PY) benchmarks/arena.py benchmarks/arena.json
-	$(PY) benchmarks/responses.py benchmarks/responses.json
+	cd benchmarks && for name in bounces arena responses; do ../$(PY) -m peers.$$name peers/$$name.json || exit; done
 	$(PY) benchmarks/document.py
 
 lock: ## Renew requirements.lock with the newest versions that pyproject.toml allows
-	$(PYTHON) -m venv --clear ".venv-lock"
-	".venv-lock/bin/python" -m pip install -qq hatchling editables ".[dask,docs,export,pipeline,test]" \
-	  "./src/granular_response_paper[archive]"
+	$(PYTHON) -m venv --clear .venv-lock
+	.venv-lock/bin/python -m pip install -qq hatchling editables ".[dask,docs,export,pipeline,test]" ./src/granular_response_paper
 	{ sed -n '/^#/p' requirements.lock; \
-	  ".venv-lock/bin/python" -m pip freeze --exclude granular-response --exclude granular-response-paper --exclude granular-response-extensions; } > requirements.lock.new
+	  .venv-lock/bin/python -m pip freeze --exclude granular-response --exclude granular-response-paper --exclude granular-response-extensions; } > requirements.lock.new
 	mv requirements.lock.new requirements.lock
-	rm -rf ".venv-lock"
+	rm -rf .venv-lock
 
 clean: ## Remove .venv, caches and datasets; the DVC cache and the figures stay
 	rm -rf .venv .venv-lock docs/_build docs/_drawn docs/gallery .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc data/.rest_states data/.*.checkpoint extensions/data/*.nc extensions/data/.rest_states

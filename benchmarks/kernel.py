@@ -11,8 +11,8 @@ import sys
 import time
 from collections.abc import Callable
 
-import lammps
 import numba as nb
+from peers import lammps
 from timing import interleaved, write
 
 from granular_response.kernels import forces

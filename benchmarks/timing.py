@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import platform
+import re
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +15,15 @@ import numpy as np
 from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
 from granular_response.store import atomic
-from granular_response_paper.pipeline.reproduce import processor
+
+
+def processor() -> str:
+    """The kind of processor, as the system calls it; no name of the machine."""
+    try:
+        names = re.findall(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M)
+    except OSError:
+        names = []
+    return names[0] if names else platform.processor() or platform.machine()
 
 
 def scene(friction: float, force: float | None = None, **protocol: Any) -> Scene:

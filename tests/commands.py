@@ -19,8 +19,7 @@ from pathlib import Path
 
 LIBRARY, PAPER = "granular_response", "granular_response_paper"
 #: Commands of the reproduction; all others are the library's.
-OF_THE_PAPER = {"simulate", "draw", "summary", "claims", "groups", "stages", "reproduce", "report"}
-OF_THE_PAPER |= {"archive", "restore"}
+OF_THE_PAPER = {"simulate", "draw", "summary", "claims", "groups", "reproduce", "report"}
 #: A scene that is solved at once.
 SCENE = """\
 packing: {kind: slab, layers: 3, disks_per_row: 5}
@@ -37,7 +36,6 @@ IMPORTED = [
     "granular_response.store.export",
     "granular_response.store.result",
     "granular_response.store.summary",
-    "granular_response_paper.archive.crate",
     "granular_response_paper.claims.table",
     "granular_response_paper.cli",
     "granular_response_paper.pipeline.drawing",

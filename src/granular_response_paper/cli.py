@@ -8,10 +8,10 @@ from typing import Annotated
 
 import typer
 
-from granular_response import __version__
 from granular_response.cli.command_line import CommandLine, loaded, output_option
 
-from .registry import PAPER, collection, collections
+from . import checkout
+from .registry import PAPER, collection, collection_of, collections
 
 commands = CommandLine(
     "granular-response-paper",
@@ -36,7 +36,6 @@ CollectionName = Annotated[
 ]
 #: Folders and files that several commands take.
 Root = Annotated[Path, typer.Option(help="Folder of the checkout.")]
-LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
 GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
 
 
@@ -65,6 +64,7 @@ def simulate(
     from .pipeline import simulation
 
     loaded()
+    checkout.check(collection_of(group))
     if before := simulation.finished(group, output):
         commands.say(
             f"{group}: {before} finished tasks are kept; those of this code and these parameters are not run again"
@@ -90,6 +90,7 @@ def draw(
     from .pipeline import drawing
 
     loaded()
+    checkout.check(collection_of(group))
     others = [name.strip() for name in formats.split(",") if name.strip()]
     for path in drawing.draw(group, data, output, others):
         typer.echo(str(path))
@@ -126,6 +127,8 @@ def claims(
     one = collection(name)
     output, data = output or one.here / table.OUTPUT, data or one.here / "data"
     if not every:
+        checkout.check(one)
+        kept.check(others or kept.OUTPUT)
         _keep_verdicts(output, [group for group in table.groups_read(one) if not (data / f"{group}.nc").exists()])
     found = table.read(output) if every else table.write(output, data, others or kept.OUTPUT, collection=one)
     rows = [row for row in found["table"] if figure is None or figure in row["figures"]]
@@ -167,8 +170,10 @@ def summary(
 ) -> None:
     """Write the forces of the events of the slab in other preparations, which the claims read."""
     from .claims import preparations as writing
+    from .claims.claim import PREPARATION
 
     loaded()
+    checkout.check(collection_of(PREPARATION))
     typer.echo(str(writing.write(data or writing.SOURCE, output or writing.OUTPUT)))
 
 
@@ -178,10 +183,10 @@ def groups(name: CollectionName = PAPER.name, root: Root = Path(".")) -> None:
     from granular_response.inputs import read_json
 
     from . import captions
-    from .pipeline.reproduce import stored_times
 
-    one = collection(name)
-    times, _ = stored_times(one, root)
+    one, stored = collection(name), root / "benchmarks" / "pipeline.json"
+    runs = read_json(stored)["runs"] if stored.exists() else []
+    times = {row["stage"]: row["seconds"] for row in runs if row["collection"] == name}
     for group in one.groups:
         file = root / one.folder / "figures" / group / captions.FILE
         said = read_json(file) if file.exists() else {}  # a new group is not drawn yet
@@ -192,28 +197,17 @@ def groups(name: CollectionName = PAPER.name, root: Root = Path(".")) -> None:
         typer.echo(f"{group:26} {shown:22} {seconds:>6}  {captions.question(group)}")
 
 
-@commands.command("stages", "stages --collection extensions")
-def stages(name: CollectionName = PAPER.name, root: Root = Path(".")) -> None:
-    """Write the pipeline (dvc.yaml) of a collection from its figure groups and what their modules import."""
-    from .pipeline import stages as made
-
-    typer.echo(str(made.write(collection(name), root)))
-
-
 @commands.command("reproduce", "reproduce --collection extensions", "reproduce --force")
 def reproduce(
     name: CollectionName = PAPER.name,
     root: Root = Path("."),
     force: Annotated[bool, typer.Option("--force", help="Run every stage, also those that are up to date.")] = False,
-    keep_times: Annotated[
-        bool, typer.Option("--keep-times", help="Store the seconds of all stages in benchmarks/pipeline.json.")
-    ] = False,
 ) -> None:
     """Run every stage of a collection that is out of date, and show the progress."""
     from .pipeline import reproduce as running
 
     arguments = ["--force"] if force else []
-    status = running.reproduce(collection(name), root, arguments=arguments, keep_times=keep_times, say=typer.echo)
+    status = running.reproduce(collection(name), root, arguments=arguments, say=typer.echo)
     if status:
         raise typer.Exit(status)
 
@@ -237,47 +231,11 @@ def report(
 
     loaded()
     one = collection(name)
+    checkout.check(one)
     output, root = output or one.here / reporting.OUTPUT, root or one.here
     typer.echo(str(reporting.write(output, root, collection=one, embedded=embedded)))
     for path in reporting.write_fragments(fragments, root, collection=one) if fragments else ():
         typer.echo(str(path))
-
-
-@commands.command("archive", "archive -o slabs.zip")
-def archive(
-    output: Annotated[Path, output_option(help="Archive to make (RO-Crate, zip).")] = Path(
-        f"granular-response-{__version__}.zip"
-    ),
-    root: LockFolder = Path("."),
-) -> None:
-    """Archive the reproduction: datasets, figures, claims, sources and how each was made.
-
-    Everything must be up to date with dvc.lock.
-    """
-    from .archive import crate
-
-    loaded()
-    names = crate.write(output, root)
-    typer.echo(f"{output}: {len(names)} files, {output.stat().st_size / 1e6:.1f} MB")
-
-
-@commands.command("restore granular-response-0.1.0.zip", "restore https://example.org/granular-response-0.1.0.zip")
-def restore(
-    archive: Annotated[str, typer.Argument(help="An archive of this project: a file, or its address.")],
-    root: LockFolder = Path("."),
-) -> None:
-    """Copy the datasets from an archive, in place of computing them.
-
-    They must be those of dvc.lock. Existing datasets are kept.
-    """
-    from .archive import restore as restoring
-
-    loaded()
-    with restoring.local(archive) as file:
-        restored = restoring.restore(file, root)
-    for path in restored:
-        typer.echo(str(root / path))
-    typer.echo(f"{archive}: {len(restored)} datasets restored, those there already are the same")
 
 
 #: Entry point.

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from places import ROOT
 
-SCRIPTS = sorted(path.stem for path in (ROOT / "benchmarks").glob("*.py"))
+PEERS = [f"peers.{path.stem}" for path in (ROOT / "benchmarks" / "peers").glob("*.py")]
+SCRIPTS = sorted([*PEERS, *(path.stem for path in (ROOT / "benchmarks").glob("*.py"))])
 
 
 @pytest.fixture
@@ -29,29 +30,18 @@ def test_every_script_finds_what_it_imports(script, name):
     assert script(name).__doc__
 
 
-def test_what_skipping_forces_on_changes_no_result(script):
-    skipping = script("skipping")
-    _, plain = skipping.settled(0.2, 500)
-    for force in (skipping.all_walls, lambda dynamics: skipping.search_often(dynamics, 200)):
-        _, forced = skipping.settled(0.2, 500)
-        force(forced)
-        forced.advance(1000 - forced.steps)
-        plain.advance(1000 - plain.steps)
-        assert np.array_equal(plain.position, forced.position)
-
-
 @pytest.fixture
 def nothing_installed(script, monkeypatch):
     """No other code."""
     monkeypatch.delenv("ARENA_LMP", raising=False)
-    monkeypatch.setattr(script("peers").shutil, "which", lambda name: None)
+    monkeypatch.setattr(script("peers.processes").shutil, "which", lambda name: None)
 
 
 NAMES = ["LAMMPS", "newest LAMMPS", "LIGGGHTS", "YADE"]
 
 
 def test_codes_that_are_not_installed_are_named(script, nothing_installed, monkeypatch, tmp_path, capsys):
-    arena = script("arena")
+    arena = script("peers.arena")
     monkeypatch.setattr(arena.kernel, "SLABS", [(4, 9, 100, 20)])
     monkeypatch.setattr(arena, "STEPS", {34: 20})
     monkeypatch.setattr(arena, "ROUNDS", 1)
@@ -70,26 +60,26 @@ def test_the_least_time_within_an_error_is_of_the_runs_within_it(script):
         {"scene": "s", "code": "c", "error": error, "seconds": 9.0, "processor": time}
         for error, time in ((5e-3, 1.0), (5e-4, 4.0), (2e-4, 3.0))
     ]
-    (row,) = script("responses").reached(runs)
+    (row,) = script("peers.responses").reached(runs)
     assert (row["0.01"], row["0.001"], row["0.0001"], row["least_error"]) == (1.0, 3.0, None, 2e-4)
 
 
 def test_times_of_other_codes_come_from_their_log_and_their_stamps(script, tmp_path):
-    peers = script("peers")
+    processes = script("peers.processes")
     log = "Loop time of 2 on 1 procs for 10 steps with 3 atoms\nLoop time of 8 on 1 procs for 20 steps with 3 atoms\n"
     (tmp_path / "processor").write_text("1000000000 7 3\n1500000000 8 4\n2000000000 9 5\n4000000000 9 6\n")
     (tmp_path / "memory").write_text("VmHWM:\t    2048 kB\n")
-    used = peers.used(tmp_path, log)
-    assert used.stages == [peers.Stage(10, 2.0, 0.5), peers.Stage(20, 8.0, 2.0)]
+    used = processes.used(tmp_path, log)
+    assert used.stages == [processes.Stage(10, 2.0, 0.5), processes.Stage(20, 8.0, 2.0)]
     assert used.least() == {"seconds": 0.4, "processor": 0.1, "peak_mebibytes": 2.0}
     assert used.whole() == {"steps": 30, "seconds": 10.0, "processor": 2.5}
     (tmp_path / "processor").unlink()
-    assert peers.used(tmp_path, log).least()["processor"] is None
+    assert processes.used(tmp_path, log).least()["processor"] is None
 
 
 @pytest.mark.parametrize("name", ["lammps", "liggghts", "yade_dem"])
 def test_other_codes_take_the_slab_and_the_load(script, name):
-    code = script(name)
+    code = script(f"peers.{name}")
     command = code.executable()
     if command is None:
         pytest.skip(f"{name} is not installed")
@@ -103,11 +93,14 @@ def test_other_codes_take_the_slab_and_the_load(script, name):
     assert (run.floor - run.floor_rest).sum() == pytest.approx(2.0, rel=1e-3)
 
 
-@pytest.mark.parametrize("integrator", ["beeman", "verlet", "gear"])
-def test_a_swing_has_the_stored_error(script, document, integrator):
-    trajectory = script("trajectory")
-    stored = document.pick(document.read()["trajectory"]["runs"], problem="swing", integrator=integrator)[0]
-    assert trajectory.swing(integrator, stored["time_step"]) == pytest.approx(stored["error"], rel=1e-4)
+def test_the_page_has_what_is_stored(document):
+    found = document.read()
+    assert (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8") == document.page(found)
+    assert (ROOT / "docs" / "_generated" / "costs.md").read_text(encoding="utf-8") == document.costs(found) + "\n"
+    assert json.loads((ROOT / "benchmarks" / "summary.json").read_text())["goals"] == document.goals(found)
+    slow = json.loads(json.dumps(found))
+    slow["startup"]["runs"][0]["seconds"] = 41.0
+    assert [row["what"] for row in document.goals(slow) if not row["met"]] == ["Every kernel compiled and cached"]
 
 
 @pytest.mark.parametrize(("kind", "scene"), [("nine points", 0), ("small", 3), ("small", 2), ("slabs", 0)])

@@ -20,7 +20,6 @@ from granular_response.store import atomic
 from granular_response.store import files as store
 from granular_response.store.files import StoreError
 from granular_response_paper import cli as paper
-from granular_response_paper.archive import crate
 from granular_response_paper.claims import preparations
 
 TABLE = "packing: {kind: file, path: disks.nc, width: 6}\ncontact: {friction: 0.0}\n"
@@ -33,7 +32,6 @@ COMMANDS = {
     "summary": (["summary", "--data", "preparation.nc"], ["preparation.nc"]),
     "export": (["export", "result.nc"], ["result.nc"]),
     "plot": (["plot", "result.pdf"], ["result.pdf"]),
-    "archive": (["archive"], ["params.yaml", "LICENSE"]),
     "claims": (["claims", "--data", "data", "--others", "others.nc"], ["data/torque.nc", "others.nc"]),
     "report": (["report", "--root", "."], ["data/torque.nc", "figures/claims.json", "figures/a.png"]),
 }
@@ -59,10 +57,7 @@ def inputs(tmp_path_factory) -> Path:
     shutil.copy(folder / "preparation.nc", folder / "others.nc")
     for path in ("figures/claims.json", "figures/a.png"):
         (folder / path).write_text("{}")
-    for name in crate.ALSO:
-        shutil.copy(ROOT / name, folder)
-    for name in ("dvc.yaml", "dvc.lock"):
-        (folder / name).write_text("stages: {}\n")
+    shutil.copy(ROOT / "params.yaml", folder)
     succeeded("run", "scene.yaml", "-o", "result.nc", folder=folder)
     shutil.copy(folder / "result.nc", folder / "result.pdf")
     succeeded("simulate", "theory", "--workers", 1, "-o", "theory/theory.nc", folder=folder)

@@ -30,8 +30,8 @@ def test_pinned_versions_run_on_every_python_that_is_promised():
 
 #: Where each package stands, its own project file, and the extras that `make setup` installs with it.
 PACKAGES = {
-    "src/granular_response": ("pyproject.toml", ("export", "dask")),
-    "src/granular_response_paper": ("src/granular_response_paper/pyproject.toml", ("archive",)),
+    "src/granular_response": ("pyproject.toml", ("export", "dask", "pipeline")),
+    "src/granular_response_paper": ("src/granular_response_paper/pyproject.toml", ()),
     "extensions/src/granular_response_extensions": ("extensions/pyproject.toml", ()),
 }
 

@@ -1,46 +1,93 @@
-"""The pipelines of the collections: made from folders and imports, and what their stages read is what they name."""
+"""The pipelines of the collections: what their stages read is what they name, and what runs is what they record."""
 
 import os
 import re
+import shutil
+import signal
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
+import grimp
 import pytest
 import yaml
+from commands import PAPER as COMMAND
+from commands import python
 from places import ROOT
 from refusals import refuses
 
 from granular_response.scene import SceneError
 from granular_response.store import files as store
-from granular_response_paper.pipeline import drawing, imports, reproduce, simulation, stages
+from granular_response_paper import checkout
+from granular_response_paper.claims import preparations
+from granular_response_paper.claims.claim import ClaimsError
+from granular_response_paper.pipeline import drawing, dvc, reproduce, simulation
 from granular_response_paper.registry import PAPER, Collection, GroupError, collection_of, collections
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C, where PyYAML has it: every process reads these files
 COLLECTIONS = collections()
-KINDS = ("simulate", "draw")
+STAGES = {"simulate": "pipeline.simulation", "draw": "pipeline.drawing", "summary": "claims.preparations"}
+IDS = {"ids": lambda one: one.name}
 
 
-def test_the_walk_finds_imports_through_packages():
-    modules = imports.closure(["granular_response.cli.main"])
-    assert {"granular_response", "granular_response.store.files", "granular_response.store.atomic"} <= modules
-    assert "granular_response.scene.errors" in modules  # imported by its package, inside a command
-    assert "granular_response.plot.style" not in imports.closure(["granular_response.kernels"])
+@cache
+def imports():
+    packages = ("granular_response", "granular_response_paper", "granular_response_extensions")
+    return grimp.build_graph(*packages, exclude_type_checking_imports=True, cache_dir=None)
 
 
-def test_the_paper_imports_nothing_of_the_extensions():
-    modules = [one for group in PAPER.groups for kind in KINDS for one in stages.starts(PAPER, kind, group)]
-    found = imports.closure([*modules, *stages.judging(PAPER), "granular_response_paper.cli"])
-    assert {name.partition(".")[0] for name in found} == {"granular_response", "granular_response_paper"}
+def imported(*modules: str) -> set[Path]:
+    """The files of modules, of all that they import in the end, and of the packages on the way."""
+    graph, todo, seen = imports(), list(modules), set()
+    while todo:
+        module = todo.pop()
+        if module not in seen and module in graph.modules:
+            seen.add(module)
+            todo += [*graph.find_modules_directly_imported_by(module), module.rpartition(".")[0]]
+            todo += graph.find_descendants(module) if module in modules else ()
+    found = {}
+    for module in seen:
+        base = Path(sys.modules["granular_response"].__file__).parents[1] / module.replace(".", "/")
+        if module.startswith("granular_response_extensions"):
+            base = ROOT / "extensions" / "src" / module.replace(".", "/")
+        found[module] = next(path for path in (base / "__init__.py", base.with_suffix(".py")) if path.exists())
+    return {path for path in found.values() if path.stat().st_size}  # an empty package is none to depend on
 
 
-@pytest.mark.parametrize("collection", COLLECTIONS, ids=lambda one: one.name)
-def test_the_pipeline_in_git_is_the_one_that_is_made(collection):
-    path = ROOT / collection.folder / stages.FILE
-    assert path.read_text() == stages.document(collection, ROOT), "granular-response-paper stages"
+@cache
+def pipeline(folder: Path) -> dict[str, dict]:
+    """Each stage as DVC resolves it: its dependencies as paths."""
+    from dvc.repo import Repo
+
+    with Repo(str(folder)) as repo:
+        own = [stage for stage in repo.index.stages if Path(stage.path) == folder / "dvc.yaml"]
+        return {stage.addressing.rpartition(":")[2]: [Path(dep.fs_path) for dep in stage.deps] for stage in own}
 
 
-@pytest.mark.parametrize("collection", COLLECTIONS, ids=lambda one: one.name)
+@pytest.mark.parametrize("collection", COLLECTIONS, **IDS)
+def test_each_stage_depends_on_what_it_imports_and_every_group_has_both(collection):
+    stages, checked = pipeline((ROOT / collection.folder).resolve()), 0
+    groups = {f"{kind}@{group}" for kind in ("simulate", "draw") for group in collection.groups}
+    assert groups == {name for name in stages if "@" in name}
+    for name in sorted(stages):
+        kind, _, group = name.partition("@")
+        module = STAGES.get(kind, kind)
+        starts = [f"granular_response_paper.{module}"]
+        if group:
+            starts += [f"{collection.package}.{group}.{part}" for part in ("parameters", kind)]
+        if kind in ("claims", "report"):
+            part = {"claims": "claims", "report": "tables"}[kind]
+            starts += [f"{collection.package}.{one}.{part}" for one in collection.groups]
+        named = {path.resolve() for path in stages[name]}
+        missing = [path for path in imported(*starts) if not {path, *path.parents} & named]
+        assert not missing, f"{name} does not depend on {missing[0].relative_to(ROOT)}, which it imports"
+        assert all(path.exists() or path.suffix == ".nc" or path.name == "data" for path in named)
+        checked += 1
+    assert checked == len(reproduce.stage_names(collection, ROOT))
+
+
+@pytest.mark.parametrize("collection", COLLECTIONS, **IDS)
 def test_folders_parameters_and_lock_have_the_same_groups(collection):
     base = ROOT / collection.folder
     given = yaml.load((base / "params.yaml").read_text(), LOADER)
@@ -53,26 +100,6 @@ def test_folders_parameters_and_lock_have_the_same_groups(collection):
     assert locked == set(reproduce.stage_names(collection, ROOT))
     # no stage depends on the package of a group, which DVC would say of each empty one
     assert not [group for group in collection.groups if (collection.path / group / "__init__.py").read_text()]
-
-
-def test_a_lock_is_empty_while_every_stage_runs(tmp_path):
-    """At the end it has the stages of the pipeline in its order: also those that did not run, and none that is gone."""
-    lock, names = tmp_path / "dvc.lock", ["simulate@a", "simulate@b", "draw@a", "draw@b"]
-    one = "  {}:\n    cmd: {}\n    outs:\n    - path: {}\n".format
-    head = "schema: '2.0'\nstages:\n"
-    before = head + one("draw@b", "old", "d") + one("gone", "old", "g") + one("simulate@a", "old", "a")
-    lock.write_text(before)
-    with reproduce.emptied(lock, ()):
-        assert lock.read_text() == before
-    with reproduce.emptied(lock, names):
-        assert not lock.exists()
-    assert lock.read_text() == head + one("simulate@a", "old", "a") + one("draw@b", "old", "d")
-    with pytest.raises(KeyboardInterrupt), reproduce.emptied(lock, names):
-        lock.write_text(head + one("draw@a", "new", "x") + one("simulate@a", "new", "y"))
-        raise KeyboardInterrupt
-    assert lock.read_text() == head + one("simulate@a", "new", "y") + one("draw@a", "new", "x") + one(
-        "draw@b", "old", "d"
-    )
 
 
 def test_a_misspelt_group_names_the_right_one_and_where_it_lives(tmp_path):
@@ -122,30 +149,6 @@ def test_a_mistake_is_one_line_with_its_key(tmp_path, change, said):
     assert refuses(SceneError, None, simulation.parameters, "sensitivity", path).startswith(f"{path}: {said}")
 
 
-class Clock:
-    """Seconds that a test sets."""
-
-    now = 0.0
-
-    def __call__(self):
-        return self.now
-
-
-def test_progress_says_what_is_done_and_scales_the_rest_by_this_machine():
-    clock = Clock()
-    names = ["simulate@a", "simulate@b", "draw@a", "draw@b"]
-    watch = reproduce.Watch(names, {"simulate@a": 10.0, "simulate@b": 30.0, "draw@a": 2.0, "draw@b": 4.0}, clock)
-    assert watch.read("Running stage 'simulate@a':\n") == ""
-    clock.now = 20.0  # twice as slow as stored
-    said = watch.read("Running stage 'simulate@b':\n")
-    assert " ".join(said.split()) == "1 of 4 simulate@a 20.0 s 0:20 gone, at most 1:12 to come"
-    assert watch.read("> granular-response-paper simulate b\n") == ""
-    clock.now = 80.0
-    assert "2 of 4  simulate@b" in watch.read("Stage 'draw@a' didn't change, skipping\n")
-    assert watch.taken == {"simulate@a": 20.0, "simulate@b": 60.0, "draw@a": 0.0}
-    assert watch.rest() == "1:20 gone, at most 0:08 to come"
-
-
 def small_collection(folder: Path, monkeypatch) -> Collection:
     """A package with one figure group, installed from ``folder``."""
     package = folder / "src" / "small_collection"
@@ -181,12 +184,133 @@ def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
     assert response.shape == (2, 13) and abs(response.sum(axis=1) - 1.0).max() < 0.2
 
 
+def in_pipeline(folder: Path, stages: str) -> dict[str, str]:
+    """A folder with a pipeline; the environment that DVC needs there."""
+    (folder / "dvc.yaml").write_text(stages)
+    environment = os.environ | {"GIT_CEILING_DIRECTORIES": str(folder.parent)}
+    subprocess.run([sys.executable, "-m", "dvc", "init", "--no-scm", "-q"], cwd=folder, env=environment, check=True)
+    return environment
+
+
+EMPTY = Collection("empty", "granular_response_paper.pipeline", ".", "nothing")
+
+
 def test_a_stage_that_fails_is_shown_and_ends_the_run(tmp_path):
     """A pipeline of two stages, run by the command that `make reproduce` runs."""
-    (tmp_path / "dvc.yaml").write_text("stages: {claims: {cmd: 'true'}, report: {cmd: 'echo the reason && false'}}\n")
-    environment = os.environ | {"GIT_CEILING_DIRECTORIES": str(tmp_path.parent)}
-    subprocess.run([sys.executable, "-m", "dvc", "init", "--no-scm", "-q"], cwd=tmp_path, env=environment, check=True)
+    in_pipeline(tmp_path, "stages: {claims: {cmd: 'true'}, report: {cmd: 'echo the reason && false'}}\n")
     said = []
-    empty = Collection("empty", "granular_response_paper.pipeline", ".", "nothing")
-    assert reproduce.reproduce(empty, tmp_path, say=said.append) != 0
-    assert any("claims" in line for line in said) and "the reason" in said[-1]
+    assert reproduce.reproduce(EMPTY, tmp_path, say=said.append) != 0
+    assert said[0].split()[:4] == ["1", "of", "2", "claims"] and "the reason" in said[-1]
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT], ids=lambda one: one.name)
+def test_a_run_that_is_killed_ends_its_children_and_keeps_its_lock(tmp_path, number):
+    """Its stage holds a pipe as long as it runs, so that this test sees it begin and end."""
+    os.mkfifo(tmp_path / "alive")
+    stages = "stages: {first: {cmd: 'true'}, second: {cmd: 'exec 3> alive; echo begun >&3; sleep 1000'}}\n"
+    environment = in_pipeline(tmp_path, stages)
+    script = (
+        "from pathlib import Path; from granular_response_paper.pipeline import reproduce;"
+        "from granular_response_paper.registry import Collection;"
+        "reproduce.reproduce(Collection('empty', 'granular_response_paper.pipeline', '.', 'nothing'), Path())"
+    )
+    run = subprocess.Popen([sys.executable, "-c", script], cwd=tmp_path, env=environment, stderr=subprocess.DEVNULL)
+    with open(tmp_path / "alive") as alive:
+        assert alive.readline() == "begun\n"
+        run.send_signal(number)
+        assert alive.read() == ""  # once everything that the stage has started is gone
+    assert run.wait() != 0
+    assert list(yaml.load((tmp_path / "dvc.lock").read_text(), LOADER)["stages"]) == ["first"]
+
+
+def test_a_lock_is_whole_while_dvc_writes_it(tmp_path):
+    """Whenever it is killed: the file is replaced in one step, and DVC calls the function that does so."""
+    lock, seen = tmp_path / "dvc.lock", []
+    lock.write_text("before")
+
+    def dumper(data, stream):
+        stream.write(data)
+        seen.append(lock.read_text())
+
+    dvc.dump(lock, "after", dumper)
+    assert seen == ["before"] and lock.read_text() == "after"
+    environment = in_pipeline(tmp_path, "stages: {one: {cmd: 'true'}}\n")
+    script = "import sys, runpy, granular_response.store.atomic as one; one.write_bytes = lambda path, _: print(path);"
+    script += f"sys.argv = ['dvc', 'repro']; runpy.run_module('{dvc.__name__}', run_name='__main__')"
+    lock.unlink()
+    run = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert run.returncode == 0 and "dvc.lock\n" in run.stdout and not lock.exists(), run.stderr
+
+
+PACKAGES = ("granular_response", "granular_response_paper")
+
+
+@pytest.fixture(scope="module")
+def copied(tmp_path_factory) -> Path:
+    """A copy of this checkout: a second clone, a worktree or a copy, but for the environment."""
+    folder = tmp_path_factory.mktemp("copied")
+    for package in PACKAGES:
+        shutil.copytree(ROOT / "src" / package, folder / "src" / package, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("dvc.yaml", "params.yaml"):
+        shutil.copy(ROOT / name, folder)
+    return folder
+
+
+def test_a_copy_runs_until_its_sources_differ(copied, tmp_path):
+    """Run from here: the sources of this checkout are imported, whatever the folder; then from the copy itself."""
+    model = copied / "src" / "granular_response" / "kernels" / "model.py"
+    below, link = copied / "data" / "below", tmp_path / "link"
+    below.mkdir(parents=True)
+    link.symlink_to(copied)
+    for folder in (copied, below, link):
+        checkout.check(start=folder)
+    checkout.check(start=ROOT)
+    content = model.read_bytes()
+    for change in (lambda: model.write_bytes(content + b"#"), model.unlink, model.with_name("new.py").touch):
+        change()
+        for folder in (copied, below, link):
+            said = refuses(checkout.CheckoutError, None, checkout.check, PAPER, folder)
+            assert said.startswith(f"granular_response runs from {ROOT / 'src' / 'granular_response'}, whose kernels/")
+        model.write_bytes(content)
+    run = ["simulate", "theory", "--workers", "1", "-o", "theory.nc"]
+    done = subprocess.run([sys.executable, "-m", COMMAND, *run], cwd=copied, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert "whose kernels/new.py" in done.stderr
+    own = {"PYTHONPATH": str(copied / "src")}
+    assert "theory.nc" in python("-m", COMMAND, *run, folder=copied, **own)
+    # an installed package, or another checkout, where this one's pipeline runs
+    script = "from granular_response_paper import checkout; checkout.check()"
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, cwd=ROOT, env=os.environ | own, capture_output=True, text=True)
+    assert "CheckoutError: granular_response runs from " + str(copied) in done.stderr
+    model.with_name("new.py").unlink()
+
+
+def test_outside_a_checkout_nothing_is_refused(tmp_path):
+    checkout.check(start=tmp_path)
+    (tmp_path / "dvc.yaml").touch()
+    checkout.check(start=tmp_path)
+
+
+@pytest.mark.parametrize("collection", COLLECTIONS[1:], **IDS)
+def test_an_extension_is_compared_with_its_own_folder(collection, tmp_path):
+    package = tmp_path / collection.folder / "src" / collection.package
+    package.mkdir(parents=True)
+    (tmp_path / collection.folder / "dvc.yaml").touch()
+    for folder in (tmp_path, tmp_path / collection.folder):
+        said = refuses(checkout.CheckoutError, None, checkout.check, collection, folder)
+        assert said.startswith(f"{collection.package} runs from")
+    checkout.check(PAPER, tmp_path / collection.folder)
+
+
+def test_the_stored_summary_of_preparations_is_the_one_of_the_lock(tmp_path):
+    preparations.check(ROOT / preparations.OUTPUT)
+    for name in ("summary.nc", "dvc.lock"):
+        shutil.copy(ROOT / "extensions" / name, tmp_path)
+    digest = store.read_attributes(tmp_path / "summary.nc")["source_md5"]
+    lock = (tmp_path / "dvc.lock").read_text()
+    (tmp_path / "dvc.lock").write_text(lock.replace(digest, "0" * 32))
+    said = refuses(ClaimsError, None, preparations.check, tmp_path / "summary.nc")
+    assert said.startswith(f"{tmp_path / 'summary.nc'}: is older than preparation.nc of")
+    (tmp_path / "dvc.lock").unlink()
+    preparations.check(tmp_path / "summary.nc")

@@ -66,7 +66,8 @@ def group(tmp_path, monkeypatch):
     for module in (simulation, drawing):
         monkeypatch.setattr(module, "group_member", member)
     small = Collection("small", "granular_response_paper", ".", "a small collection")
-    monkeypatch.setattr(simulation, "collection_of", lambda group: small)
+    for module in (simulation, paper):
+        monkeypatch.setattr(module, "collection_of", lambda group: small)
     monkeypatch.setattr(captions, "question", lambda group: "How do squares grow?")
     return "squares"
 

@@ -109,8 +109,6 @@ FAINT, MUTED = "#C8C8C8", "#707070"
 
 #: What the paper says, on a plot: lines with its value beside them, or a band.
 PAPER, PAPER_BAND = "#9A7B4F", "#F1E9DA"
-#: What others published, as somebody read it off their picture.
-DIGITISED = "#8C8C8C"
 
 _SHEET: Any = mpl.rc_params_from_file(Path(__file__).with_suffix(".mplstyle"), use_default_template=False)
 RC: dict[str, Any] = {
@@ -192,15 +190,10 @@ def letter(axes: Axes, name: str, *, place: Literal["inside", "above"] = "inside
             )
 
 
-def letters_of(axes: Axes) -> list[str]:
-    """The panel letters that axes have: one, or none."""
-    texts = [axes.get_title("left"), *(text.get_text() for text in axes.texts)]
-    return [match[1] for match in (re.match(r"\(([a-z])\)", text) for text in texts) if match]
-
-
 def drawn_letters(drawn: Figure) -> list[str]:
     """The panel letters that a figure has, sorted."""
-    return sorted(letter for axes in drawn.axes for letter in letters_of(axes))
+    texts = [text for axes in drawn.axes for text in (axes.get_title("left"), *(t.get_text() for t in axes.texts))]
+    return sorted(match[1] for match in (re.match(r"\(([a-z])\)", text) for text in texts) if match)
 
 
 def equals(symbol: str, value: float, unit: str = "") -> str:

@@ -3,21 +3,23 @@
 By the text the packing relaxes under gravity that acts at once. Gravity that grows slowly, or acts before there is
 friction, makes other packings; their events are read from a summary of the group ``preparation``, so that the claims of
 the paper need no other dataset of it. It has the layout of that group's dataset ``events``, and says from which file it
-was made: the digest of its content and the parameters of its simulations.
+was made, by the digest that the lock of the extensions has of that file, and with which parameters.
 """
 
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from granular_response.inputs import read_text
 from granular_response.store import files as store
 
-from .claim import PREPARATION, Case, Data, NotMeasured
+from .claim import PREPARATION, Case, ClaimsError, Data, NotMeasured
 
 #: The columns of the summary, what it is made of, and where it is kept.
 COLUMNS = ("name", "friction", "wall_friction", "gravity", "ramp_time", "damping_ratio", "low", "high")
@@ -43,6 +45,22 @@ def along(data: Data, measure: Callable[[Data], Any]) -> Iterator[tuple[Case, An
             yield Case(prepared=f"gravity {name}"), found
 
 
+def check(summary: Path = OUTPUT) -> None:
+    """Raise ClaimsError if a summary was made from other datasets than the ``dvc.lock`` beside it records.
+
+    StoreError if it cannot be read. A summary without a lock beside it stands for itself.
+    """
+    lock = summary.parent / "dvc.lock"
+    if not (summary.exists() and lock.exists()):
+        return
+    written = rf"    - path: data/{PREPARATION}\.nc\n(?:      .*\n)*?      md5: (\w+)"
+    simulated = re.search(rf"^  simulate@{PREPARATION}:\n(?:   .*\n)*?{written}", read_text(lock), re.MULTILINE)
+    if simulated and simulated[1] != store.read_attributes(summary).get("source_md5"):
+        raise ClaimsError(
+            f"{summary}: is older than {PREPARATION}.nc of {lock}; renew it by dvc repro summary in {summary.parent}"
+        )
+
+
 def write(source: Path = SOURCE, output: Path = OUTPUT) -> Path:
     """Write the summary of the datasets in ``source``; returns its path.
 
@@ -55,7 +73,7 @@ def write(source: Path = SOURCE, output: Path = OUTPUT) -> Path:
     made = {
         "group": PREPARATION,
         "source": source.name,
-        "source_sha256": hashlib.sha256(source.read_bytes()).hexdigest(),
+        "source_md5": hashlib.md5(source.read_bytes(), usedforsecurity=False).hexdigest(),
         "parameters": attributes.get("parameters", ""),
     }
     output.parent.mkdir(parents=True, exist_ok=True)

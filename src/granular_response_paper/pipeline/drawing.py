@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,16 +21,14 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None, forma
     """Draw the figures of a group from its datasets and write their captions; returns the paths of the files.
 
     Figures are PNG files, and ``formats`` (pdf, svg) besides. Animations of a group (``animations`` of its ``draw.py``)
-    are GIFs, each beside the picture of its name. Pictures, not animations, have the curves of ``figures/digitised``.
+    are GIFs, each beside the picture of its name.
 
     Raises GroupError for another format, if there is no such group, the datasets are those of another one or of other
-    parameters than it has now, or hold too little to be drawn, and for a file of ``figures/digitised`` that cannot be
-    drawn; StoreError if its datasets cannot be read.
+    parameters than it has now, or hold too little to be drawn; StoreError if its datasets cannot be read.
     """
     function = group_member(group, "draw", "draw")
     from granular_response.plot import style
     from granular_response.plot.animation import rendered
-    from granular_response_paper import digitised
 
     wanted = tuple(dict.fromkeys(("png", *formats)))
     if unknown := set(wanted) - set(style.FORMATS):
@@ -43,11 +40,8 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None, forma
     try:
         with style.context():
             figures = function(datasets)
-            grey = digitised.add(figures, group)
         panels = {stem: style.drawn_letters(figure) for stem, figure in figures.items()}
         told = group_member(group, "draw", "captions")(datasets, described)
-        for stem, sources in grey.items():
-            told[stem] = replace(told[stem], text=f"{told[stem].text} {sources}")
         said = captions.document(told, panels, captions.question(group))
         for stem, figure in figures.items():
             paths += style.save(figure, stem, target, wanted, inputs=[path])

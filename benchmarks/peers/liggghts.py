@@ -10,8 +10,7 @@ import math
 import re
 import subprocess
 
-import lammps
-import peers
+from peers import lammps, processes
 
 from granular_response.scene import Packing
 
@@ -23,7 +22,7 @@ STILL = "omegax 0 omegay 0 omegaz 0"
 
 def executable() -> str | None:
     """Path of `liggghts`, or None where it is not installed."""
-    return peers.found("liggghts")
+    return processes.found("liggghts")
 
 
 def version(command: str) -> str:
@@ -64,10 +63,10 @@ def _data(packing: Packing) -> str:
 
 def steps_used(
     packing: Packing, friction: float, settle: int, steps: int, time_step: float, command: str, repeats: int
-) -> peers.Used:
+) -> processes.Used:
     """What steps take after ``settle`` steps under gravity, which are the first stage."""
-    text = _script(friction, packing, time_step, peers.settled_stages(settle, steps, repeats))
-    with peers.script(command, _data(packing), text) as (used, _):
+    text = _script(friction, packing, time_step, processes.settled_stages(settle, steps, repeats))
+    with processes.script(command, _data(packing), text) as (used, _):
         return used
 
 
@@ -80,5 +79,5 @@ def response(
         disk, force, ramp, rest_steps, load_steps, time_step, 'sort id format "%d %.17g"', STILL
     )
     text = _script(friction, packing, time_step, body)
-    with peers.script(command, _data(packing), text) as (used, folder):
+    with processes.script(command, _data(packing), text) as (used, folder):
         return lammps.loaded_run(packing, used, lammps.heights(folder), [], "linear")

@@ -1,6 +1,6 @@
 """Energy that a disk keeps in a bounce off a wall with friction, ours and other codes (`bounce.py`).
 
-`python benchmarks/bounces.py OUTPUT.json`. Codes that are not installed are named as skipped (`codes.py`).
+`python -m peers.bounces OUTPUT.json`. Codes that are not installed are named as skipped (`codes.py`).
 """
 
 from __future__ import annotations
@@ -9,9 +9,8 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-import bounce
-import codes
 import numpy as np
+from peers import bounce, codes
 from timing import write
 
 from granular_response import __version__

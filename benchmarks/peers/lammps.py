@@ -8,7 +8,7 @@ forces of the latter are ours to rounding, for unequal disks and walls too. `dam
 absolute; the tangential one is given over the normal one. The arm of its torque ends at the middle of the overlap, ours
 at the rim.
 
-    python benchmarks/lammps.py FRICTION LATTICE_CONSTANT OUT.json     what tests/data stores for the 3/2 law
+    python -m peers.lammps FRICTION LATTICE_CONSTANT OUT.json     what tests/data stores for the 3/2 law
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import peers
+from peers import processes
 
 from granular_response.scene import Packing, Scene
 from granular_response.solvers.problem import Problem
@@ -50,7 +50,7 @@ class Run:
 
 def executable() -> str | None:
     """Path of `lmp`, or None where it is not installed."""
-    return peers.found("lmp")
+    return processes.found("lmp")
 
 
 def version(command: str | None = None) -> str | None:
@@ -133,10 +133,10 @@ compute heights bottom property/atom y
 def steps_used(
     packing: Packing, friction: float, settle: int, steps: int, time_step: float, command: str, repeats: int,
     law: str = "linear",
-) -> peers.Used:  # fmt: skip
+) -> processes.Used:  # fmt: skip
     """What steps take after ``settle`` steps under gravity, which are the first stage."""
-    body = peers.settled_stages(settle, steps, repeats)
-    with peers.script(command, data(packing), _script(friction, packing, time_step, body, law)) as (used, _):
+    body = processes.settled_stages(settle, steps, repeats)
+    with processes.script(command, data(packing), _script(friction, packing, time_step, body, law)) as (used, _):
         return used
 
 
@@ -159,7 +159,7 @@ def loaded_stages(
     """
     ramp_steps = round(ramp / time_step)
     return f"""
-{peers.stage(rest_steps, first=True)}
+{processes.stage(rest_steps, first=True)}
 {after}
 write_dump bottom custom {DUMPS[0]} id y modify {dump}
 velocity all set 0 0 0
@@ -168,7 +168,7 @@ reset_timestep 0
 group loaded id {disk + 1}
 variable push equal -{force!r}*(step<{ramp_steps})*step/{ramp_steps}-{force!r}*(step>={ramp_steps})
 fix push loaded addforce 0.0 v_push 0.0
-{peers.stage(load_steps, first=True)}
+{processes.stage(load_steps, first=True)}
 {after}
 write_dump bottom custom {DUMPS[1]} id y modify {dump}
 """
@@ -184,13 +184,13 @@ def response(
         after='print "energy $(ke/atoms:%.3e)"',
     )  # fmt: skip
     text = _script(friction, packing, time_step, body, law)
-    with peers.script(command or executable(), data(packing), text) as (used, folder):
+    with processes.script(command or executable(), data(packing), text) as (used, folder):
         log = (folder / "log").read_text()
         energy = [float(value) for value in re.findall(r"^energy ([\d.eE+-]+)", log, re.MULTILINE)]
         return loaded_run(packing, used, heights(folder), energy, law)
 
 
-def loaded_run(packing: Packing, used: peers.Used, found: list[np.ndarray], energy: list[float], law: str) -> Run:
+def loaded_run(packing: Packing, used: processes.Used, found: list[np.ndarray], energy: list[float], law: str) -> Run:
     """Floor forces from the heights of the bottom row at rest and loaded."""
     radius = packing.radius[packing.row == 0]
     overlap = [np.maximum(radius - height, 0.0) for height in found]

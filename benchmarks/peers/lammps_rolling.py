@@ -3,7 +3,7 @@
 Its style `granular` has the model `rolling sds` with the constants of ours: stiffness, damping (absolute) and
 coefficient. Its time step is our leapfrog's, so a packing that falls at random falls alike.
 
-    python benchmarks/lammps_rolling.py OUT_FOLDER [LMP]
+    python -m peers.lammps_rolling OUT_FOLDER [LMP]
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import lammps
-import peers
+from peers import lammps, processes
 
 from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
@@ -71,7 +70,7 @@ def profile(name: str, command: str) -> dict[str, Any]:
     ).replace("write_dump bottom custom", "write_dump all custom")  # fmt: skip
     script = lammps._script(0.0, packing, TIME_STEP, body, "rolling")
 
-    with peers.script(command, lammps.data(packing), script) as (_, folder):
+    with processes.script(command, lammps.data(packing), script) as (_, folder):
         log = (folder / "log").read_text()
         rest, loaded = (heights.tolist() for heights in lammps.heights(folder))
     energy = [float(line.split()[1]) for line in log.splitlines() if line.startswith("energy ")]

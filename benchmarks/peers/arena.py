@@ -1,6 +1,6 @@
 """Time of a step and memory of slabs with friction, ours and those of other codes, one core each, in turns in one run.
 
-`python benchmarks/arena.py OUTPUT.json [LEAST_DISKS [MOST_DISKS]]`; slabs of fewer or more disks keep the rows that
+`python -m peers.arena OUTPUT.json [LEAST_DISKS [MOST_DISKS]]`; slabs of fewer or more disks keep the rows that
 OUTPUT.json has for them. Same scene, contact law and time step. Nothing is installed: a
 code that is not there is named as skipped, with what installs it (`codes.py`). Other work on the machine lengthens the
 time of a step but not its processor time, where the system tells it; both are stored.
@@ -16,11 +16,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import codes
 import kernel
 import numpy as np
-import ours
-import peers
+from peers import codes, ours, processes
 from timing import write
 
 from granular_response import __version__
@@ -44,7 +42,7 @@ def measure_steps(layers: int, per_row: int, settle: int, steps: int, there: lis
         np.save(start, packing.position)
         # our stages have more steps, so that they are not too short to be timed
         own = partial(ours.steps_used, start, layers, per_row, FRICTION, 10 * steps, REPEATS, kernel.TIME_STEP)
-        actions: dict[str, tuple[str | None, Callable[[], peers.Used]]] = {"granular_response": (__version__, own)}
+        actions: dict[str, tuple[str | None, Callable[[], processes.Used]]] = {"granular_response": (__version__, own)}
         for peer in there:
             theirs = partial(peer.steps, packing, FRICTION, steps, steps, kernel.TIME_STEP, repeats=REPEATS)
             actions[peer.name] = peer.version, theirs

@@ -1,6 +1,6 @@
 """Our own steps as a process of their own, so that its time and memory are those that other codes are asked for.
 
-`python benchmarks/ours.py START.npy LAYERS PER_ROW FRICTION STEPS REPEATS TIME_STEP` prints them as JSON. Kernels come
+`python -m peers.ours START.npy LAYERS PER_ROW FRICTION STEPS REPEATS TIME_STEP` prints them as JSON. Kernels come
 from the cache where they have been compiled before.
 """
 
@@ -12,9 +12,11 @@ import time
 from dataclasses import asdict, replace
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # it runs in a folder of its own
+
 import kernel
 import numpy as np
-import peers
+from peers import processes
 
 from granular_response.scene import Packing
 from granular_response.solvers.dynamics import Dynamics
@@ -29,24 +31,25 @@ def settled(layers: int, per_row: int, friction: float, steps: int, time_step: f
     return replace(problem.packing, position=dynamics.position)
 
 
-def measure(problem: Problem, steps: int, repeats: int, time_step: float) -> peers.Used:
+def measure(problem: Problem, steps: int, repeats: int, time_step: float) -> processes.Used:
     """What steps take; the first stage is not for timing."""
     dynamics = Dynamics(problem, problem.bare_state(), "beeman", time_step)
     stages = []
     for _ in range(1 + repeats):
         wall_clock, processor = time.perf_counter(), time.process_time()
         dynamics.advance(steps)
-        stages.append(peers.Stage(steps, time.perf_counter() - wall_clock, time.process_time() - processor))
-    return peers.Used(stages, peers.own_peak())
+        stages.append(processes.Stage(steps, time.perf_counter() - wall_clock, time.process_time() - processor))
+    return processes.Used(stages, processes.own_peak())
 
 
-def steps_used(start: Path, *numbers: float) -> peers.Used:
+def steps_used(start: Path, *numbers: float) -> processes.Used:
     """The same in a new process, from positions in a file."""
-    done = peers.launch([sys.executable, str(Path(__file__).resolve()), str(start), *map(str, numbers)], start.parent)
+    command = [sys.executable, str(Path(__file__).resolve()), str(start), *map(str, numbers)]
+    done = processes.launch(command, start.parent)
     if done.returncode:
         raise RuntimeError(f"our own steps failed: {done.stderr[-500:]}")
     found = json.loads(done.stdout)
-    return peers.Used([peers.Stage(**stage) for stage in found["stages"]], found["peak_mebibytes"])
+    return processes.Used([processes.Stage(**stage) for stage in found["stages"]], found["peak_mebibytes"])
 
 
 def main(start: str, layers: str, per_row: str, friction: str, steps: str, repeats: str, time_step: str) -> None:

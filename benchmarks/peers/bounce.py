@@ -15,11 +15,8 @@ import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import lammps
-import liggghts
 import numpy as np
-import peers
-import yade_dem
+from peers import lammps, liggghts, processes, yade_dem
 
 from granular_response.scene import Packing, Scene
 from granular_response.solvers.dynamics import Dynamics
@@ -116,7 +113,7 @@ def lammps_bounce(damping: float, *, command: str, law: str) -> After:
     head = ["comm_modify vel yes", "atom_style sphere", "read_data slab.data", pair]
     floor = [f"fix floor all wall/gran {_wall(law, damping)} yplane 0.0 NULL"]
     dump = "after.dump id vx vy omegaz modify sort id format float %.17g"
-    with peers.script(command, _disks(1), _script(head, floor, "nve/sphere disc", dump)) as (_, folder):
+    with processes.script(command, _disks(1), _script(head, floor, "nve/sphere disc", dump)) as (_, folder):
         return _after(folder)
 
 
@@ -135,7 +132,7 @@ def liggghts_bounce(damping: float, *, command: str) -> After:
     floor = [f"fix floor all wall/{liggghts.MODEL} primitive type 2 yplane 0.0"]
     dump = 'after.dump id vx vy omegaz modify sort id format "%d %.17g %.17g %.17g"'
     disks = _disks(2, np.full(len(ANGLES), 1.0 / math.pi))
-    with peers.script(command, disks, _script(head, floor, "nve/sphere", dump)) as (_, folder):
+    with processes.script(command, disks, _script(head, floor, "nve/sphere", dump)) as (_, folder):
         return _after(folder)
 
 

@@ -1,6 +1,6 @@
 """Error of the floor response against the time that it takes, ours and those of other codes, one core each.
 
-`python benchmarks/responses.py OUTPUT.json [MOST_STEPS]`. The scenes and the quasi-static limit are those of
+`python -m peers.responses OUTPUT.json [MOST_STEPS]`. The scenes and the quasi-static limit are those of
 `precision.py`; ours by statics and by dynamics, the others by runs whose ramps and rests grow, of at most MOST_STEPS
 steps. One style stands for each code (`codes.py`). Every time includes the fall under gravity; starting and compiling
 it does not. Runs of other codes run once: their processor time tells, where the system tells it.
@@ -12,9 +12,9 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
-import codes
 import numpy as np
 import precision
+from peers import codes
 from timing import write
 
 from granular_response import __version__

@@ -14,16 +14,15 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-import lammps
 import numpy as np
-import peers
+from peers import lammps, processes
 
 from granular_response.scene import Packing
 
 
 def executable() -> str | None:
     """Path of `yade`, or None where it is not installed."""
-    return peers.found("yade")
+    return processes.found("yade")
 
 
 def version(command: str) -> str:
@@ -69,20 +68,20 @@ def run(command: str, scene: dict) -> dict:
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "scene.json").write_text(json.dumps(scene))
         inner = Path(__file__).with_name("yade_slab.py")
-        done = peers.launch([command, "-n", "-x", "-j1", str(inner)], folder)
+        done = processes.launch([command, "-n", "-x", "-j1", str(inner)], folder)
         answer = Path(folder, "answer.json")
         if not answer.exists():
             raise RuntimeError(f"{command} failed: {(done.stderr or done.stdout)[-500:]}")
         return json.loads(answer.read_text())
 
 
-def _used(answer: dict) -> peers.Used:
-    return peers.Used([peers.Stage(*stage) for stage in answer["stages"]], answer["peak_mebibytes"])
+def _used(answer: dict) -> processes.Used:
+    return processes.Used([processes.Stage(*stage) for stage in answer["stages"]], answer["peak_mebibytes"])
 
 
 def steps_used(
     packing: Packing, friction: float, settle: int, steps: int, time_step: float, command: str, repeats: int
-) -> peers.Used:
+) -> processes.Used:
     """What steps take after ``settle`` steps under gravity, which are the first stage."""
     stages = [settle, *[steps] * repeats]
     return _used(run(command, {**_scene(packing, friction, time_step), "stages": stages, "load": None}))

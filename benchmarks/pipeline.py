@@ -1,0 +1,36 @@
+"""Seconds of every stage from nothing: runs all stages of both collections, and reads what the command says.
+
+`python pipeline.py pipeline.json`, by hand: it runs DVC, so it is no stage of `dvc.yaml`.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from timing import processor, write
+
+LINE = re.compile(r"^ *\d+ of (\d+)  ([\w@]+) +([\d.]+) s ")
+
+
+def main(path: str) -> None:
+    rows, machine = [], f"{processor()}, {os.cpu_count()} cores"
+    for collection in ("paper", "extensions"):
+        command = [sys.executable, "-m", "granular_response_paper", "reproduce", "--force", "--collection", collection]
+        root = Path(__file__).resolve().parents[1]
+        said = subprocess.run(command, cwd=root, stdout=subprocess.PIPE, text=True, check=True).stdout
+        found = [match.groups() for match in map(LINE.match, said.splitlines()) if match]
+        assert found and len(found) == int(found[0][0]), f"{collection}: not every stage has run"
+        common = {"collection": collection, "measured_on": machine}
+        rows += [common | {"stage": stage, "seconds": float(seconds)} for _, stage, seconds in found]
+    names = dict.fromkeys(row["collection"] for row in rows)
+    totals = {name: sum(row["seconds"] for row in rows if row["collection"] == name) for name in names}
+    totals = [{"collection": name, "seconds": round(seconds, 1)} for name, seconds in totals.items()]
+    write(path, {"runs": rows, "totals": totals}, measured=False)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
