@@ -115,7 +115,7 @@ def test_forces_agree_with_dynamics_at_rest_and_the_tangent_is_their_derivative(
     force = Dynamics(problem, state).memory[0] / problem.inverse_mass
     assert trial.contact_force + problem.weight_vector == pytest.approx(force, abs=1e-9)
     trial = system.trial(known, q)
-    statuses = trial.rolled.status
+    statuses = np.abs(trial.sense[len(trial.status) :])
     assert (statuses == (SLIDING if roll > 1e-3 else STICKING)).sum() > 20
     exact, numerical = dense_tangent(system, trial), numerical_tangent(system, known, q)
     assert np.abs(exact - numerical).max() < 1e-6 * np.abs(exact).max()
@@ -143,7 +143,7 @@ def test_what_comes_next_along_the_rolling_falls_at_the_rate_that_is_said():
         side = np.sign(found.what[c])
 
         def left(trial, c=c - count, side=side):
-            return system.rolls.friction[c] * trial.normal[c] - side * trial.rolled.force[c]
+            return system.listed.rolling_friction[c] * trial.normal[c] - side * trial.contacts.tangential[count + c]
 
         seen.add((int(side), bool(c - count < len(system.first))))
         assert found.left[c] == pytest.approx(left(here), abs=1e-12)
@@ -168,7 +168,7 @@ def test_a_changed_status_is_the_difference_of_tangents():
                     sense[count + c] = STICKING if status == OPEN else status
                     trial = system.trial(known, known.q, fixed=sense)
                     if status == OPEN:
-                        trial.rolled.tangent[c] = 0.0
+                        trial.tangents[c, 3] = 0.0
                     matrices.append(system.tangent(trial).toarray())
                 added, _ = added_to_tangent(system, known.q, count + c, before, after)
                 assert added == pytest.approx(matrices[1] - matrices[0], abs=1e-8)

@@ -486,16 +486,14 @@ def static_contacts(
     first, second, overlap, spring, shape, law: Law, rolling: Rolling | None = None, rolling_spring=None
 ) -> Contacts:
     """Contacts with the spring parts of their forces (Sec. III.A without velocities)."""
-    out = statics.Response.empty(len(overlap))
+    size = len(overlap)
+    out = statics.Response.empty(size, rolls=rolling is not None)
     statics.spring_forces(overlap, spring, shape, law, out)
-    rolls = None
     if rolling is not None:
-        rolls = statics.RollingResponse.empty(len(overlap))
-        statics.rolling_spring_forces(rolling_spring, out.status, out.normal, rolling, rolls)
-    return Contacts(
-        np.asarray(first, np.int32), np.asarray(second, np.int32),
-        overlap, out.normal, out.tangential, out.spring, out.status.astype(np.int8), *(rolls or ()),
-    )  # fmt: skip
+        statics.rolling_spring_forces(rolling_spring, rolling, out)
+    status = out.status.astype(np.int8)
+    rows = [part for at in range(0, len(status), max(size, 1)) for part in (out.tangential[at : at + size], out.spring[at : at + size], status[at : at + size])]
+    return Contacts(np.asarray(first, np.int32), np.asarray(second, np.int32), overlap, out.normal, *rows)
 
 
 def spring_contacts(
