@@ -214,9 +214,10 @@ def _returned(trial, most, stiffness, status):
 
 @kernel(forceinline=True)
 def _fill(c, overlap, slip, curved, law, spring0, fixed, step, listed, out):
-    """Fill in contact ``c``, or those of a vector; the parts of their springs that curved ways made, and contradictions.
+    """Fill in contact ``c``, or those of a vector.
 
-    ``spring0``, ``fixed`` : of ``step``; the first is None without friction.
+    ``spring0``, ``fixed`` : of ``step``; the first is None without friction. Returns the parts of their springs that
+    curved ways made, and contradictions.
     """
     status, form = take(fixed, c, overlap), take(listed.shape, c, overlap)
     presses = overlap > 0.0

@@ -149,9 +149,7 @@ def _next(status, apart, along, overlap, normal, tangential, k, law, tip, neglig
     if law.friction > 0.0:
         most, grows = limit(law, normal), -law.tangential_stiffness * along
         falls = limit_slope(law, normal) * k * apart
-        does, until, speed = _next_to_limit(
-            what, left, rate, status, most, tangential, grows, falls, tip, negligible
-        )
+        does, until, speed = _next_to_limit(what, left, rate, status, most, tangential, grows, falls, tip, negligible)
         what, left, rate = select(is_open, what, does), select(is_open, left, until), select(is_open, rate, speed)
     return what, left, rate
 

@@ -48,10 +48,9 @@ class MinimiseOptions:
     springs_alone: float = 1e-6
     #: How often a saddle is left before the search is given up.
     escapes: int = 20
-    #: Where factorisations are dear, in packings of more disks than this, the search begins near a minimum
-    #: (:mod:`.nested`), so little damped, and a saddle is left as soon as one is near: when the stiffness is not
-    #: positive though little damped and no force out of balance exceeds that many disk weights. The rest state of
-    #: 57,660 disks takes 2.1 times as long without.
+    #: Where factorisations are expensive, in packings of more disks than this, the search begins little damped, and a
+    #: saddle is left as soon as one is near: when the stiffness is not positive though little damped and no force out
+    #: of balance exceeds that many disk weights. The rest state of 57,660 disks takes 2.1 times as long without.
     large: int = 20_000
     first_near: float = 1e-6
     little_damped: float = 1e-7

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -131,12 +132,13 @@ class Equations:
         problem, m, w = self.problem, len(self.first), len(self.wall_disk)
         loaded = np.zeros(problem.n, np.int64)
         loaded[problem.load_disk] = LOADED
-        shapes = problem.pair_shapes(self.first, self.second), problem.wall_shapes(self.wall_disk)
+        shape, wall_shape = problem.pair_shapes(self.first, self.second), problem.wall_shapes(self.wall_disk)
         arm, friction, stiffness = np.zeros((3, 0))
         if problem.rolls:
             arm = np.concatenate([problem.pair_arms(self.first, self.second), problem.wall_arms(self.wall_disk)])
-            kinds = [(0.0, 0.0) if one is None else (one.friction, one.stiffness) for one in (problem.pair_rolling, problem.wall_rolling)]
-            friction, stiffness = np.repeat(np.array(kinds).T, [m, w], axis=1)
+            kinds = problem.pair_rolling, problem.wall_rolling
+            constants = [(0.0, 0.0) if one is None else (one.friction, one.stiffness) for one in kinds]
+            friction, stiffness = np.repeat(np.array(constants).T, [m, w], axis=1)
         return statics.Listed(
             disks=np.stack([np.r_[self.first, self.wall_disk], np.r_[self.second, np.full(w, -1)]], axis=1),
             pairs=m,
@@ -144,7 +146,7 @@ class Equations:
             dz=np.concatenate([self.dz0, self.wall_normals[:, 1]]),
             distance=np.concatenate([distance, np.ones(w)]),
             gap=np.concatenate([gap, wall_gap]),
-            shape=None if shapes[0] is None or shapes[1] is None else np.concatenate(shapes),
+            shape=None if shape is None or wall_shape is None else np.concatenate([shape, wall_shape]),
             pair_law=problem.pair_law,
             wall_law=problem.wall_law,
             arm=arm,
@@ -235,9 +237,9 @@ class Equations:
         """Forces at ``q``, one increment after ``known``; none on what is held, where the reaction balances all.
 
         ``limits`` (m + w,) fixes the Coulomb limits in place of ``mu f_n``; ``fixed`` (m + w,) the statuses, as of
-        :func:`signed_status`, in place of the return map; both go on along the rolling where some contact resists it. ``velocity``
-        (dof,), with ``fixed`` : rates at ``known``, by which displacements would have grown for a ``length`` of the
-        load factor; the slip along the way that curves from there is counted. Walls do not turn.
+        :func:`signed_status`, in place of the return map; both go on along the rolling where some contact resists it.
+        ``velocity`` (dof,), with ``fixed`` : rates at ``known``, by which displacements would have grown for a
+        ``length`` of the load factor; the slip along the way that curves from there is counted. Walls do not turn.
         """
         problem, count, listed = self.problem, len(self.friction), self.listed
         force, rows = np.zeros(self.dof), count * (1 + self.rolls)
@@ -316,7 +318,7 @@ class Equations:
         q = trial.configuration.q
         angle = self.angle0 + q[2 * n :] if self.problem.rotations else self.angle0
         size = len(self.friction)
-        values = [trial.configuration.overlap, trial.normal]
+        values: list[Any] = [trial.configuration.overlap, trial.normal]
         for row in range(1 + self.rolls):
             rows = slice(row * size, (row + 1) * size)
             status = np.abs(trial.contacts.status[rows]).astype(np.int8)

@@ -10,7 +10,7 @@ import math
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -492,8 +492,9 @@ def static_contacts(
     if rolling is not None:
         statics.rolling_spring_forces(rolling_spring, rolling, out)
     status = out.status.astype(np.int8)
-    rows = [part for at in range(0, len(status), max(size, 1)) for part in (out.tangential[at : at + size], out.spring[at : at + size], status[at : at + size])]
-    return Contacts(np.asarray(first, np.int32), np.asarray(second, np.int32), overlap, out.normal, *rows)
+    rows = (slice(at, at + size) for at in (0, size)[: 1 + (rolling is not None)])
+    parts: list[Any] = [part for row in rows for part in (out.tangential[row], out.spring[row], status[row])]
+    return Contacts(np.asarray(first, np.int32), np.asarray(second, np.int32), overlap, out.normal, *parts)
 
 
 def spring_contacts(

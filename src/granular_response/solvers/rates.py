@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..kernels import transitions
+from ..kernels.transitions import CLOSES, OPENS
 from ..linalg.updated import Updated
 from ..state import OPEN, SLIDING, STICKING, FloatArray
 from .system import Configuration, StaticSystem, Trial
@@ -159,7 +160,7 @@ class RateProblem:
                     due = due[rates >= OPTIONS.as_bad * rates.max()]
                 now = changed(now, due, found.what)
                 for c in due.tolist():
-                    if found.what[c] not in (transitions.OPENS, transitions.CLOSES) or not self.system.friction[c] > 0.0:
+                    if found.what[c] not in (OPENS, CLOSES) or not self.system.friction[c] > 0.0:
                         continue
                     # one that neither opens nor sticks slides, often at no force: pushed by a disk that rolls
                     had.setdefault(c, {int(sense[c])})
