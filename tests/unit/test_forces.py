@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from reference_loop import Material, forces
 
-from granular_response.contact import CUT, LITERAL, RULES, UNLOADING
-from granular_response.contact import coulomb
+from granular_response.contact import CUT, LITERAL, RULES, UNLOADING, coulomb
 from granular_response.contact.law import normal_force
 from granular_response.contact.pair import frictional_pair, frictionless_pair
 from granular_response.contact.rolling import Rolling
