@@ -1,4 +1,4 @@
-"""A contact law and an integrator as somebody else would add them (docs/extending.md)."""
+"""Contact laws and an integrator as somebody else would add them (docs/extending.md)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pydantic import Field
 from granular_response.contact import without_friction
 from granular_response.kernels.integrators import Integrator
 from granular_response.scene import Scene
-from granular_response.scene.base import Description, NonNegative
+from granular_response.scene.base import Description, NonNegative, Positive
 from granular_response.solvers.problem import Problem
 
 
@@ -45,9 +45,6 @@ class Cubic(NamedTuple):
 
     def stiffest(self, force):
         return self.normal_stiffness * max(force, 0.0) ** (2.0 / 3.0)
-
-    def softened(self, part):
-        return self._replace(factor=part**4 * self.factor)
 
 
 class Cohesion(Description):
@@ -91,8 +88,53 @@ class Cohesive(NamedTuple):
     def stiffest(self, force):
         return self.normal_stiffness
 
-    def softened(self, part):
-        return self._replace(normal_stiffness=part**2 * self.normal_stiffness, strength=part * self.strength)
+
+class Weakening(Description):
+    """Parameters of the law below."""
+
+    half: Positive = Field(
+        default=1.0,
+        description="Normal force that halves the coefficient of friction.",
+        json_schema_extra={"unit": "mg"},
+    )
+
+
+class Weaker(NamedTuple):
+    """Linear springs, and a coefficient of friction that falls with the normal force."""
+
+    normal_stiffness: float
+    normal_damping: float
+    tangential_stiffness: float
+    tangential_damping: float
+    friction: float
+    least_force: float
+    half: float
+
+    @classmethod
+    def of(cls, *constants, half):
+        return cls(*constants[:-1], half)
+
+    def elastic_force(self, overlap, shape):
+        return self.normal_stiffness * overlap
+
+    def stiffness(self, overlap, shape):
+        return self.normal_stiffness
+
+    def energy(self, overlap, shape):
+        return 0.5 * self.normal_stiffness * overlap * overlap
+
+    def shapes(self, first, second):
+        return None
+
+    def stiffest(self, force):
+        return self.normal_stiffness
+
+    def limit(self, force_normal):
+        return self.friction * force_normal / (1.0 + force_normal / self.half)
+
+    def limit_slope(self, force_normal):
+        part = 1.0 / (1.0 + force_normal / self.half)
+        return self.friction * part * part
 
 
 class Euler(NamedTuple):

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from reference_loop import Material, forces
 
-from granular_response.contact import CUT, LITERAL, RULES, UNLOADING
-from granular_response.contact.coulomb import cut
+from granular_response.contact import CUT, LITERAL, RULES, UNLOADING, coulomb
 from granular_response.contact.law import normal_force
 from granular_response.contact.pair import frictional_pair, frictionless_pair
 from granular_response.contact.rolling import Rolling
@@ -149,8 +148,9 @@ def agrees_to_the_bit(runs, order, n, friction, rule, rolls):
             distance = np.sqrt(dx_ * dx_ + dz_ * dz_)
             overlap, inverse = reach[s] - distance, 1.0 / distance
             fn = normal_force(overlap, None, du * (dx_ * inverse) + dw * (dz_ * inverse), material.law)
-            spin, (stiffness, damping, limit) = v[2 * n + i] - v[2 * n + j], rolling.rolling
-            force, new = cut(turned[s], rolling.arm[s] * spin, fn, stiffness, damping, limit, dt)
+            spin, (stiffness, damping, friction) = v[2 * n + i] - v[2 * n + j], rolling.rolling
+            most = friction * abs(fn)
+            force, new = coulomb.moved(turned[s], rolling.arm[s] * spin, most, stiffness, damping, dt)
             turned[s] = new if overlap > 0.0 else 0.0
             couple[i] += rolling.arm[s] * force if overlap > 0.0 else 0.0
             couple[j] -= rolling.arm[s] * force if overlap > 0.0 else 0.0

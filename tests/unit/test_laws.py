@@ -172,14 +172,6 @@ def test_a_law_that_lacks_something_is_refused(arguments, said):
     assert "mine" not in KNOWN_LAWS
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_softened_law_feels_a_part_of_the_force_at_a_part_of_the_overlap(name):
-    one, part, overlap = law(name), 0.5, 1e-3
-    shape = shape_of(one)
-    softened = asked(one.softened(part), overlap, shape)[0]
-    assert softened == pytest.approx(part * asked(one, part * overlap, shape)[0], rel=1e-12)
-
-
 class Stronger(Cubic):
     """With a force that is not the derivative of its energy."""
 

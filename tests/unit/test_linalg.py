@@ -1,12 +1,14 @@
 """Banded factorisations and the lowest real eigenvalue, against dense matrices."""
 
+import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from granular_response.linalg import lowest
+from granular_response.linalg import lowest, ordering
 from granular_response.linalg.band import Band
 
 
@@ -183,3 +185,46 @@ def test_a_negative_eigenvalue_is_followed_to_a_matrix_nearby_and_no_farther_tha
     assert found == pytest.approx(np.linalg.eigvals(nearby).real.min(), rel=1e-9)
     assert nearby @ direction == pytest.approx(found * direction, abs=1e-6)
     assert lowest.followed(inverse(matrix + 8.0 * np.eye(len(matrix))), (value, vector)) is None
+
+
+def chains(*sizes):
+    """Chains of disks, each tied to the next: positions and pairs."""
+    return [(np.stack([np.arange(float(n)), np.zeros(n)], 1), np.arange(n - 1), np.arange(1, n)) for n in sizes]
+
+
+@pytest.mark.parametrize("remembered", ["_last_network", "_last"])
+def test_another_thread_may_order_another_network_between_comparison_and_answer(remembered, monkeypatch):
+    """The moment is that after the last comparison of the remembered network with the one that is asked for."""
+    if remembered == "_last":  # dissections, which large networks have, are remembered in the same way
+        monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
+        monkeypatch.setattr(ordering, "REMEMBERED", 1)
+    mine, other = chains(40, 55)
+    expected = ordering.elimination(*mine, 2).order
+    compared, equal = [], np.array_equal
+
+    def interrupted(one, two):
+        found = equal(one, two)
+        compared.append(found)
+        if found and len(compared) == 3:
+            ordering.elimination(*other, 2)
+        return found
+
+    monkeypatch.setattr(ordering.np, "array_equal", interrupted)
+    found = ordering.elimination(*mine, 2).order
+    assert len(compared) > 3 and np.array_equal(found, expected)
+
+
+def test_threads_that_order_different_networks_get_their_own():
+    networks = chains(20, 31)
+    expected = [ordering.elimination(*network, 2).order for network in networks]
+
+    def ordered(k):
+        return np.array_equal(ordering.elimination(*networks[k % 2], 2).order, expected[k % 2])
+
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(4) as pool:
+            assert all(pool.map(ordered, range(400)))
+    finally:
+        sys.setswitchinterval(before)

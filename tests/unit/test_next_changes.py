@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from small_scenes import free_disks, scene, shaken
 
 from granular_response.contact import LAWS
-from granular_response.kernels import events
+from granular_response.kernels import transitions
 from granular_response.linalg.band import Band
 from granular_response.linalg.updated import Updated
 from granular_response.solvers.path import PathRecord, follow
@@ -33,8 +33,8 @@ def pressed(friction=(0.3, 0.4), law="linear", spring=1e-3):
 def what_is_left(system, trial, c, what) -> float:
     """The force that is left until contact ``c`` does ``what``, from the forces of a trial alone."""
     law = system.problem.pair_law if c < len(system.first) else system.problem.wall_law
-    if what in (events.OPENS, events.CLOSES):
-        return float(law.normal_stiffness * trial.configuration.overlap[c] * (1 if what == events.OPENS else -1))
+    if what in (transitions.OPENS, transitions.CLOSES):
+        return float(law.normal_stiffness * trial.configuration.overlap[c] * (1 if what == transitions.OPENS else -1))
     return float(law.friction * trial.normal[c] - np.sign(what) * trial.tangential[c])
 
 
@@ -43,12 +43,11 @@ def added_to_tangent(system, q, c, before, after) -> tuple[np.ndarray, int]:
     problem = system.problem
     senses = np.zeros((2, 2 * len(system.friction)), np.int8)
     senses[:, c] = before, after
-    owner, places = np.zeros(2, np.int64), np.zeros((2, 6), np.int64)
-    left, right = np.zeros((2, 2, 6))
-    count = events.changed_stiffness(
-        np.array([c]), *senses, q, problem.n, problem.packing.radius, problem.freedoms, system.pairs, system.walls,
-        system.rolls, system.pattern.place, owner, places, left, right,
-    )  # fmt: skip
+    columns = transitions.Columns(np.zeros(2, np.int64), np.zeros((2, 6), np.int64), *np.zeros((2, 2, 6)))
+    count = transitions.changed_stiffness(
+        np.array([c]), *senses, q, system.listed, problem.freedoms, system.pattern.place, columns
+    )
+    owner, places, left, right = columns
     added = np.zeros((system.dof, system.dof))
     for at, p, r in zip(places[:count], left, right, strict=False):
         np.add.at(added, np.ix_(at, at), np.outer(p, r))
@@ -81,8 +80,8 @@ def test_what_is_left_falls_at_the_rate_that_is_said(law):
         first, length = found.first()
         others = found.left[found.rate > 0.0].clip(0.0) / found.rate[found.rate > 0.0]
         assert length == others.min() == max(found.left[first], 0.0) / found.rate[first]
-    assert {what for what, pair in seen if pair} >= {events.CLOSES, events.SLIDES, -events.SLIDES}
-    assert {what for what, pair in seen if not pair} & {events.SLIDES, -events.SLIDES}
+    assert {what for what, pair in seen if pair} >= {transitions.CLOSES, transitions.SLIDES, -transitions.SLIDES}
+    assert {what for what, pair in seen if not pair} & {transitions.SLIDES, -transitions.SLIDES}
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -96,7 +95,7 @@ def test_contacts_that_slide_stick_where_the_return_map_lets_them(law):
     found = next_changes(system, system.trial(known, known.q, fixed=trial.sense), velocity, trial.sense, 0.0, 0.0)
     after = system.trial(known, known.q + 1e-9 * velocity)
     sliding = np.flatnonzero(trial.status == SLIDING)
-    sticks = found.what[sliding] == events.STICKS
+    sticks = found.what[sliding] == transitions.STICKS
     assert 2 < sticks.sum() < len(sliding) - 2
     assert np.array_equal(after.status[sliding] == STICKING, sticks)
     assert not found.left[sliding][sticks].any()
@@ -110,11 +109,11 @@ def test_a_contact_that_would_open_before_it_slides_opens():
     trial = system.trial(known, known.q)
     up = next_changes(system, trial, np.array([0.0, 1.0, 0.0]), trial.sense, 0.0, 0.0)
     k = problem.wall_law.normal_stiffness
-    assert (up.what[0], up.left[0], up.rate[0]) == (events.OPENS, pytest.approx(k * 1e-3), pytest.approx(k))
+    assert (up.what[0], up.left[0], up.rate[0]) == (transitions.OPENS, pytest.approx(k * 1e-3), pytest.approx(k))
     for side in (1.0, -1.0):
         moved = next_changes(system, trial, np.array([side, 0.1, 0.0]), trial.sense, 0.0, 0.0)
         # the floor holds back: along its tangent (-1, 0) the force is positive for a disk that goes to the right
-        assert moved.what[0] == side * events.SLIDES
+        assert moved.what[0] == side * transitions.SLIDES
         assert moved.left[0] == pytest.approx(0.2 * k * 1e-3)
         assert moved.rate[0] == pytest.approx(problem.wall_law.tangential_stiffness + 0.2 * 0.1 * k)
 
@@ -133,7 +132,7 @@ def beside_a_corner(gap):
 def test_a_rattler_that_another_disk_pushes_along_or_leaves():
     """It rests on the floor alone. Where it would be drawn along it stays behind, and the contact opens."""
     system, trial, sense = beside_a_corner(0.0)
-    for velocity, does, rate in (([1.0, 1.0], events.NOTHING, 0.0), ([-1.0, -1.0], events.OPENS, 3000.0)):
+    for velocity, does, rate in (([1.0, 1.0], transitions.NOTHING, 0.0), ([-1.0, -1.0], transitions.OPENS, 3000.0)):
         moves = np.array([*velocity, 0.0, 0.0])
         found = next_changes(system, trial, moves, sense, 1e-9, 1e-9)
         assert (found.what[0], found.rate[0], found.left[0]) == (does, pytest.approx(rate, rel=1e-3), 0.0)

@@ -9,7 +9,7 @@ from small_scenes import free_disks, pushed, scene, shaken, started
 from test_next_changes import added_to_tangent
 from test_statics import dense_tangent, numerical_tangent
 
-from granular_response.contact.coulomb import cut, return_map
+from granular_response.contact.coulomb import cut, limit, limit_slope, moved
 from granular_response.contact.rolling import Rolling
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.dynamics import Dynamics
@@ -36,12 +36,13 @@ FLOOR = {"wall__friction": 1.0, "wall__rolling_friction": 0.3, "wall__rolling_st
 
 def test_the_rolling_force_by_hand():
     """Within the limit spring and dashpot; beyond it the cut force, and the spring that it leaves after the dashpot."""
-    constants = LAW.stiffness, LAW.damping, LAW.friction
-    assert cut(1e-3, 0.01, 10.0, *constants, 0.01) == pytest.approx((-0.65, 1.1e-3))
-    assert cut(3e-3, 0.01, 10.0, *constants, 0.0) == pytest.approx((-1.0, 0.9 / 500.0))
-    assert cut(-3e-3, 0.0, -10.0, *constants, 0.0) == pytest.approx((1.0, -1.0 / 500.0))
-    assert return_map(3e-3, 1.0, LAW.stiffness) == pytest.approx((-1.0, 2e-3, -1.0))
-    assert return_map(1e-3, 1.0, LAW.stiffness) == pytest.approx((-0.5, 1e-3, 0.0))
+    constants = LAW.stiffness, LAW.damping
+    assert moved(1e-3, 0.01, 1.0, *constants, 0.01) == pytest.approx((-0.65, 1.1e-3))
+    assert moved(3e-3, 0.01, 1.0, *constants, 0.0) == pytest.approx((-1.0, 0.9 / 500.0))
+    assert moved(-3e-3, 0.0, 1.0, *constants, 0.0) == pytest.approx((1.0, -1.0 / 500.0))
+    assert cut(3e-3, 0.0, 1.0, LAW.stiffness) == pytest.approx((-1.0, 2e-3, True))
+    assert cut(1e-3, 0.0, 1.0, LAW.stiffness) == pytest.approx((-0.5, 1e-3, False))
+    assert limit(LAW, 10.0) == 1.0 and limit_slope(LAW, 10.0) == LAW.friction
 
 
 def test_keys_that_do_nothing_together_are_refused_and_absent_ones_are_not_written():
@@ -115,7 +116,7 @@ def test_forces_agree_with_dynamics_at_rest_and_the_tangent_is_their_derivative(
     force = Dynamics(problem, state).memory[0] / problem.inverse_mass
     assert trial.contact_force + problem.weight_vector == pytest.approx(force, abs=1e-9)
     trial = system.trial(known, q)
-    statuses = trial.rolled.status
+    statuses = np.abs(trial.sense[len(trial.status) :])
     assert (statuses == (SLIDING if roll > 1e-3 else STICKING)).sum() > 20
     exact, numerical = dense_tangent(system, trial), numerical_tangent(system, known, q)
     assert np.abs(exact - numerical).max() < 1e-6 * np.abs(exact).max()
@@ -143,7 +144,7 @@ def test_what_comes_next_along_the_rolling_falls_at_the_rate_that_is_said():
         side = np.sign(found.what[c])
 
         def left(trial, c=c - count, side=side):
-            return system.rolls.friction[c] * trial.normal[c] - side * trial.rolled.force[c]
+            return system.listed.rolling_friction[c] * trial.normal[c] - side * trial.contacts.tangential[count + c]
 
         seen.add((int(side), bool(c - count < len(system.first))))
         assert found.left[c] == pytest.approx(left(here), abs=1e-12)
@@ -168,7 +169,7 @@ def test_a_changed_status_is_the_difference_of_tangents():
                     sense[count + c] = STICKING if status == OPEN else status
                     trial = system.trial(known, known.q, fixed=sense)
                     if status == OPEN:
-                        trial.rolled.tangent[c] = 0.0
+                        trial.tangents[c, 3] = 0.0
                     matrices.append(system.tangent(trial).toarray())
                 added, _ = added_to_tangent(system, known.q, count + c, before, after)
                 assert added == pytest.approx(matrices[1] - matrices[0], abs=1e-8)

@@ -7,7 +7,7 @@ import pytest
 from small_scenes import free_disks, scene, shaken, started
 
 from granular_response.contact import LAWS
-from granular_response.kernels.statics import Response, _one_pair
+from granular_response.kernels.statics import Increment, Response, one_pair
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.stability import Spectrum
@@ -55,11 +55,10 @@ def test_pairs_have_the_bits_in_vectors_that_each_has_alone(law, size):
     for fixed in (sense, None):
         trial = system.trial(known, q, fixed=fixed, velocity=rates, length=1e-3)
         alone = Response.empty(len(sense))
+        kept = None if fixed is None else fixed.astype(float)
+        step = Increment(q, known.q, rates, 1e-3, known.overlap, known.spring, None, kept)
         for c in range(len(system.first)):
-            _one_pair(
-                c, q, known.q, rates, 1e-3, problem.n, problem.packing.radius, system.pairs, system.pairs.shape,
-                known.overlap, known.spring, None, None if fixed is None else fixed.astype(float), alone, 0.0, 0.0,
-            )  # fmt: skip
+            one_pair(c, known.spring, kept, step, system.listed, alone)
         for name, found in alone._asdict().items():
             assert np.array_equal(found[: len(system.first)], getattr(trial.contacts, name)[: len(system.first)]), name
     own = system.trial(known, q, fixed=free.sense)

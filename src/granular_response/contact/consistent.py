@@ -1,8 +1,8 @@
-"""Whether energy, force and stiffness of a contact law are derivatives of each other, by finite differences.
+"""Whether a contact law agrees with itself: energy, force and stiffness, limit and slope, by finite differences.
 
 A law whose force is not the derivative of its energy comes to rest where no minimum of that energy is, and one with
-another stiffness is called stable by the wrong tangent. So each is compared at overlaps from a millionth to a tenth of
-a mean radius. At a kink, where the derivative jumps, a law is asked again a little beside it.
+another stiffness, or slope of its limit, is called stable by the wrong tangent. So each is compared at overlaps from a
+millionth to a tenth of a mean radius. At a kink, where the derivative jumps, a law is asked again a little beside it.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from functools import cache
 import numba as nb
 import numpy as np
 
+from .coulomb import limit, limit_slope
 from .law import Law, elastic_force, energy, stiffness
 
 #: Overlaps (mean radii), none of them a round number at which a law may have a kink.
@@ -24,7 +25,7 @@ BODIES = ((1.0, 1.0), (0.8, 1.1), (1.0, None))
 
 
 def contradiction(law: Law) -> str:
-    """What in a law contradicts itself, in words; nothing if energy, force and stiffness belong together."""
+    """What in a law contradicts itself, in words; nothing if all its parts belong together."""
     for first, second in BODIES:
         shapes = law.shapes(np.array([first]), None if second is None else np.array([second]))
         shape = None if shapes is None else float(shapes[0])
@@ -40,12 +41,14 @@ def _at(law: Law, overlap: float, shape: float | None) -> str:
     step = STEP * overlap
     low, here, high = (_asked()(law, overlap + k * step, shape) for k in (-1, 0, 1))
     if not np.isfinite([low, here, high]).all():
-        return f"energy, elastic_force or stiffness is no finite number at overlap {overlap:.3g}"
-    work, force, stiff = here
+        return f"energy, elastic_force, stiffness, limit or limit_slope is no finite number at overlap {overlap:.3g}"
+    work, force, stiff, most, slope_of_limit = here
     slopes = [(up - down) / (2.0 * step) for down, up in zip(low, high, strict=True)]
+    by_force = slopes[3] / slopes[1] if slopes[1] else 0.0
     for name, of, found, slope, scale in (
         ("elastic_force", "energy", force, slopes[0], max(abs(stiff) * overlap, abs(work) / overlap)),
         ("stiffness", "elastic_force", stiff, slopes[1], abs(force) / overlap),
+        ("limit_slope", "limit", slope_of_limit, by_force, abs(most / force) if force else 0.0),
     ):
         if abs(found - slope) > TOLERANCE * max(abs(found), abs(slope), scale):
             return f"{name} is {found:.6g} at overlap {overlap:.3g}, where the derivative of {of} is {slope:.6g}"
@@ -54,10 +57,11 @@ def _at(law: Law, overlap: float, shape: float | None) -> str:
 
 @cache
 def _asked() -> Callable:
-    """Energy, force and stiffness of a law at an overlap, compiled: what they call need not be Python's."""
+    """All parts of a law at an overlap, compiled: what they call need not be Python's."""
 
     @nb.njit(error_model="numpy")
     def asked(law, overlap, shape):
-        return energy(law, overlap, shape), elastic_force(law, overlap, shape), stiffness(law, overlap, shape)
+        force, stiff = elastic_force(law, overlap, shape), stiffness(law, overlap, shape)
+        return energy(law, overlap, shape), force, stiff, limit(law, force), limit_slope(law, force)
 
     return asked

@@ -4,7 +4,7 @@ Arguments are floats, or the ``Lanes`` of several contacts; ``law`` is any law o
 """
 
 from ..machine.lanes import magnitude, quotient_where, select
-from ..machine.machine_code import kernel
+from ..machine.machine_code import by_type, kernel
 
 #: How the Coulomb limit acts on the tangential spring.
 CUT, LITERAL, UNLOADING = 0, 1, 2
@@ -13,20 +13,38 @@ CUT, LITERAL, UNLOADING = 0, 1, 2
 RULES = {"cut": CUT, "literal": LITERAL, "unloading": UNLOADING}
 
 
-@kernel
-def cut(spring, slip_velocity, force_normal, stiffness, damping, friction, time_step):
-    """Spring plus dashpot cut to a Coulomb limit; returns force and new spring.
+@by_type
+def limit(self, force_normal):
+    """Largest tangential force of a contact that presses with ``force_normal``; Coulomb's, unless a law has its own."""
+    return self.friction * force_normal
 
-    The limit is ``friction * |force_normal|`` with the dashpot's part included. Where it acts, the stored
-    spring becomes the one that gives the cut force, so that the contact sticks again from there. Along the rolling too.
+
+@by_type
+def limit_slope(self, force_normal):
+    """Derivative of :func:`limit` with respect to the normal force."""
+    return self.friction
+
+
+@kernel
+def cut(trial, damped, limit, stiffness):
+    """Force, new spring, and whether it slides, of a spring stretched to ``trial`` beside a dashpot, under a ``limit``.
+
+    ``damped`` : force of the dashpot against the slip, a part of what the limit cuts; 0 at rest, where this is the
+    return map. Where the limit acts, the stored spring becomes the one that gives the cut force, so that the contact
+    sticks again from there. Along the rolling too.
     """
-    trial = spring + slip_velocity * time_step
-    damped = damping * slip_velocity
     force = -stiffness * trial - damped
-    limit = friction * magnitude(force_normal)
     kept = select(force > limit, limit, force)
     kept = select(kept < -limit, -limit, kept)
-    return kept, quotient_where(kept != force, -(kept + damped), stiffness, trial)
+    slides = kept != force
+    return kept, quotient_where(slides, -kept - damped, stiffness, trial), slides
+
+
+@kernel
+def moved(spring, slip_velocity, limit, stiffness, damping, time_step):
+    """Force and new spring, by :func:`cut`, of a contact that slips for a ``time_step``."""
+    force, new, _ = cut(spring + slip_velocity * time_step, damping * slip_velocity, limit, stiffness)
+    return force, new
 
 
 @kernel
@@ -38,7 +56,7 @@ def tangential_frozen(spring, slip_velocity, force_normal, law, rule, time_step)
     that would stretch it further, and a contact that unloads sticks at once; where the normal force falls the
     tangential force stays beyond the limit.
     """
-    moves = law.friction * magnitude(force_normal) - law.tangential_stiffness * magnitude(spring) > 0.0
+    moves = limit(law, magnitude(force_normal)) - law.tangential_stiffness * magnitude(spring) > 0.0
     if rule == UNLOADING:
         moves = moves | (spring * slip_velocity < 0.0)
     new = spring + select(moves, slip_velocity * time_step, 0.0)
@@ -50,20 +68,5 @@ def tangential(spring, slip_velocity, force_normal, law, rule, time_step):
     """Tangential force and new spring by ``rule``: CUT, LITERAL or UNLOADING."""
     if rule != CUT:
         return tangential_frozen(spring, slip_velocity, force_normal, law, rule, time_step)
-    return cut(
-        spring, slip_velocity, force_normal, law.tangential_stiffness, law.tangential_damping, law.friction, time_step
-    )
-
-
-@kernel
-def return_map(trial, limit, stiffness):
-    """Force, spring and sense of sliding (0: sticks) for a spring stretched to ``trial`` under a Coulomb ``limit``.
-
-    Along the rolling too, where the limit is that of rolling and the sense that in which the contact rolls.
-    """
-    force = -stiffness * trial
-    if abs(force) <= limit:
-        return force, trial, 0.0
-    sense = 1.0 if force > 0.0 else -1.0
-    force = sense * limit
-    return force, -force / stiffness, sense
+    most = limit(law, magnitude(force_normal))
+    return moved(spring, slip_velocity, most, law.tangential_stiffness, law.tangential_damping, time_step)

@@ -51,8 +51,3 @@ class Hertz(NamedTuple):
 
     def stiffest(self, force: float) -> float:
         return self.normal_stiffness * max(force, 0.0) ** (1.0 / 3.0)
-
-    def softened(self, part: float) -> Hertz:
-        # sinking grows like (forces / factor)^(2/3) times the number of layers
-        factor = part**2.5 * self.factor
-        return self._replace(normal_stiffness=1.5 * factor ** (2.0 / 3.0), factor=factor)

@@ -60,13 +60,6 @@ class Law(Protocol):
     def stiffest(self, force: float) -> float:
         """Largest normal stiffness at normal forces up to ``force``."""
 
-    def softened(self, part: float) -> Self:
-        """The law with which a packing of ``part`` of the height sinks by the same lengths under its own weight.
-
-        For the start of large packings alone: the force at an overlap is ``part`` times that of this law at ``part`` of
-        the overlap, so ``part**2`` times the constant for linear springs.
-        """
-
 
 def without_friction(law: Law) -> Law:
     """The same law without its part along the tangent."""

@@ -34,7 +34,3 @@ class Linear(NamedTuple):
 
     def stiffest(self, force: float) -> float:
         return self.normal_stiffness
-
-    def softened(self, part: float) -> Linear:
-        # sinking grows like forces over stiffness times the number of layers
-        return self._replace(normal_stiffness=part**2 * self.normal_stiffness)

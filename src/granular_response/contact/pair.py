@@ -6,9 +6,10 @@ forgets its spring; that takes no branch. ``du``, ``dw`` : velocity of the first
 (:mod:`.law`); ``rule`` : of :mod:`.coulomb`; ``dt`` : time step of the spring.
 """
 
-from ..machine.lanes import root, select
+from ..machine.lanes import select
 from ..machine.machine_code import kernel
 from .coulomb import tangential
+from .geometry import between
 from .law import normal_force
 
 
@@ -33,14 +34,12 @@ def frictional(overlap, nx, nz, du, dw, rims, shape, spring, law, rule, dt):
 @kernel
 def frictionless_pair(dx, dz, du, dw, reach, shape, law):
     """Force on the first of two disks; ``dx``, ``dz`` : from the second to it; ``reach`` : sum of the radii."""
-    distance = root(dx * dx + dz * dz)
-    inverse = 1.0 / distance
-    return frictionless(reach - distance, dx * inverse, dz * inverse, du, dw, shape, law)
+    overlap, nx, nz = between(dx, dz, reach)
+    return frictionless(overlap, nx, nz, du, dw, shape, law)
 
 
 @kernel
 def frictional_pair(dx, dz, du, dw, rims, reach, shape, spring, law, rule, dt):
     """As :func:`frictional` for two disks; arguments as of :func:`frictionless_pair`."""
-    distance = root(dx * dx + dz * dz)
-    inverse = 1.0 / distance
-    return frictional(reach - distance, dx * inverse, dz * inverse, du, dw, rims, shape, spring, law, rule, dt)
+    overlap, nx, nz = between(dx, dz, reach)
+    return frictional(overlap, nx, nz, du, dw, rims, shape, spring, law, rule, dt)

@@ -13,10 +13,11 @@ the force of the pair it is first in before that of the pair it is second in, al
 
 from __future__ import annotations
 
-from ..contact.coulomb import cut
+from ..contact.coulomb import limit, moved
+from ..contact.geometry import at_wall, between
 from ..contact.law import normal_force
 from ..contact.pair import frictional, frictional_pair, frictionless, frictionless_pair
-from ..machine.lanes import WIDTH, gather, put, root, select, spread, take
+from ..machine.lanes import WIDTH, gather, magnitude, put, select, spread, take
 from ..machine.machine_code import kernel
 
 #: Pairs of a run of close indices whose forces are held back before they are added to their second disks: memory
@@ -35,20 +36,24 @@ def _shape_at(shape, k, like):
 
 
 @kernel(forceinline=True)
+def _rolled(overlap, normal, spin, s, rolls, dt):
+    """Couple on the first body of contact ``s``, or of several from there on; springs advance."""
+    arm, spring, rolling = take(rolls.arm, s, overlap), take(rolls.spring, s, overlap), rolls.rolling
+    most = limit(rolling, magnitude(normal))
+    force, new = moved(spring, arm * spin, most, rolling.stiffness, rolling.damping, dt)
+    put(rolls.spring, s, select(overlap > 0.0, new, 0.0))
+    return select(overlap > 0.0, arm * force, 0.0)
+
+
+@kernel(forceinline=True)
 def _couple(dx, dz, du, dw, reach, form, law, spin, s, rolls, dt):
     """Couple on the first disk of the pair in slot ``s`` that rolls with a relative ``spin``, or of several pairs.
 
     Springs advance; what is open forgets its own.
     """
-    distance = root(dx * dx + dz * dz)
-    inverse = 1.0 / distance
-    overlap = reach - distance
-    normal = normal_force(overlap, form, du * (dx * inverse) + dw * (dz * inverse), law)
-    arm, rolling = take(rolls.arm, s, distance), rolls.rolling
-    spring = take(rolls.spring, s, distance)
-    force, new = cut(spring, arm * spin, normal, rolling.stiffness, rolling.damping, rolling.friction, dt)
-    put(rolls.spring, s, select(overlap > 0.0, new, 0.0))
-    return select(overlap > 0.0, arm * force, 0.0)
+    overlap, nx, nz = between(dx, dz, reach)
+    normal = normal_force(overlap, form, du * nx + dw * nz, law)
+    return _rolled(overlap, normal, spin, s, rolls, dt)
 
 
 @kernel(forceinline=True)
@@ -211,7 +216,7 @@ def add_wall_forces(q, v, rim, f, n, spring, shape, walls, rule, dt):
         i = walls.disk[c]
         nx = walls.normal[c, 0]
         nz = walls.normal[c, 1]
-        overlap = -(walls.gap[c] + q[i] * nx + q[n + i] * nz)
+        overlap = at_wall(q[i], q[n + i], nx, nz, walls.gap[c])
         form = _shape_at(shape, c, 0.0)
         if overlap > 0.0:
             if spring is None:
@@ -230,19 +235,11 @@ def add_wall_forces(q, v, rim, f, n, spring, shape, walls, rule, dt):
 @kernel
 def add_wall_couples(q, v, f, n, shape, rolls, walls, dt):
     """Add the couples of disks that roll on walls to ``f``; ``rolls`` : ``model.Rolls``."""
-    rolling = rolls.rolling
     for c in range(walls.disk.size):
-        i, nx, nz, arm = walls.disk[c], walls.normal[c, 0], walls.normal[c, 1], rolls.arm[c]
-        overlap = -(walls.gap[c] + q[i] * nx + q[n + i] * nz)
-        if not overlap > 0.0:
-            rolls.spring[c] = 0.0
-            continue
+        i, nx, nz = walls.disk[c], walls.normal[c, 0], walls.normal[c, 1]
+        overlap = at_wall(q[i], q[n + i], nx, nz, walls.gap[c])
         normal = normal_force(overlap, _shape_at(shape, c, 0.0), v[i] * nx + v[n + i] * nz, walls.law)
-        spin = v[2 * n + i]
-        force, rolls.spring[c] = cut(
-            rolls.spring[c], arm * spin, normal, rolling.stiffness, rolling.damping, rolling.friction, dt
-        )  # fmt: skip
-        f[2 * n + i] += arm * force
+        f[2 * n + i] += _rolled(overlap, normal, v[2 * n + i], c, rolls, dt)
 
 
 @kernel

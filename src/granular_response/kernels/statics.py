@@ -20,7 +20,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.coulomb import return_map
+from ..contact.coulomb import cut, limit, limit_slope
+from ..contact.geometry import at_wall, displaced
 from ..contact.law import elastic_force, energy, stiffness
 from ..machine.lanes import WIDTH, anywhere, gather, magnitude, put, quotient_where, root, select, spread, take
 from ..machine.machine_code import kernel
@@ -32,67 +33,81 @@ Floats = NDArray[Any]
 SMALL_TURN = 0.02
 
 
-class Pairs(NamedTuple):
-    """(m,) listed contacts between disks at zero displacement."""
+class Listed(NamedTuple):
+    """m + w candidate contacts at zero displacement: m of two disks, then w of a disk with a wall."""
 
-    first: NDArray[Any]
-    second: NDArray[Any]
-    dx: Floats  #: separation
+    disks: NDArray[Any]  #: (m + w, 2) int64, disks of each; the second of a wall is -1
+    pairs: int  #: m
+    dx: Floats  #: (m + w,) separations; at walls the inward normal
     dz: Floats
-    distance: Floats
-    gap: Floats
-    shape: Floats | None  #: what the law needs of the radii
-    law: Any
+    distance: Floats  #: (m + w,); 1 at walls
+    gap: Floats  #: (m + w,)
+    shape: Floats | None  #: (m + w,) what the law needs of the radii
+    pair_law: Any  #: named tuples of ``contact``, of one class
+    wall_law: Any
+    arm: Floats  #: (m + w,) reduced radii, or (0,) where no contact resists rolling; the same of the next two
+    rolling_friction: Floats  #: 0 for contacts that do not resist
+    rolling_stiffness: Floats
+    radius: Floats  #: (n,) of all disks
+    loaded: NDArray[Any]  #: (n,) ties that loads count as
 
 
-class Walls(NamedTuple):
-    """(w,) listed contacts of disks with walls at zero displacement."""
+class Increment(NamedTuple):
+    """From a configuration that is known to a trial. What belongs to the rolling follows the m + w numbers of contacts.
 
-    disk: NDArray[Any]
-    normal: Floats  #: (w, 2) inward
-    gap: Floats
-    shape: Floats | None
-    law: Any
+    Attributes
+    ----------
+    ahead, length : (dof,) and a number: their product is the displacement were the rates those at ``q0``. Where
+        statuses are kept, the slip of pairs that stick along the way that curves from there is counted.
+    limits : fixed limits, None for those of the law.
+    fixed : statuses that contacts keep whatever happens, as floats, negative where they slide under a negative force,
+        None for the return map.
+    """
 
-
-class Rolls(NamedTuple):
-    """(m + w,) rolling resistance of listed contacts; of stiffness 0 where there is none."""
-
-    arm: Floats  #: reduced radii
-    friction: Floats
-    stiffness: Floats
+    q: Floats  #: (dof,) displacements
+    q0: Floats  #: (dof,) those that are known
+    ahead: Floats
+    length: float
+    overlap: Floats  #: (m + w,) at ``q0``
+    spring: Floats  #: (m + w,) at ``q0``, and rolling springs
+    limits: Floats | None
+    fixed: Floats | None
 
 
 class Response(NamedTuple):
-    """Contact forces at a trial configuration, to be filled."""
+    """Contact forces at a trial configuration, to be filled. What belongs to the rolling follows the m + w numbers."""
 
-    overlap: Floats  #: (m,)
-    normal: Floats
-    tangential: Floats
-    spring: Floats
-    nx: Floats  #: direction of the normal force on the first body
+    overlap: Floats  #: (m + w,)
+    normal: Floats  #: (m + w,)
+    nx: Floats  #: (m + w,) direction of the normal force on the first body
     nz: Floats
+    tangential: Floats  #: (m + w,), and forces along the rolling
+    spring: Floats
     status: Floats  #: negative where it slides under a negative force
 
     @classmethod
-    def empty(cls, size: int) -> Response:
-        """Room for ``size`` contacts."""
-        overlap, normal, tangential, spring, nx, nz, status = np.zeros((7, size))
-        return cls(overlap, normal, tangential, spring, nx, nz, status)
+    def empty(cls, size: int, *, rolls: bool = False) -> Response:
+        """Zeros for ``size`` contacts."""
+        return cls(*np.zeros((4, size)), *np.zeros((3, size * (1 + rolls))))
 
 
-class RollingResponse(NamedTuple):
-    """Rolling resistance at a trial configuration, to be filled."""
+@kernel(forceinline=True)
+def law_of(listed, c):
+    """The law of contact ``c``."""
+    return listed.pair_law if c < listed.pairs else listed.wall_law
 
-    force: Floats  #: (m,)
-    spring: Floats
-    status: NDArray[Any]
 
-    @classmethod
-    def empty(cls, size: int) -> RollingResponse:
-        """Room for ``size`` contacts."""
-        force, spring = np.zeros((2, size))
-        return cls(force, spring, np.zeros(size, np.int8))
+@kernel(forceinline=True)
+def contact_at(c, q, listed):
+    """Disks of contact ``c``, its normal, overlap and normal stiffness at ``q``. A wall is the disk -1."""
+    n, i, j = listed.radius.size, listed.disks[c, 0], listed.disks[c, 1]
+    nx, nz, gap = listed.dx[c], listed.dz[c], listed.gap[c]
+    if j < 0:
+        overlap = at_wall(q[i], q[n + i], nx, nz, gap)
+    else:
+        dx, dz, distance, overlap = displaced(q[i] - q[j], q[n + i] - q[n + j], nx, nz, listed.distance[c], gap)
+        nx, nz = dx / distance, dz / distance
+    return i, j, nx, nz, overlap, stiffness(law_of(listed, c), overlap, take(listed.shape, c, 0.0))
 
 
 @kernel
@@ -122,31 +137,6 @@ def _fill_tangent(g, nx, nz, normal, tangential, inverse, k, kt_w_t, kt_w_n, kt_
 
 
 @kernel(forceinline=True)
-def _item(values, c):
-    """The number of contact ``c``, or None where no contact has any."""
-    if values is None:
-        return None
-    return values[c]
-
-
-@kernel(forceinline=True)
-def _pair_at(q, n, pairs, c):
-    """Disks of a listed pair, their relative displacement, and separation, distance and overlap at ``q``."""
-    i = pairs.first[c]
-    j = pairs.second[c]
-    ux = q[i] - q[j]
-    uz = q[n + i] - q[n + j]
-    dx0 = pairs.dx[c]
-    dz0 = pairs.dz[c]
-    dx = dx0 + ux
-    dz = dz0 + uz
-    d = math.sqrt(dx * dx + dz * dz)
-    # |d| - |d0| without cancellation
-    stretch = (2.0 * (dx0 * ux + dz0 * uz) + ux * ux + uz * uz) / (d + pairs.distance[c])
-    return i, j, ux, uz, dx, dz, d, -(pairs.gap[c] + stretch)
-
-
-@kernel(forceinline=True)
 def _small_angle(sine, cosine):
     t = sine / cosine
     u = t * t
@@ -162,65 +152,9 @@ def _angle(sine, cosine):
 
 
 @kernel(forceinline=True)
-def _wall_at(q, n, walls, c):
-    """Disk of a listed contact with a wall, the wall's normal, and the overlap at ``q``."""
-    i = walls.disk[c]
-    nx = walls.normal[c, 0]
-    nz = walls.normal[c, 1]
-    return i, nx, nz, -(walls.gap[c] + q[i] * nx + q[n + i] * nz)
-
-
-@kernel(forceinline=True)
-def _contact_at(c, q, n, pairs, walls):
-    """Disks of contact ``c`` of all listed, pairs before walls, its normal at ``q``, and of the law there:
-
-    normal stiffness, that at the weight of a disk, friction and tangential stiffness. A wall is the disk -1.
-    """
-    m = pairs.first.size
-    if c < m:
-        i, j, _, _, dx, dz, d, xi = _pair_at(q, n, pairs, c)
-        law = pairs.law
-        k = stiffness(law, xi, _item(pairs.shape, c))
-        return i, j, dx / d, dz / d, k, law.normal_stiffness, law.friction, law.tangential_stiffness
-    i, nx, nz, xi = _wall_at(q, n, walls, c - m)
-    at_wall = walls.law
-    k = stiffness(at_wall, xi, _item(walls.shape, c - m))
-    return i, -1, nx, nz, k, at_wall.normal_stiffness, at_wall.friction, at_wall.tangential_stiffness
-
-
-@kernel(forceinline=True)
 def _closed_part(before, overlap):
     """Part of an increment from the overlap ``before`` in which a contact is closed."""
     return 1.0 if before >= 0.0 or overlap <= 0.0 else overlap / (overlap - before)
-
-
-@kernel(forceinline=True)
-def _returned(spring, limit, stiffness, kept):
-    """Force, spring and sense of a contact, and by which force the return map would give another one.
-
-    By the return map, or of the status ``kept``.
-    """
-    force, back, sense = return_map(spring, limit, stiffness)
-    if kept is None:
-        return force, back, sense, 0.0
-    if abs(kept) == SLIDING:
-        sense = 1.0 if kept > 0 else -1.0
-        return sense * limit, -sense * limit / stiffness, sense, abs(sense * limit - force)
-    return -stiffness * spring, spring, 0.0, abs(stiffness * spring + force)
-
-
-@kernel(forceinline=True)
-def _pair(ux, uz, wx, wz, dx0, dz0, distance0, gap):
-    """Separation, distance and overlap of a pair, its separation and distance before, and sine and cosine of its turn.
-
-    The latter are multiplied by both distances. ``ux``, ``uz`` : relative displacement; ``wx``, ``wz`` : its increment.
-    """
-    dx, dz = dx0 + ux, dz0 + uz
-    distance = root(dx * dx + dz * dz)
-    stretch = (2.0 * (dx0 * ux + dz0 * uz) + ux * ux + uz * uz) / (distance + distance0)
-    px, pz = dx - wx, dz - wz
-    before = root(px * px + pz * pz)
-    return dx, dz, distance, -(gap + stretch), px, pz, before, px * wz - pz * wx, px * dx + pz * dz
 
 
 @kernel(forceinline=True)
@@ -255,95 +189,161 @@ def _most(limit, coulomb):
 
 
 @kernel(forceinline=True)
-def _fill(c, like, status, overlap, before, slip, curved, limit, form, law, spring0, out, bend, worst):
-    """Fill in contact ``c``, or those of a vector; normal and tangential force, and the largest bend and contradiction.
+def _turned(dx, dz, wx, wz):
+    """Separation and distance of a pair before an increment ``(wx, wz)``, and sine and cosine of its turn.
 
-    ``status`` : kept, or None for the return map; ``limit`` : of Coulomb, or None; ``spring0`` : None without friction.
+    The latter are multiplied by both distances.
     """
+    px, pz = dx - wx, dz - wz
+    return px, pz, root(px * px + pz * pz), px * wz - pz * wx, px * dx + pz * dz
+
+
+@kernel(forceinline=True)
+def _returned(trial, most, stiffness, status):
+    """Force, new spring, signed status, and contradiction, of closed contacts with a spring stretched to ``trial``.
+
+    By the return map, or of the ``status`` that they keep: the contradiction is the force by which both differ.
+    """
+    force, spring, slides = cut(trial, 0.0, most, stiffness)
+    if status is None:
+        return force, spring, select(slides, select(trial < 0.0, float(SLIDING), -float(SLIDING)), 1.0), 0.0 * force
+    slides = magnitude(status) > STICKING
+    kept = select(slides, select(status > 0.0, most, -most), -stiffness * trial)
+    return kept, quotient_where(slides, -kept, stiffness, trial), status + 0.0, magnitude(kept - force)
+
+
+@kernel(forceinline=True)
+def _fill(c, overlap, slip, curved, law, spring0, fixed, step, listed, out):
+    """Fill in contact ``c``, or those of a vector.
+
+    ``spring0``, ``fixed`` : of ``step``; the first is None without friction. Returns the parts of their springs that
+    curved ways made, and contradictions.
+    """
+    status, form = take(fixed, c, overlap), take(listed.shape, c, overlap)
     presses = overlap > 0.0
     closed = _closed(status, overlap)
     normal = select(closed, elastic_force(law, overlap, form), 0.0)
-    now, wrong, tangential = select(closed, 1.0, 0.0 * overlap), 0.0 * overlap, 0.0 * overlap
-    if status is not None:  # one that is kept open presses, or one that is kept closed pulls
+    now, bent, wrong = select(closed, 1.0, 0.0 * overlap), 0.0 * overlap, 0.0 * overlap
+    if fixed is not None:  # one that is kept open presses, or one that is kept closed pulls
         now, size = status + 0.0, elastic_force(law, magnitude(overlap), form)
         wrong = select(closed, select(overlap < 0.0, size, 0.0), select(presses, size, 0.0))
     if spring0 is not None:
-        spring = take(spring0, c, like)
-        stretched = spring + 0.0
-        if status is not None:
-            stretched = spring + select(magnitude(status) > STICKING, 0.0, magnitude(status)) * curved
-            bent = magnitude(stretched - spring)
-            bend = select(bent > bend, bent, bend)
+        spring = take(spring0, c, overlap)
+        trial = spring + 0.0
+        if fixed is not None:
+            trial = spring + select(magnitude(status) > STICKING, 0.0, magnitude(status)) * curved
+            bent = magnitude(trial - spring)
         # one that closes collects slip from where it closed
+        before = take(step.overlap, c, overlap)
         share = select(presses, quotient_where(before < 0.0, overlap, overlap - before, 1.0), 1.0)
-        stretched = stretched + share * slip
-        most = _most(limit, law.friction * normal)
-        free = -law.tangential_stiffness * stretched
-        within = magnitude(free) <= most
-        tangential = select(closed, select(within, free, select(free > 0.0, most, -most)), 0.0)
-        if status is None:
-            now = select(closed, select(within, 1.0, select(free > 0.0, float(SLIDING), -float(SLIDING))), 0.0)
-        else:
-            kept = select(magnitude(status) > STICKING, select(status > 0.0, most, -most), free)
-            kept = select(closed, kept, 0.0)
-            off = magnitude(kept - tangential)
-            wrong, tangential = select(off > wrong, off, wrong), kept
-        put(out.tangential, c, tangential)
-        new = quotient_where(magnitude(now) > STICKING, -tangential, law.tangential_stiffness, stretched)
-        put(out.spring, c, select(closed, new, 0.0))
+        most = _most(take(step.limits, c, overlap), limit(law, normal))
+        force, spring, sense, off = _returned(trial + share * slip, most, law.tangential_stiffness, status)
+        off = select(closed, off, 0.0)
+        now, wrong = select(closed, sense, 0.0), select(off > wrong, off, wrong)
+        put(out.tangential, c, select(closed, force, 0.0))
+        put(out.spring, c, select(closed, spring, 0.0))
     put(out.overlap, c, overlap)
     put(out.normal, c, normal)
     put(out.status, c, now)
-    return normal, tangential, bend, select(wrong > worst, wrong, worst)
+    return bent, wrong
 
 
 @kernel
-def _one_pair(
-    c, q, q0, ahead, length, n, radius, pairs, pair_shape, overlap0, spring0, limits, fixed, out, bend, worst
-):  # fmt: skip
-    """Fill in one pair."""
-    i, j = pairs.first[c], pairs.second[c]
+def one_pair(c, spring0, fixed, step, listed, out):
+    """Fill in one pair; arguments and results as of :func:`_fill`."""
+    n, i, j, radius = listed.radius.size, listed.disks[c, 0], listed.disks[c, 1], listed.radius
+    q, q0, ahead, length = step.q, step.q0, step.ahead, step.length
     ux, uz = q[i] - q[j], q[n + i] - q[n + j]
     wx, wz = ux - (q0[i] - q0[j]), uz - (q0[n + i] - q0[n + j])
-    dx, dz, distance, overlap, px, pz, before, sine, cosine = _pair(
-        ux, uz, wx, wz, pairs.dx[c], pairs.dz[c], pairs.distance[c], pairs.gap[c]
-    )
+    dx, dz, distance, overlap = displaced(ux, uz, listed.dx[c], listed.dz[c], listed.distance[c], listed.gap[c])
     slip, curved = 0.0, 0.0
     if spring0 is not None:
+        px, pz, before, sine, cosine = _turned(dx, dz, wx, wz)
         roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
         slip = 0.5 * (before + distance) * _angle(sine, cosine) - roll
         if fixed is not None:
             ax, az = length * (ahead[i] - ahead[j]), length * (ahead[n + i] - ahead[n + j])
-            curved = _curved(px, pz, wx, wz, ax, az, 1.0 / pairs.distance[c])
+            curved = _curved(px, pz, wx, wz, ax, az, 1.0 / listed.distance[c])
     out.nx[c], out.nz[c] = dx / distance, dz / distance
-    _, _, bend, worst = _fill(
-        c, 0.0, take(fixed, c, 0.0), overlap, overlap0[c], slip, curved, take(limits, c, 0.0),
-        take(pair_shape, c, 0.0), pairs.law, spring0, out, bend, worst,
-    )  # fmt: skip
+    return _fill(c, overlap, slip, curved, listed.pair_law, spring0, fixed, step, listed, out)
+
+
+@kernel
+def _fill_pairs(spring0, fixed, step, listed, room, out):
+    """Fill in all pairs, eight at once; their largest bend and contradiction."""
+    q, q0, ahead, length = step.q, step.q0, step.ahead, step.length
+    n, m, disks, radius = listed.radius.size, listed.pairs, listed.disks, listed.radius
+    like = spread(0.0)
+    bends, wrongs = spread(0.0), spread(0.0)
+    bend, worst = 0.0, 0.0
+    for c in range(0, m, WIDTH):
+        alone = c + WIDTH > m
+        if not alone:
+            ux = gather(q, 0, disks, c, 0) - gather(q, 0, disks, c, 1)
+            uz = gather(q, n, disks, c, 0) - gather(q, n, disks, c, 1)
+            wx = ux - (gather(q0, 0, disks, c, 0) - gather(q0, 0, disks, c, 1))
+            wz = uz - (gather(q0, n, disks, c, 0) - gather(q0, n, disks, c, 1))
+            distance0 = take(listed.distance, c, like)
+            dx, dz, distance, overlap = displaced(
+                ux, uz, take(listed.dx, c, like), take(listed.dz, c, like), distance0, take(listed.gap, c, like)
+            )
+            px, pz, before, sine, cosine = _turned(dx, dz, wx, wz)
+            alone = spring0 is not None and anywhere(magnitude(sine) >= SMALL_TURN * cosine)
+        if alone:  # those of a far turn, and what is left of a vector
+            for k in range(c, min(c + WIDTH, m)):
+                bent, wrong = one_pair(k, spring0, fixed, step, listed, out)
+                bend, worst = select(bent > bend, bent, bend), select(wrong > worst, wrong, worst)
+            continue
+        slip, curved = like, like
+        if spring0 is not None:
+            ai, aj = gather(q, 2 * n, disks, c, 0), gather(q, 2 * n, disks, c, 1)
+            ai, aj = ai - gather(q0, 2 * n, disks, c, 0), aj - gather(q0, 2 * n, disks, c, 1)
+            roll = gather(radius, 0, disks, c, 0) * ai + gather(radius, 0, disks, c, 1) * aj
+            slip = 0.5 * (before + distance) * _small_angle(sine, cosine) - roll
+            if fixed is not None:
+                ax = length * (gather(ahead, 0, disks, c, 0) - gather(ahead, 0, disks, c, 1))
+                az = length * (gather(ahead, n, disks, c, 0) - gather(ahead, n, disks, c, 1))
+                curved = _curved(px, pz, wx, wz, ax, az, 1.0 / distance0)
+        put(out.nx, c, dx / distance)
+        put(out.nz, c, dz / distance)
+        bents, wrong8 = _fill(c, overlap, slip, curved, listed.pair_law, spring0, fixed, step, listed, out)
+        bends, wrongs = select(bents > bends, bents, bends), select(wrong8 > wrongs, wrong8, wrongs)
+    put(room, 0, bends)
+    put(room, WIDTH, wrongs)
+    for k in range(WIDTH):
+        bend, worst = max(bend, room[k]), max(worst, room[WIDTH + k])
     return bend, worst
 
 
-# Shapes are arguments of their own, beside the contacts that hold them: only of an argument does the compiler know
-# that it is None.
 @kernel
-def contacts(
-    q, q0, ahead, length, n, radius, pairs, pair_shape, walls, wall_shape, overlap0, pair_spring, wall_spring, limits,
-    fixed, table, room, out, force,
-):  # fmt: skip
-    """Forces of m + w listed contacts at ``q``, one increment after ``q0``; pairs eight at once.
+def _fill_walls(spring0, fixed, step, listed, out):
+    """Fill in all contacts with walls; their largest contradiction."""
+    q, q0, n, worst = step.q, step.q0, listed.radius.size, 0.0
+    for c in range(listed.pairs, listed.gap.size):
+        i, nx, nz = listed.disks[c, 0], listed.dx[c], listed.dz[c]
+        slip = 0.0
+        if spring0 is not None:
+            slip = (q[n + i] - q0[n + i]) * nx - (q[i] - q0[i]) * nz
+            slip -= listed.radius[i] * (q[2 * n + i] - q0[2 * n + i])
+        out.nx[c], out.nz[c] = nx, nz
+        overlap = at_wall(q[i], q[n + i], nx, nz, listed.gap[c])
+        _, wrong = _fill(c, overlap, slip, 0.0, listed.wall_law, spring0, fixed, step, listed, out)
+        worst = select(wrong > worst, wrong, worst)
+    return worst
+
+
+# Springs and statuses are arguments of their own, beside the increment that holds them: only of an argument does the
+# compiler know that it is None.
+@kernel
+def contacts(step, pair_spring, wall_spring, listed, room, out, force):
+    """Forces of the listed contacts at the end of an increment.
 
     Parameters
     ----------
-    ahead, length : (dof,) and a number: their product is the displacement were the rates those at ``q0``. Where
-        statuses are kept, the slip of pairs that stick along the way that curves from there is counted.
-    pairs, walls : :class:`Pairs` and :class:`Walls`, and their ``shape``.
-    overlap0 : (m + w,) at ``q0``.
-    pair_spring, wall_spring : (m + w,) at ``q0``, None where the contacts have no friction.
-    limits : (m + w,) fixed Coulomb limits, None for ``mu f_n``.
-    fixed : (m + w,) statuses that contacts keep whatever happens, as floats, negative where they slide under a negative
-        force, None for the return map.
-    table, room : (m, 2) disks of the pairs, and (2 WIDTH,) numbers.
-    out : :class:`Response`, filled.
+    step, listed : :class:`Increment` and :class:`Listed`.
+    pair_spring, wall_spring : ``step.spring``, None where these contacts have no friction.
+    room : (2 WIDTH,) numbers.
+    out : :class:`Response`, filled; what belongs to the rolling by :func:`along_rolling`.
     force : (dof,) generalised contact force, added to.
 
     Returns
@@ -351,156 +351,109 @@ def contacts(
     Longest part of a spring that a curved way has made, and the largest force by which contacts with kept statuses
     differ from those by the return map.
     """
-    m = pairs.first.size
-    like = spread(0.0)
-    bends, wrongs = spread(0.0), spread(0.0)
-    bend, worst = 0.0, 0.0
-    for c in range(0, m, WIDTH):
-        alone = c + WIDTH > m
-        if not alone:
-            ux = gather(q, 0, table, c, 0) - gather(q, 0, table, c, 1)
-            uz = gather(q, n, table, c, 0) - gather(q, n, table, c, 1)
-            wx = ux - (gather(q0, 0, table, c, 0) - gather(q0, 0, table, c, 1))
-            wz = uz - (gather(q0, n, table, c, 0) - gather(q0, n, table, c, 1))
-            distance0 = take(pairs.distance, c, like)
-            dx, dz, distance, overlap, px, pz, before, sine, cosine = _pair(
-                ux, uz, wx, wz, take(pairs.dx, c, like), take(pairs.dz, c, like), distance0, take(pairs.gap, c, like)
-            )
-            alone = pair_spring is not None and anywhere(magnitude(sine) >= SMALL_TURN * cosine)
-        if alone:  # those of a far turn, and what is left of a vector
-            for k in range(c, min(c + WIDTH, m)):
-                bend, worst = _one_pair(
-                    k, q, q0, ahead, length, n, radius, pairs, pair_shape, overlap0, pair_spring, limits, fixed, out,
-                    bend, worst,
-                )  # fmt: skip
-            continue
-        slip, curved = like, like
-        if pair_spring is not None:
-            ai, aj = gather(q, 2 * n, table, c, 0), gather(q, 2 * n, table, c, 1)
-            ai, aj = ai - gather(q0, 2 * n, table, c, 0), aj - gather(q0, 2 * n, table, c, 1)
-            roll = gather(radius, 0, table, c, 0) * ai + gather(radius, 0, table, c, 1) * aj
-            slip = 0.5 * (before + distance) * _small_angle(sine, cosine) - roll
-            if fixed is not None:
-                ax = length * (gather(ahead, 0, table, c, 0) - gather(ahead, 0, table, c, 1))
-                az = length * (gather(ahead, n, table, c, 0) - gather(ahead, n, table, c, 1))
-                curved = _curved(px, pz, wx, wz, ax, az, 1.0 / distance0)
-        put(out.nx, c, dx / distance)
-        put(out.nz, c, dz / distance)
-        _, _, bends, wrongs = _fill(
-            c, like, take(fixed, c, like), overlap, take(overlap0, c, like), slip, curved, take(limits, c, like),
-            take(pair_shape, c, like), pairs.law, pair_spring, out, bends, wrongs,
-        )  # fmt: skip
-    put(room, 0, bends)
-    put(room, WIDTH, wrongs)
-    for k in range(WIDTH):
-        bend, worst = max(bend, room[k]), max(worst, room[WIDTH + k])
-    for c in range(m):
+    bend, worst = _fill_pairs(pair_spring, step.fixed, step, listed, room, out)
+    wrong = _fill_walls(wall_spring, step.fixed, step, listed, out)
+    n, turns, radius = listed.radius.size, force.size == 3 * listed.radius.size, listed.radius
+    for c in range(listed.gap.size):
         if out.status[c] == 0.0:
             continue
-        i, j = pairs.first[c], pairs.second[c]
-        normal, nx, nz = out.normal[c], out.nx[c], out.nz[c]
-        fx, fz = normal * nx, normal * nz
-        if pair_spring is not None:
-            tangential = out.tangential[c]
-            fx, fz = fx - tangential * nz, fz + tangential * nx
-            force[2 * n + i] -= radius[i] * tangential
-            force[2 * n + j] -= radius[j] * tangential
+        i, j = listed.disks[c, 0], listed.disks[c, 1]
+        normal, tangential, nx, nz = out.normal[c], out.tangential[c], out.nx[c], out.nz[c]
+        fx, fz = normal * nx - tangential * nz, normal * nz + tangential * nx
         force[i] += fx
         force[n + i] += fz
+        if turns:
+            force[2 * n + i] -= radius[i] * tangential
+        if j < 0:
+            continue
         force[j] -= fx
         force[n + j] -= fz
-    for k in range(walls.disk.size):
-        i, nx, nz, overlap = _wall_at(q, n, walls, k)
-        c = m + k
-        slip = 0.0
-        if wall_spring is not None:
-            slip = (q[n + i] - q0[n + i]) * nx - (q[i] - q0[i]) * nz
-            slip -= radius[i] * (q[2 * n + i] - q0[2 * n + i])
-        out.nx[c], out.nz[c] = nx, nz
-        normal, tangential, _, worst = _fill(
-            c, 0.0, take(fixed, c, 0.0), overlap, overlap0[c], slip, 0.0, take(limits, c, 0.0),
-            take(wall_shape, k, 0.0), walls.law, wall_spring, out, 0.0, worst,
-        )  # fmt: skip
-        force[i] += normal * nx - tangential * nz
-        force[n + i] += normal * nz + tangential * nx
-        if wall_spring is not None:
-            force[2 * n + i] -= radius[i] * tangential
-    return bend, worst
+        if turns:
+            force[2 * n + j] -= radius[j] * tangential
+    return bend, max(worst, wrong)
 
 
 @kernel
-def tangents(q, q0, n, pairs, walls, overlap0, limits, out, tangent):
-    """Fill ``tangent`` (m + w, 3, 3) with those of contacts whose forces are ``out``, as :func:`contacts` made them."""
-    for c in range(overlap0.size):
-        status, xi = out.status[c], out.overlap[c]
-        if status == 0.0:
-            tangent[c, :, :] = 0.0
-            continue
-        i, j, nx, nz, k, _, mu, kt = _contact_at(c, q, n, pairs, walls)
-        stiff, slip_n, slides, inverse = kt * _closed_part(overlap0[c], xi), 0.0, 0.0, 0.0
-        mean, distance = 1.0, 1.0
-        if j >= 0:
-            _, _, ux, uz, dx, dz, distance, _ = _pair_at(q, n, pairs, c)
-            wx, wz = ux - (q0[i] - q0[j]), uz - (q0[n + i] - q0[n + j])
-            px, pz, inverse = dx - wx, dz - wz, 1.0 / distance
-            mean = 0.5 * (math.sqrt(px * px + pz * pz) + distance)
-            slip_n = 0.5 * _angle(px * wz - pz * wx, px * dx + pz * dz)
-        if abs(status) > STICKING:
-            stiff = 0.0
-            slides = (mu if status > 0.0 else -mu) if limits is None else 0.0
-        by_t = stiff * mean / distance
-        _fill_tangent(
-            tangent[c], nx, nz, out.normal[c], out.tangential[c], inverse, k, by_t, stiff * slip_n, stiff, slides
-        )
+def along_rolling(step, fixed, listed, out, force):
+    """Rolling resistance of contacts of which :func:`contacts` has made the rest; arguments as there.
 
-
-@kernel
-def rolling(q, q0, n, pairs, walls, rolls, known, overlap0, spring0, limits, fixed, out, tangent, force):
-    """Rolling resistance of contacts of which :func:`contacts` has made the rest.
-
-    ``rolls`` : :class:`Rolls`; ``known`` : the :class:`Response` there; ``spring0`` (m + w,) : as there, along the
-    rolling; ``limits``, ``fixed`` : as there, those along the rolling behind; ``out`` : :class:`RollingResponse`,
-    filled; ``tangent`` (m + w, 3), if not None : derivative of the couple on the first disk by relative displacement
-    and rotation. Returns the largest force by which those with kept statuses differ from those by the return map.
+    ``fixed`` : ``step.fixed``. Returns the largest force by which those with kept statuses differ from those by the
+    return map.
     """
-    size, worst = overlap0.size, 0.0
+    n, size, worst = listed.radius.size, listed.gap.size, 0.0
     for c in range(size):
-        if known.status[c] == OPEN or rolls.stiffness[c] == 0.0:
+        r = size + c
+        out.tangential[r], out.spring[r], out.status[r] = 0.0, 0.0, 0.0
+        if out.status[c] == OPEN or listed.rolling_stiffness[c] == 0.0:
             continue
-        i, j, nx, nz, k, _, _, _ = _contact_at(c, q, n, pairs, walls)
-        a, b = 2 * n + i, 2 * n + j
-        turned = q[a] - q0[a]
-        if j >= 0:
-            turned -= q[b] - q0[b]
-        arm = rolls.arm[c]
-        share = _closed_part(overlap0[c], known.overlap[c])
-        limit = rolls.friction[c] * known.normal[c] if limits is None else limits[size + c]
-        kept = _item(fixed, size + c)
-        found, new, sense, wrong = _returned(spring0[c] + share * arm * turned, limit, rolls.stiffness[c], kept)
+        a, b = 2 * n + listed.disks[c, 0], 2 * n + listed.disks[c, 1]
+        turned, arm = step.q[a] - step.q0[a], listed.arm[c]
+        if b >= 2 * n:
+            turned -= step.q[b] - step.q0[b]
+        trial = step.spring[r] + _closed_part(step.overlap[c], out.overlap[c]) * arm * turned
+        most = _most(take(step.limits, r, 0.0), listed.rolling_friction[c] * out.normal[c])
+        found, spring, sense, wrong = _returned(trial, most, listed.rolling_stiffness[c], take(fixed, r, 0.0))
         worst = max(worst, wrong)
-        out.force[c], out.spring[c] = found, new
-        out.status[c] = SLIDING if sense != 0.0 else STICKING
+        out.tangential[r], out.spring[r] = found, spring
+        out.status[r] = sense if abs(sense) > STICKING else float(STICKING)
         force[a] += arm * found
-        if j >= 0:
+        if b >= 2 * n:
             force[b] -= arm * found
-        if tangent is not None:
-            slides = sense * rolls.friction[c] * k * arm if limits is None else 0.0
-            tangent[c, 0] = -slides * nx
-            tangent[c, 1] = -slides * nz
-            tangent[c, 2] = 0.0 if sense != 0.0 else -arm * arm * rolls.stiffness[c] * share
     return worst
 
 
 @kernel
-def rolling_spring_forces(spring, status, normal, rolling, out):
-    """Fill ``out`` (:class:`RollingResponse`) from springs (m,) as they are, where ``status`` (m,) is not OPEN."""
-    for c in range(spring.size):
-        if status[c] == OPEN:
+def tangents(q, q0, overlap0, follow, listed, out, tangent):
+    """Fill ``tangent`` with the local tangents of contacts whose forces are ``out``, as :func:`contacts` made them.
+
+    (m + w, 3, 3), or (m + w, 4, 3) with the derivative of the couple on the first disk, by relative displacement and
+    rotation, in the last row. ``follow`` : whether limits follow the normal force, or are fixed.
+    """
+    n, size = listed.radius.size, overlap0.size
+    for c in range(size):
+        status, xi = out.status[c], out.overlap[c]
+        tangent[c, :, :] = 0.0
+        if status == 0.0:
             continue
-        out.spring[c] = spring[c]
-        out.force[c] = -rolling.stiffness * spring[c]
-        within = abs(out.force[c]) < rolling.friction * abs(normal[c]) * (1 - AT_LIMIT)
-        out.status[c] = STICKING if within else SLIDING
+        i, j, nx, nz, _, k = contact_at(c, q, listed)
+        law, normal, share = law_of(listed, c), out.normal[c], _closed_part(overlap0[c], xi)
+        stiff, slip_n, slides, inverse = law.tangential_stiffness * share, 0.0, 0.0, 0.0
+        mean, distance = 1.0, 1.0
+        if j >= 0:
+            ux, uz = q[i] - q[j], q[n + i] - q[n + j]
+            dx, dz, distance, _ = displaced(ux, uz, listed.dx[c], listed.dz[c], listed.distance[c], listed.gap[c])
+            wx, wz = ux - (q0[i] - q0[j]), uz - (q0[n + i] - q0[n + j])
+            _, _, before, sine, cosine = _turned(dx, dz, wx, wz)
+            inverse = 1.0 / distance
+            mean = 0.5 * (before + distance)
+            slip_n = 0.5 * _angle(sine, cosine)
+        if abs(status) > STICKING:
+            stiff = 0.0
+            if follow:
+                slides = limit_slope(law, normal) if status > 0.0 else -limit_slope(law, normal)
+        by_t = stiff * mean / distance
+        _fill_tangent(tangent[c], nx, nz, normal, out.tangential[c], inverse, k, by_t, stiff * slip_n, stiff, slides)
+        if out.status.size == size or out.status[size + c] == 0.0:
+            continue
+        status, arm = out.status[size + c], listed.arm[c]
+        if abs(status) > STICKING:
+            slides = (1.0 if status > 0.0 else -1.0) * listed.rolling_friction[c] * k * arm if follow else 0.0
+            tangent[c, 3, 0], tangent[c, 3, 1] = -slides * nx, -slides * nz
+        else:
+            tangent[c, 3, 2] = -arm * arm * listed.rolling_stiffness[c] * share
+
+
+@kernel
+def rolling_spring_forces(spring, rolling, out):
+    """Fill what belongs to the rolling in ``out`` from springs (m,) as they are, where its contacts are not OPEN."""
+    size = spring.size
+    for c in range(size):
+        if out.status[c] == OPEN:
+            continue
+        force = -rolling.stiffness * spring[c]
+        out.spring[size + c], out.tangential[size + c] = spring[c], force
+        within = abs(force) < limit(rolling, abs(out.normal[c])) * (1 - AT_LIMIT)
+        out.status[size + c] = STICKING if within else SLIDING
 
 
 @kernel
@@ -516,13 +469,13 @@ def spring_forces(overlap, spring, shape, law, out):
         if not xi > 0.0:
             out.status[c] = OPEN
             continue
-        fn = elastic_force(law, xi, _item(shape, c))
+        fn = elastic_force(law, xi, take(shape, c, 0.0))
         out.normal[c] = fn
         out.status[c] = STICKING
         if rubs:
             out.spring[c] = spring[c]
             out.tangential[c] = -law.tangential_stiffness * spring[c]
-            if abs(out.tangential[c]) >= law.friction * abs(fn) * (1 - AT_LIMIT):
+            if abs(out.tangential[c]) >= limit(law, abs(fn)) * (1 - AT_LIMIT):
                 out.status[c] = SLIDING
 
 
@@ -537,7 +490,7 @@ def elastic_energy(overlap, shape, law) -> float:
 def _elastic_energies(overlap, shape, law, out):
     """Fill ``out`` (m,)."""
     for c in range(overlap.size):
-        out[c] = energy(law, overlap[c], _item(shape, c)) if overlap[c] > 0.0 else 0.0
+        out[c] = energy(law, overlap[c], take(shape, c, 0.0)) if overlap[c] > 0.0 else 0.0
 
 
 @kernel
@@ -551,38 +504,28 @@ def _add_block(data, base, stride, g, row_sign, row_arm, col_sign, col_arm, free
 
 
 @kernel
-def assemble(data, freedoms, first, second, radius, g, base, stride, wall_disk, wall_g, wall_base, wall_stride):
+def assemble(data, freedoms, listed, tangent, base, stride):
     """Sum local tangents into the values of a column-compressed matrix, ``K = -d F / d q``.
 
-    Unknowns are interleaved, ``freedoms * place + component``. ``base`` : (m, 4) positions in ``data`` of the
-    blocks (i, i), (i, j), (j, i), (j, j) (row, column); ``stride`` : (m, 4) distance between two columns of each.
+    Unknowns are interleaved, ``freedoms * place + component``. ``tangent`` : as :func:`tangents` fills it; ``base`` :
+    (m + w, 4) positions in ``data`` of the blocks (i, i), (i, j), (j, i), (j, j) (row, column), of which walls have the
+    first; ``stride`` : (m + w, 4) distance between two columns of each.
     """
     data[:] = 0.0
-    for c in range(first.size):
-        ri = radius[first[c]]
-        rj = radius[second[c]]
-        _add_block(data, base[c, 0], stride[c, 0], g[c], 1.0, ri, 1.0, ri, freedoms)
-        _add_block(data, base[c, 1], stride[c, 1], g[c], 1.0, ri, -1.0, rj, freedoms)
-        _add_block(data, base[c, 2], stride[c, 2], g[c], -1.0, rj, 1.0, ri, freedoms)
-        _add_block(data, base[c, 3], stride[c, 3], g[c], -1.0, rj, -1.0, rj, freedoms)
-    for c in range(wall_disk.size):
-        ri = radius[wall_disk[c]]
-        _add_block(data, wall_base[c], wall_stride[c], wall_g[c], 1.0, ri, 1.0, ri, freedoms)
-
-
-@kernel
-def _add_couple_block(data, base, stride, g, sign):
-    """Add what the couple of a contact adds to the row of a rotation in the block at ``data[base]``."""
-    for b in range(3):
-        data[base + b * stride + 2] -= sign * g[b]
-
-
-@kernel
-def assemble_rolling(data, g, base, stride, wall_g, wall_base, wall_stride):
-    """Add rolling resistance to what :func:`assemble` has made; ``g`` (m, 3), ``wall_g`` (w, 3) : local tangents."""
-    for c in range(g.shape[0]):
-        for block in range(4):
+    size, radius = listed.gap.size, listed.radius
+    for c in range(size):
+        i, j, g = listed.disks[c, 0], listed.disks[c, 1], tangent[c]
+        ri = radius[i]
+        _add_block(data, base[c, 0], stride[c, 0], g, 1.0, ri, 1.0, ri, freedoms)
+        if j >= 0:
+            rj = radius[j]
+            _add_block(data, base[c, 1], stride[c, 1], g, 1.0, ri, -1.0, rj, freedoms)
+            _add_block(data, base[c, 2], stride[c, 2], g, -1.0, rj, 1.0, ri, freedoms)
+            _add_block(data, base[c, 3], stride[c, 3], g, -1.0, rj, -1.0, rj, freedoms)
+    if tangent.shape[1] == 3:
+        return
+    for c in range(size):
+        for block in range(4 if listed.disks[c, 1] >= 0 else 1):
             sign = 1.0 if block == 0 or block == 3 else -1.0
-            _add_couple_block(data, base[c, block], stride[c, block], g[c], sign)
-    for c in range(wall_g.shape[0]):
-        _add_couple_block(data, wall_base[c], wall_stride[c], wall_g[c], 1.0)
+            for b in range(3):
+                data[base[c, block] + b * stride[c, block] + 2] -= sign * tangent[c, 3, b]

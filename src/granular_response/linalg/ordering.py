@@ -20,9 +20,9 @@ WIDEST_BAND = 130
 REMEMBERED = 40_000
 
 #: What the last dissection of a large network was asked for, and that dissection.
-_last: list = []
+_last: tuple[tuple, Dissection] | None = None
 #: The same of the order by Cuthill-McKee of the last network.
-_last_network: list = []
+_last_network: tuple[tuple, np.ndarray] | None = None
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,16 @@ def elimination(position: FloatArray, first: np.ndarray, second: np.ndarray, fre
     A narrow band where there is one, nested dissection elsewhere. Each node has ``freedoms`` unknowns. The last
     dissection of a large network is remembered.
     """
-    asked = (position, first, second)
-    if _last and all(map(np.array_equal, _last[0], asked)):
-        return Elimination(_last[1].order, freedoms, _last[1])
+    global _last
+    asked, last = (position, first, second), _last  # another thread may set it at any time
+    if last is not None and all(map(np.array_equal, last[0], asked)):
+        return Elimination(last[1].order, freedoms, last[1])
     order = node_order(position, first, second)
     if (_width(order, first, second) + 1) * freedoms - 1 <= WIDEST_BAND:
         return Elimination(order, freedoms, None)
     dissection = Dissection(position, first, second)
     if len(position) > REMEMBERED:
-        _last[:] = [asked, dissection]
+        _last = asked, dissection
     return Elimination(dissection.order, freedoms, dissection)
 
 
@@ -71,12 +72,13 @@ def node_order(position: FloatArray, first: np.ndarray, second: np.ndarray) -> n
 
 def _by_network(n: int, first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """(n,) order by Cuthill-McKee: the last one again for the same network, as from one load to the next."""
-    asked = (np.array(n), first, second)
-    if not (_last_network and all(map(np.array_equal, _last_network[0], asked))):
+    global _last_network
+    asked, last = (np.array(n), first, second), _last_network
+    if last is None or not all(map(np.array_equal, last[0], asked)):
         ones = np.ones(2 * len(first))
         graph = sp.csr_array((ones, (np.r_[first, second], np.r_[second, first])), shape=(n, n))
-        _last_network[:] = [asked, np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True))]
-    return np.asarray(_last_network[1])
+        last = _last_network = asked, np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True))
+    return last[1]
 
 
 def _width(order, first, second) -> int:

@@ -65,17 +65,17 @@ def by_type(function: Callable) -> Any:
     """Decorator: the method of the same name of the first argument, in Python and in compiled code alike.
 
     The argument is a named tuple (a contact law, an integrator), of a class in a module that can be imported. Compiled
-    code knows the class from the type, so the choice costs nothing at run time. The body of ``function`` is never run:
-    its arguments and docstring say what the methods have in common.
+    code knows the class from the type, so the choice costs nothing at run time. The arguments and the docstring of
+    ``function`` say what the methods have in common; its body is run for classes that have no such method.
     """
     name = function.__name__
 
     @wraps(function)
     def called(self, *arguments):
-        return getattr(self, name)(*arguments)
+        return getattr(type(self), name, function)(self, *arguments)
 
     def method(*types):
-        return getattr(types[0].instance_class, name)
+        return getattr(types[0].instance_class, name, function)
 
     # Numba compares the names of the arguments
     method.__signature__ = called.__signature__ = inspect.signature(function)  # type: ignore[attr-defined]

@@ -6,7 +6,7 @@ import inspect
 import re
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import (
     BaseModel,
@@ -232,7 +232,3 @@ class PackingDescription(Description):
     def disk_count(self) -> int:
         """Number of disks; 0 where only a file knows it."""
         return 0
-
-    def half(self) -> Self | None:
-        """One of the same shape with half as many rows and half as wide; None where there is none."""
-        return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -127,11 +127,6 @@ class SlabPacking(LatticePacking):
 
     def _left(self) -> NDArray[np.int64]:
         return np.arange(self.layers) % 2
-
-    def half(self) -> Self | None:
-        if self.layers < 2 or self.periodic:
-            return None
-        return self.model_copy(update={"layers": self.layers // 2, "disks_per_row": (self.disks_per_row + 1) // 2})
 
 
 class PilePacking(LatticePacking):

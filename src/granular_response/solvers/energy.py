@@ -18,7 +18,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import EquilibriumError
-from ..kernels import statics
 from ..state import FloatArray, Reached, State
 from .equilibrium import OPTIONS as NEWTON
 from .equilibrium import Rearranged, attainable, certify, external_force
@@ -49,10 +48,9 @@ class MinimiseOptions:
     springs_alone: float = 1e-6
     #: How often a saddle is left before the search is given up.
     escapes: int = 20
-    #: Where factorisations are dear, in packings of more disks than this, the search begins near a minimum
-    #: (:mod:`.nested`), so little damped, and a saddle is left as soon as one is near: when the stiffness is not
-    #: positive though little damped and no force out of balance exceeds that many disk weights. The rest state of
-    #: 57,660 disks takes 2.1 times as long without.
+    #: Where factorisations are expensive, in packings of more disks than this, the search begins little damped, and a
+    #: saddle is left as soon as one is near: when the stiffness is not positive though little damped and no force out
+    #: of balance exceeds that many disk weights. The rest state of 57,660 disks takes 2.1 times as long without.
     large: int = 20_000
     first_near: float = 1e-6
     little_damped: float = 1e-7
@@ -66,10 +64,7 @@ OPTIONS = MinimiseOptions()
 
 def energy(system: StaticSystem, trial: Trial, external: FloatArray) -> float:
     """Elastic energy of the contacts minus the work of the external forces."""
-    pairs, walls = system.split(trial.configuration.overlap)
-    stored = statics.elastic_energy(pairs, system.pairs.shape, system.pairs.law)
-    stored += statics.elastic_energy(walls, system.walls.shape, system.walls.law)
-    return stored - float(external @ trial.configuration.q)
+    return system.elastic_energy(trial.configuration.overlap) - float(external @ trial.configuration.q)
 
 
 def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> State:

@@ -11,12 +11,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from ..kernels import events, statics
+from ..contact.coulomb import limit
+from ..kernels import statics, transitions
 from ..linalg import REMEMBERED, elimination
 from ..machine.lanes import WIDTH
 from ..state import OPEN, SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
@@ -34,22 +36,13 @@ TOUCHING = 1e-12
 class Configuration:
     """A static configuration: displacements and everything the return map remembers of its m + w candidates.
 
-    Contacts between disks come first, contacts at walls after them, here as everywhere in statics.
+    Contacts between disks come first, contacts at walls after them, here as everywhere in statics. What belongs to the
+    rolling, where some contact resists it, follows: there are twice as many springs and statuses then.
     """
 
     q: FloatArray  #: (dof,)
-    spring: FloatArray  #: (m + w,)
+    spring: FloatArray  #: (m + w,), and rolling springs
     overlap: FloatArray  #: (m + w,)
-    roll: FloatArray | None = None  #: (m + w,) rolling springs; None without rolling resistance
-
-
-@dataclass(frozen=True)
-class Rolled:
-    """Rolling resistance at a trial configuration."""
-
-    force: FloatArray  #: (m + w,)
-    status: np.ndarray  #: (m + w,)
-    tangent: FloatArray  #: (m + w, 3) derivative of the couple on the first body
 
 
 @dataclass(frozen=True)
@@ -58,9 +51,8 @@ class Trial:
 
     configuration: Configuration
     contact_force: FloatArray  #: (dof,) sum of contact forces and torques on each disk, 0 where it is held
-    contacts: statics.Response  #: (m + w,) forces, normals and statuses
-    local: Callable[[], FloatArray]  #: makes :attr:`tangent`
-    rolled: Rolled | None = None
+    contacts: statics.Response  #: forces, normals and statuses
+    local: Callable[[], FloatArray]  #: makes :attr:`tangents`
     bend: float = 0.0  #: largest part of a spring that the curved way of a contact has made
     contradiction: float = 0.0  #: largest force by which statuses that were kept differ from the return map
 
@@ -72,30 +64,32 @@ class Trial:
     @property
     def tangential(self) -> FloatArray:
         """(m + w,) tangential forces."""
-        return self.contacts.tangential
+        return self.contacts.tangential[: len(self.normal)]
 
     @cached_property
     def status(self) -> np.ndarray:
         """(m + w,) statuses."""
-        return np.abs(self.contacts.status).astype(np.int8)
+        return np.abs(self.contacts.status[: len(self.normal)]).astype(np.int8)
 
     @cached_property
-    def tangent(self) -> FloatArray:
-        """(m + w, 3, 3) local tangents."""
+    def tangents(self) -> FloatArray:
+        """(m + w, 3, 3) local tangents, with rolling (m + w, 4, 3); see :func:`.statics.tangents`."""
         return self.local()
+
+    @property
+    def tangent(self) -> FloatArray:
+        """(m + w, 3, 3) derivatives of normal and tangential forces."""
+        return self.tangents[:, :3]
 
     @cached_property
     def sense(self) -> np.ndarray:
         """(m + w,) statuses, negative for contacts that slide against the tangent; twice as many with rolling."""
-        sense = signed_status(self.status, self.tangential)
-        if self.rolled is None:
-            return sense
-        return np.concatenate([sense, signed_status(self.rolled.status, self.rolled.force)])
+        return signed_status(np.abs(self.contacts.status).astype(np.int8), self.contacts.tangential)
 
     @property
     def borne(self) -> FloatArray:
         """Normal force beside each status of :attr:`sense`."""
-        return self.normal if self.rolled is None else np.concatenate([self.normal, self.normal])
+        return np.tile(self.normal, 1 + (len(self.contacts.status) > len(self.normal)))
 
 
 def signed_status(status: np.ndarray, tangential: FloatArray) -> np.ndarray:
@@ -122,20 +116,10 @@ class Equations:
         wall_gap = box.wall_gap(self.reference[self.wall_disk], radius[self.wall_disk], self.wall)
         self.wall_normals = wall_normals(self.wall)
         distance = np.sqrt(self.dx0 * self.dx0 + self.dz0 * self.dz0)  # rounded as that of a trial where nothing moves
-        self.pairs = statics.Pairs(
-            self.first, self.second, self.dx0, self.dz0, distance, gap,
-            problem.pair_shapes(self.first, self.second), problem.pair_law,
-        )  # fmt: skip
-        self.walls = statics.Walls(
-            self.wall_disk, self.wall_normals, wall_gap, problem.wall_shapes(self.wall_disk), problem.wall_law
-        )
-        #: (m, 2) disks of the pairs, and room for what kernels sum up and count
-        self.disks = np.stack([self.first, self.second], axis=1)
         self._room, self._no_rates = np.zeros(2 * WIDTH), np.zeros(self.dof)
-        self.count = np.zeros((3, problem.n), np.int64)
-        self.loaded = np.zeros(problem.n, np.int64)
-        self.loaded[problem.load_disk] = LOADED
-        self.rolls = self._rolls() if problem.rolls else None
+        self.count = np.zeros((3, problem.n), np.int64)  #: room for kernels to count in
+        self.rolls = problem.rolls
+        self.listed = self._list(gap, distance, wall_gap)
         self.held = problem.held.unknowns(problem.n)
         # one order of elimination for all states of a large lattice
         as_built = problem.n > REMEMBERED and problem.packing.ordered
@@ -143,13 +127,34 @@ class Equations:
         chosen = elimination(position, self.first, self.second, problem.freedoms)
         self.pattern = pattern(chosen, self.first, self.second, self.wall_disk, problem.freedoms, self.held)
 
-    def _rolls(self) -> statics.Rolls:
-        """Rolling resistance of the candidates."""
-        problem, sizes = self.problem, (len(self.first), len(self.wall_disk))
-        kinds = problem.pair_rolling, problem.wall_rolling
-        arm = np.concatenate([problem.pair_arms(self.first, self.second), problem.wall_arms(self.wall_disk)])
-        friction = np.repeat([0.0 if one is None else one.friction for one in kinds], sizes)
-        return statics.Rolls(arm, friction, np.repeat([0.0 if one is None else one.stiffness for one in kinds], sizes))
+    def _list(self, gap: FloatArray, distance: FloatArray, wall_gap: FloatArray) -> statics.Listed:
+        """The candidates as kernels take them."""
+        problem, m, w = self.problem, len(self.first), len(self.wall_disk)
+        loaded = np.zeros(problem.n, np.int64)
+        loaded[problem.load_disk] = LOADED
+        shape, wall_shape = problem.pair_shapes(self.first, self.second), problem.wall_shapes(self.wall_disk)
+        arm, friction, stiffness = np.zeros((3, 0))
+        if problem.rolls:
+            arm = np.concatenate([problem.pair_arms(self.first, self.second), problem.wall_arms(self.wall_disk)])
+            kinds = problem.pair_rolling, problem.wall_rolling
+            constants = [(0.0, 0.0) if one is None else (one.friction, one.stiffness) for one in kinds]
+            friction, stiffness = np.repeat(np.array(constants).T, [m, w], axis=1)
+        return statics.Listed(
+            disks=np.stack([np.r_[self.first, self.wall_disk], np.r_[self.second, np.full(w, -1)]], axis=1),
+            pairs=m,
+            dx=np.concatenate([self.dx0, self.wall_normals[:, 0]]),
+            dz=np.concatenate([self.dz0, self.wall_normals[:, 1]]),
+            distance=np.concatenate([distance, np.ones(w)]),
+            gap=np.concatenate([gap, wall_gap]),
+            shape=None if shape is None or wall_shape is None else np.concatenate([shape, wall_shape]),
+            pair_law=problem.pair_law,
+            wall_law=problem.wall_law,
+            arm=arm,
+            rolling_friction=friction,
+            rolling_stiffness=stiffness,
+            radius=problem.packing.radius,
+            loaded=loaded,
+        )
 
     @cached_property
     def friction(self) -> FloatArray:
@@ -159,30 +164,31 @@ class Equations:
 
     def limits(self, trial: Trial) -> FloatArray:
         """Coulomb limits of a trial, and those of rolling after them where there is any."""
-        sliding = self.friction * trial.normal
-        return sliding if self.rolls is None else np.concatenate([sliding, self.rolls.friction * trial.normal])
+        kinds = zip((self.problem.pair_law, self.problem.wall_law), self.split(trial.normal), strict=True)
+        sliding = [limit(law, normal) for law, normal in kinds]
+        return np.concatenate([*sliding, self.listed.rolling_friction * trial.normal if self.rolls else ()])
 
     def idle(self, trial: Trial, sense: np.ndarray) -> NDArray[np.int64]:
         """Unknowns that change no force with signed statuses ``sense``: angles of disks of which no contact sticks."""
         if not self.problem.rotations:
             return np.empty(0, np.int64)
         self.count[:] = 0
-        events.count_ties(self.pairs, self.walls, self.rolls, sense, trial.normal, 0.0, self.count)
+        transitions.count_ties(self.listed, sense, trial.normal, 0.0, self.count)
         return 2 * self.problem.n + np.flatnonzero(self.count[2] == 0)
 
     def coupled(self, sense: np.ndarray) -> np.ndarray:
         """Signed statuses of which those along the rolling, if any, are open where the contact is, else not."""
-        if self.rolls is None:
+        if not self.rolls:
             return sense
         contact, roll = np.split(sense, 2)
         new = np.where(roll == OPEN, STICKING, roll)
-        new = np.where((contact == OPEN) | (self.rolls.stiffness == 0.0), OPEN, new)
+        new = np.where((contact == OPEN) | (self.listed.rolling_stiffness == 0.0), OPEN, new)
         return np.concatenate([contact, new]).astype(sense.dtype)
 
     def status_keys(self) -> NDArray[np.int64]:
         """One number for what each status belongs to."""
         keys = self.keys()
-        return keys if self.rolls is None else np.concatenate([keys, -1 - keys])
+        return np.concatenate([keys, -1 - keys]) if self.rolls else keys
 
     def keys(self) -> NDArray[np.int64]:
         """(m + w,) one number for the two bodies of each candidate."""
@@ -193,23 +199,21 @@ class Equations:
         """The configuration of a state of the same candidates."""
         shift = (state.position - self.reference).T.ravel()
         q = np.concatenate([shift, state.angle - self.angle0])[: self.dof]
-        springs = np.concatenate([state.pairs.spring, state.walls.spring])
-        roll = None
-        if self.rolls is not None:
-            roll = np.concatenate([state.pairs.rolling_spring, state.walls.rolling_spring])
-        bare = Configuration(q, springs, np.zeros(len(springs)), roll)
-        return replace(self.trial(bare, q).configuration, spring=springs, roll=roll)
+        springs = self._of_all(state, "spring", "rolling_spring")
+        bare = Configuration(q, springs, np.zeros(len(self.friction)))
+        return replace(self.trial(bare, q).configuration, spring=springs)
+
+    def _of_all(self, state: State, *names: str) -> np.ndarray:
+        """(m + w,) attributes of the contacts of a state, and after them, where there is any, that of their rolling."""
+        rows = names[: 1 + self.rolls]
+        return np.concatenate([getattr(kind, name) for name in rows for kind in (state.pairs, state.walls)])
 
     def at(self, state: State) -> Trial:
         """The state itself, with the statuses that it says its contacts have."""
         known = self.start(state)
-        status = np.concatenate([state.pairs.status, state.walls.status])
-        tangential = np.concatenate([state.pairs.tangential_force, state.walls.tangential_force])
-        sense = signed_status(status, tangential)
-        if self.rolls is not None:
-            status = np.concatenate([state.pairs.rolling_status, state.walls.rolling_status])
-            rolling = np.concatenate([state.pairs.rolling_force, state.walls.rolling_force])
-            sense = self.coupled(np.concatenate([sense, signed_status(status, rolling)]))
+        status = self._of_all(state, "status", "rolling_status")
+        force = self._of_all(state, "tangential_force", "rolling_force")
+        sense = self.coupled(signed_status(status, force))
         return self.trial(known, known.q, fixed=sense)
 
     def displaced(self, q: FloatArray, load_factor: float) -> FloatArray:
@@ -233,52 +237,40 @@ class Equations:
         """Forces at ``q``, one increment after ``known``; none on what is held, where the reaction balances all.
 
         ``limits`` (m + w,) fixes the Coulomb limits in place of ``mu f_n``; ``fixed`` (m + w,) the statuses, as of
-        :func:`signed_status`, in place of the return map; both go on along the rolling where there is any. ``velocity``
-        (dof,), with ``fixed`` : rates at ``known``, by which displacements would have grown for a ``length`` of the
-        load factor; the slip along the way that curves from there is counted. Walls do not turn.
+        :func:`signed_status`, in place of the return map; both go on along the rolling where some contact resists it.
+        ``velocity`` (dof,), with ``fixed`` : rates at ``known``, by which displacements would have grown for a
+        ``length`` of the load factor; the slip along the way that curves from there is counted. Walls do not turn.
         """
-        problem, count = self.problem, len(self.first) + len(self.wall_disk)
-        force, out, roll, rolled = np.zeros(self.dof), statics.Response(*np.empty((7, count))), None, None
+        problem, count, listed = self.problem, len(self.friction), self.listed
+        force, rows = np.zeros(self.dof), count * (1 + self.rolls)
+        out = statics.Response(*np.empty((4, count)), *np.empty((3, rows)))
         if not (problem.pair_friction and problem.wall_friction):
             out.tangential[:], out.spring[:] = 0.0, 0.0
-        bend, contradiction = statics.contacts(
-            q, known.q, self._no_rates if velocity is None else velocity, length, problem.n, problem.packing.radius,
-            self.pairs, self.pairs.shape, self.walls, self.walls.shape, known.overlap,
-            known.spring if problem.pair_friction else None, known.spring if problem.wall_friction else None, limits,
-            None if fixed is None else fixed.astype(float), self.disks, self._room, out, force,
+        step = statics.Increment(
+            q, known.q, self._no_rates if velocity is None else velocity, length, known.overlap, known.spring, limits,
+            None if fixed is None else fixed.astype(float),
         )  # fmt: skip
-        if self.rolls is not None:
-            found, couple = statics.RollingResponse.empty(count), np.zeros((count, 3))
-            along_rolling = statics.rolling(
-                q, known.q, problem.n, self.pairs, self.walls, self.rolls, out, known.overlap, known.roll, limits,
-                fixed, found, couple, force,
-            )  # fmt: skip
-            contradiction = max(contradiction, along_rolling)
-            roll, rolled = found.spring, Rolled(found.force, found.status, couple)
+        bend, contradiction = statics.contacts(
+            step, known.spring if problem.pair_friction else None, known.spring if problem.wall_friction else None,
+            listed, self._room, out, force,
+        )  # fmt: skip
+        if self.rolls:
+            contradiction = max(contradiction, statics.along_rolling(step, step.fixed, listed, out, force))
         if self.held.size:
             force[self.held] = 0.0
 
         def tangent() -> FloatArray:
-            local = np.empty((count, 3, 3))
-            statics.tangents(q, known.q, problem.n, self.pairs, self.walls, known.overlap, limits, out, local)
+            local = np.empty((count, 4 if self.rolls else 3, 3))
+            statics.tangents(q, known.q, known.overlap, limits is None, listed, out, local)
             return local
 
-        return Trial(Configuration(q, out.spring, out.overlap, roll), force, out, tangent, rolled, bend, contradiction)
+        return Trial(Configuration(q, out.spring, out.overlap), force, out, tangent, bend, contradiction)
 
     def _stiffness(self, trial: Trial) -> FloatArray:
         """(e,) entries of -dF/dq as if nothing were held."""
         places = self.pattern
         data = np.empty(len(places.indices))
-        pairs, walls = self.split(trial.tangent)
-        statics.assemble(
-            data, self.problem.freedoms, self.first, self.second, self.problem.packing.radius, pairs, places.base,
-            places.stride, self.wall_disk, walls, places.wall_base, places.wall_stride,
-        )  # fmt: skip
-        if trial.rolled is not None:
-            pairs, walls = self.split(trial.rolled.tangent)
-            statics.assemble_rolling(
-                data, pairs, places.base, places.stride, walls, places.wall_base, places.wall_stride
-            )
+        statics.assemble(data, self.problem.freedoms, self.listed, trial.tangents, places.base, places.stride)
         return data
 
     def tangent(self, trial: Trial, shift: float = 0.0) -> sp.csc_array:
@@ -292,6 +284,13 @@ class Equations:
             data[places.held_diagonal] = self.problem.stiffness
         data[places.diagonal] += shift
         return places.matrix(data)
+
+    def elastic_energy(self, overlap: FloatArray) -> float:
+        """Energy of the normal springs of all contacts at overlaps (m + w,)."""
+        (pairs, walls), shape = self.split(overlap), self.listed.shape
+        shapes = (None, None) if shape is None else self.split(shape)
+        stored = statics.elastic_energy(pairs, shapes[0], self.problem.pair_law)
+        return stored + statics.elastic_energy(walls, shapes[1], self.problem.wall_law)
 
     def split(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(m, ...) and (w, ...) of what all candidates have (m + w, ...)."""
@@ -318,10 +317,12 @@ class Equations:
         n = self.problem.n
         q = trial.configuration.q
         angle = self.angle0 + q[2 * n :] if self.problem.rotations else self.angle0
-        c = trial.configuration
-        values = [c.overlap, trial.normal, trial.tangential, c.spring, trial.status]
-        if trial.rolled is not None and c.roll is not None:
-            values += [trial.rolled.force, c.roll, trial.rolled.status]
+        size = len(self.friction)
+        values: list[Any] = [trial.configuration.overlap, trial.normal]
+        for row in range(1 + self.rolls):
+            rows = slice(row * size, (row + 1) * size)
+            status = np.abs(trial.contacts.status[rows]).astype(np.int8)
+            values += [trial.contacts.tangential[rows], trial.configuration.spring[rows], status]
         parts = zip(*map(self.split, values), strict=True)
         first, second, disk = (index.astype(np.int32) for index in (self.first, self.second, self.wall_disk))
         places = (first, second), (disk, self.wall)

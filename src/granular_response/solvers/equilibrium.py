@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..contact.coulomb import limit
 from ..errors import EquilibriumError
 from ..state import Certificate, FloatArray, State
 from ..state.box import bodies
@@ -179,7 +180,7 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
     smallest = np.inf
     for contacts, law, _, rolling in problem.kinds(state):
         closed, normal = contacts.touching, contacts.normal_force
-        over = np.abs(contacts.tangential_force) - law.friction * np.abs(normal)
+        over = np.abs(contacts.tangential_force) - limit(law, np.abs(normal))
         excess = max(excess, float(over[closed].max(initial=0.0)))
         smallest = min(smallest, float(normal[closed].min(initial=np.inf)))
         if rolling is not None:

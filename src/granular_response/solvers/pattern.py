@@ -43,10 +43,10 @@ class Pattern:
         m = len(i)
         ij, ji = n + np.arange(m), n + m + np.arange(m)
         order = np.stack([i, ij, ji, j], axis=1) if m else np.zeros((0, 4), np.int64)
-        #: (m, 4) and (w,) first entries of the blocks of contacts, and entries from one column of a block to the next
+        order = np.concatenate([order, np.repeat(self.place[wall_disk][:, None], 4, axis=1)])
+        #: (m + w, 4) first entries of the blocks of contacts, and entries from one column of a block to the next; those
+        #: at walls have one block
         self.base, self.stride = base[order], stride[order]
-        at_wall = self.place[wall_disk]
-        self.wall_base, self.wall_stride = base[at_wall], stride[at_wall]
         block_rows = (row[by][:, None] * d + np.arange(d)).ravel()
         # every block column repeats its rows d times, once for each component of the column
         starts = np.repeat(begin[:-1] * d, d)

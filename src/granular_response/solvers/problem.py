@@ -10,7 +10,7 @@ import math
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -486,16 +486,15 @@ def static_contacts(
     first, second, overlap, spring, shape, law: Law, rolling: Rolling | None = None, rolling_spring=None
 ) -> Contacts:
     """Contacts with the spring parts of their forces (Sec. III.A without velocities)."""
-    out = statics.Response.empty(len(overlap))
+    size = len(overlap)
+    out = statics.Response.empty(size, rolls=rolling is not None)
     statics.spring_forces(overlap, spring, shape, law, out)
-    rolls = None
     if rolling is not None:
-        rolls = statics.RollingResponse.empty(len(overlap))
-        statics.rolling_spring_forces(rolling_spring, out.status, out.normal, rolling, rolls)
-    return Contacts(
-        np.asarray(first, np.int32), np.asarray(second, np.int32),
-        overlap, out.normal, out.tangential, out.spring, out.status.astype(np.int8), *(rolls or ()),
-    )  # fmt: skip
+        statics.rolling_spring_forces(rolling_spring, rolling, out)
+    status = out.status.astype(np.int8)
+    rows = (slice(at, at + size) for at in (0, size)[: 1 + (rolling is not None)])
+    parts: list[Any] = [part for row in rows for part in (out.tangential[row], out.spring[row], status[row])]
+    return Contacts(np.asarray(first, np.int32), np.asarray(second, np.int32), overlap, out.normal, *parts)
 
 
 def spring_contacts(

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..kernels import events
+from ..kernels import transitions
+from ..kernels.transitions import CLOSES, OPENS
 from ..linalg.updated import Updated
 from ..state import OPEN, SLIDING, STICKING, FloatArray
 from .system import Configuration, StaticSystem, Trial
@@ -38,7 +39,7 @@ OPTIONS = RateOptions()
 
 @dataclass(frozen=True)
 class Changes:
-    """What each of m + w contacts does next; see :mod:`granular_response.kernels.events`.
+    """What each of m + w contacts does next; see :mod:`granular_response.kernels.transitions`.
 
     Where there is rolling resistance, what they do along the rolling comes after that.
     """
@@ -50,7 +51,7 @@ class Changes:
 
     def first(self) -> tuple[int, float]:
         """The contact that changes first and after which growth of the load factor; infinity where none does."""
-        contact, length = events.first_change(self.left, self.rate)
+        contact, length = transitions.first_change(self.left, self.rate)
         return int(contact), float(length)
 
     def due(self, force: float) -> np.ndarray:
@@ -65,14 +66,11 @@ def next_changes(
 
     ``sense`` (m + w,) : signed statuses; ``force``, ``negligible`` : a force and a rate of a force that are none.
     """
-    what, left, rate = np.empty((3, len(sense)))
-    problem, pairs, here = system.problem, system.pairs, trial.contacts
-    due = events.next_changes(
-        velocity, problem.n, problem.packing.radius, pairs, pairs.shape, system.walls, system.rolls, here.nx, here.nz,
-        here.normal, here.tangential, None if trial.rolled is None else trial.rolled.force, here.overlap,
-        sense.astype(float), force, negligible, system.loaded, system.disks, system.count, what, left, rate,
-    )  # fmt: skip
-    return Changes(what, left, rate, due)
+    found = transitions.Changes(*np.empty((3, len(sense))))
+    due = transitions.next_changes(
+        velocity, system.listed, trial.contacts, sense.astype(float), force, negligible, system.count, found
+    )
+    return Changes(*found, due)
 
 
 #: Status after what a contact does next, by that and ``SLIDES``: one that slides under a negative force comes first.
@@ -82,7 +80,7 @@ AFTER = np.array([-SLIDING, OPEN, OPEN, OPEN, OPEN, STICKING, SLIDING, STICKING]
 def changed(sense: np.ndarray, contacts: np.ndarray, what: np.ndarray) -> np.ndarray:
     """Signed statuses (m + w,) after ``contacts`` have done what they do next."""
     new = sense.copy()
-    new[contacts] = AFTER[what[contacts].astype(int) + events.SLIDES]
+    new[contacts] = AFTER[what[contacts].astype(int) + transitions.SLIDES]
     return new
 
 
@@ -128,12 +126,7 @@ class RateProblem:
 
     def until(self, trial: Trial, c: int, what: int, displacement: FloatArray) -> tuple[float, float]:
         """Force (mean weights) left until contact ``c`` does ``what``; by how much a displacement (dof,) lowers it."""
-        system, here = self.system, trial.contacts
-        return events.until(
-            c, what, trial.configuration.q, displacement, system.problem.n, system.problem.packing.radius, system.pairs,
-            system.walls, system.rolls, here.normal, here.tangential,
-            None if trial.rolled is None else trial.rolled.force, here.overlap,
-        )  # fmt: skip
+        return transitions.until(c, what, trial.configuration.q, displacement, self.system.listed, trial.contacts)
 
     def solve(self, trial: Trial, sense: np.ndarray) -> Rates | None:
         """Rates at an equilibrium with statuses that do not contradict themselves; None where none are found.
@@ -167,7 +160,7 @@ class RateProblem:
                     due = due[rates >= OPTIONS.as_bad * rates.max()]
                 now = changed(now, due, found.what)
                 for c in due.tolist():
-                    if found.what[c] not in (events.OPENS, events.CLOSES) or not self.system.friction[c] > 0.0:
+                    if found.what[c] not in (OPENS, CLOSES) or not self.system.friction[c] > 0.0:
                         continue
                     # one that neither opens nor sticks slides, often at no force: pushed by a disk that rolls
                     had.setdefault(c, {int(sense[c])})

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..contact.coulomb import limit
 from ..errors import EquilibriumError
 from ..state import AT_LIMIT, FLOOR, OPEN, FloatArray, State
 from .problem import Problem
@@ -21,7 +22,8 @@ def at_limit(problem: Problem, state: State) -> int:
     """How many closed contacts are at a limit of friction: what they answer depends on the direction of a load."""
     count = 0
     for contacts, law, _, rolling in problem.kinds(state):
-        count += int(contacts.near_limit(law.friction, AT_LIMIT).sum())
+        most = (1.0 - AT_LIMIT) * limit(law, contacts.normal_force)
+        count += int((contacts.touching & (np.abs(contacts.tangential_force) >= most) & (law.friction > 0.0)).sum())
         if rolling is not None:
             count += int(contacts.near_limit(rolling.friction, AT_LIMIT, rolling=True).sum())
     return count

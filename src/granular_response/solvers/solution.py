@@ -19,7 +19,6 @@ from .choice import Choice, idle_settings
 from .dynamics import Dynamics, Stop, relax
 from .energy import minimise
 from .equilibrium import certify, check_overlaps, finish, reaction
-from .nested import rest_start
 from .path import follow
 from .path.events import lost
 from .problem import Problem
@@ -287,7 +286,7 @@ def _under_gravity(problem: Problem, progress: Progress | None) -> State:
         # contacts that touch without bearing may open in the last digit, and what they held turns away
         return _relaxed(problem, start, "gravity", progress)
     if problem.plan.rest.method == "minimise":
-        return minimise(problem, rest_start(problem))
+        return minimise(problem, problem.bare_state())
     preparation = problem.scene.preparation
     slow = preparation.gravity == "slow"
     gravity = (0.0, 1.0, preparation.ramp_time) if slow else (1.0, 1.0, 0.0)

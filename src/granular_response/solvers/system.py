@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from ..kernels import events
+from ..kernels import transitions
 from ..linalg import Eliminated, Factor, Sequence
 from ..linalg.updated import Updated
 from ..state import FloatArray, State
@@ -99,13 +99,12 @@ class StaticSystem(Equations):
 
         def change(contacts: NDArray[np.int64]) -> tuple[np.ndarray, np.ndarray, FloatArray, FloatArray]:
             most = 2 * len(contacts)
-            owner, places = np.zeros(most, np.int64), np.zeros((most, 6), np.int64)
-            left, right = np.zeros((2, most, 6))
-            rows = events.changed_stiffness(
-                contacts, updated.made, sense, known.q, self.problem.n, self.problem.packing.radius,
-                self.problem.freedoms, self.pairs, self.walls, self.rolls, self.pattern.place, owner, places, left,
-                right,
-            )  # fmt: skip
+            sides = np.zeros((2, most, 6))
+            columns = transitions.Columns(np.zeros(most, np.int64), np.zeros((most, 6), np.int64), *sides)
+            rows = transitions.changed_stiffness(
+                contacts, updated.made, sense, known.q, self.listed, self.problem.freedoms, self.pattern.place, columns
+            )
+            owner, places, left, right = columns
             if self.held.size:
                 held = np.isin(self.pattern.interleaved[places], self.held)
                 left[held], right[held] = 0.0, 0.0

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from ...kernels import events
+from ...kernels import transitions
 from ...linalg.updated import Updated
 from ...state import FloatArray
 from ..equilibrium import OPTIONS as NEWTON
@@ -37,7 +37,7 @@ def landed(leg: Leg, point: Point, rates: Rates) -> Point | None:
     if fastest * left > leg.options.listed_again:
         left = leg.options.listed_again / fastest
     contact, length = rates.changes.first()
-    aim = Aim(left, length, contact, int(rates.changes.what[contact]) if np.isfinite(length) else events.NOTHING)
+    aim = Aim(left, length, contact, int(rates.changes.what[contact]) if np.isfinite(length) else transitions.NOTHING)
     for _ in range(leg.options.landings):
         tried = _tried(leg, point, rates, aim)
         if not isinstance(tried, Aim):
@@ -100,8 +100,8 @@ def _renewed(point: Point, trial: Trial, sense: np.ndarray) -> tuple[Updated | N
 def _turn(leg: Leg, point: Point, rates: Rates, then: Changes, length: float) -> float | None:
     """Where the first slip has turned round within an increment of a ``length``, by less than a force; or None."""
     until, force = point.rate_problem.until, point.rate_problem.force
-    back = np.flatnonzero((then.what == events.STICKS) & (then.rate > 0.0))
-    way = np.where(rates.sense[back] > 0, events.SLIDES, -events.SLIDES)
+    back = np.flatnonzero((then.what == transitions.STICKS) & (then.rate > 0.0))
+    way = np.where(rates.sense[back] > 0, transitions.SLIDES, -transitions.SLIDES)
     falls = zip(back.tolist(), way.tolist(), strict=True)
     ahead = np.array([max(until(point.trial, c, w, rates.velocity)[1], 0.0) for c, w in falls])
     turns = length * ahead / (ahead + then.rate[back])  # were the rate of slip linear

@@ -1,0 +1,326 @@
+"""Transitions of contacts: what each does next on a quasi-static path, from the rates of all displacements.
+
+While every contact keeps its status, displacements are smooth in the load. A contact changes where its overlap or what
+is left to Coulomb's limit has fallen to zero; one that slides sticks as soon as its slip would turn round.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from numpy.typing import NDArray
+
+from ..contact.coulomb import limit, limit_slope
+from ..contact.law import elastic_force, stiffness
+from ..machine.lanes import WIDTH, anywhere, gather, magnitude, put, select, spread, take
+from ..machine.machine_code import kernel
+from ..state import OPEN, SLIDING, STICKING
+from .statics import contact_at, law_of
+
+#: What a contact does next; ``SLIDES`` is negative where it will slide under a negative force.
+NOTHING, OPENS, CLOSES, SLIDES, STICKS = 0, 1, 2, 3, 4
+
+
+class Changes(NamedTuple):
+    """What each of m + w contacts does next, and then what each does along the rolling, to be filled."""
+
+    what: NDArray[Any]
+    left: NDArray[Any]  #: force until then (mean weights)
+    rate: NDArray[Any]  #: of its fall
+
+
+class Columns(NamedTuple):
+    """A change of the tangent, to be filled: the sum of ``left[k]^T right[k]`` in rows and columns ``places[k]``."""
+
+    owner: NDArray[Any]  #: (r,) whose it is
+    places: NDArray[Any]  #: (r, 6)
+    left: NDArray[Any]  #: (r, 6)
+    right: NDArray[Any]  #: (r, 6)
+
+
+@kernel(forceinline=True)
+def _motion(v, i, j, nx, nz, radius):
+    """Rates of the relative displacement along the normal and, less the rolling, along the tangent."""
+    n = radius.size
+    wx, wz = v[i], v[n + i]
+    if j >= 0:
+        wx -= v[j]
+        wz -= v[n + j]
+    along = wz * nx - wx * nz
+    if v.size == 3 * n:
+        turn = radius[i] * v[2 * n + i]
+        if j >= 0:
+            turn += radius[j] * v[2 * n + j]
+        along -= turn
+    return wx * nx + wz * nz, along
+
+
+@kernel(forceinline=True)
+def _rolling_rates(c, v, apart, k, listed):
+    """Limit per normal force of the rolling force of contact ``c``, its rate, if it sticks, and that of its limit."""
+    a, b = 2 * listed.radius.size + listed.disks[c, 0], 2 * listed.radius.size + listed.disks[c, 1]
+    spin = v[a] - v[b] if listed.disks[c, 1] >= 0 else v[a]
+    friction = listed.rolling_friction[c]
+    return friction, -listed.rolling_stiffness[c] * listed.arm[c] * spin, friction * k * apart
+
+
+@kernel(forceinline=True)
+def _next_to_limit(what, left, rate, status, limit, force, grows, falls, tip, negligible):
+    """What contacts do next, if they open so, or do nothing, unless friction makes them do something before.
+
+    ``limit`` : of a ``force`` that grows, if it sticks, while the limit falls.
+    """
+    slides, against = magnitude(status) > STICKING, status < 0.0
+    behind = -(select(against, -grows, grows) + falls)
+    back = slides & (behind > negligible)
+    for sense in (1.0, -1.0):
+        closing = sense * grows + falls
+        room = limit - sense * force
+        # one that bears nothing slides before it opens
+        first = (room <= tip) & (left <= tip) & (closing > rate)
+        sooner = (rate <= 0.0) | (room * rate < left * closing) | first
+        # with a mask for what may slide at all
+        sooner = sooner & (closing > negligible) & (magnitude(status) <= STICKING)
+        what, left, rate = (
+            select(sooner, sense * SLIDES, what),
+            select(sooner, room, left),
+            select(sooner, closing, rate),
+        )
+    return select(back, STICKS, what), select(back, 0.0, left), select(back, behind, rate)
+
+
+@kernel
+def until(c, what, q, v, listed, here):
+    """Force that is left until contact ``c`` does ``what``, and by how much displacements ``v`` (dof,) lower it.
+
+    From m + w on along the rolling. ``q`` (dof,), ``here`` : displacements and :class:`statics.Response` of the trial.
+    """
+    at = c % here.normal.size
+    i, j, nx, nz, _, k = contact_at(at, q, listed)
+    law, normal = law_of(listed, at), here.normal[at]
+    apart, along = _motion(v, i, j, nx, nz, listed.radius)
+    if what == OPENS:
+        return law.normal_stiffness * here.overlap[at], law.normal_stiffness * apart
+    if what == CLOSES:
+        return -law.normal_stiffness * here.overlap[at], -law.normal_stiffness * apart
+    most, grows = limit(law, normal), -law.tangential_stiffness * along
+    falls = limit_slope(law, normal) * k * apart
+    if c > at:
+        friction, grows, falls = _rolling_rates(at, v, apart, k, listed)
+        most = friction * normal
+    sense = 1.0 if what > 0 else -1.0
+    return most - sense * here.tangential[c], falls + sense * grows
+
+
+@kernel
+def count_ties(listed, status, normal, tip, count):
+    """Count in ``count`` (3, n) the ties of each disk, its contacts that bear something, and those that stick.
+
+    A contact ties along its normal and, where it sticks, along the tangent. Where none sticks the turn of the disk
+    changes no force.
+    """
+    ties, bearing, turning = count[0], count[1], count[2]
+    size = normal.size
+    for c in range(size):
+        if status[c] == OPEN:
+            continue
+        tied = 2 if law_of(listed, c).friction > 0.0 and abs(status[c]) != SLIDING else 1
+        if status.size > size and status[size + c] == STICKING:
+            tied += 1
+        bears = normal[c] > tip
+        for end in range(2):
+            disk = listed.disks[c, end]
+            if disk >= 0:
+                ties[disk] += tied
+                bearing[disk] += bears
+                turning[disk] += tied > 1
+
+
+@kernel(forceinline=True)
+def _next(status, apart, along, overlap, normal, tangential, k, law, tip, negligible):
+    """What contacts of a law do next that are not those of a rattler, for numbers or for vectors of them."""
+    unit = law.normal_stiffness
+    is_open, parts = magnitude(status) <= 0.0, unit * apart
+    sense = select(is_open, -1.0, 1.0)
+    goes = sense * parts > negligible
+    what = select(goes, select(is_open, float(CLOSES), float(OPENS)), 0.0)
+    left, rate = select(goes, sense * (unit * overlap), 0.0), select(goes, sense * parts, 0.0)
+    if law.friction > 0.0:
+        most, grows = limit(law, normal), -law.tangential_stiffness * along
+        falls = limit_slope(law, normal) * k * apart
+        does, until, speed = _next_to_limit(what, left, rate, status, most, tangential, grows, falls, tip, negligible)
+        what, left, rate = select(is_open, what, does), select(is_open, left, until), select(is_open, rate, speed)
+    return what, left, rate
+
+
+@kernel
+def next_changes(v, listed, here, status, tip, negligible, count, found):
+    """Fill ``found`` (:class:`Changes`), as long as ``status`` each.
+
+    ``v`` (dof,) : rates of displacements; ``listed``, ``here`` : :class:`statics.Listed` and :class:`statics.Response`
+    of the trial; ``status`` (m + w,), or twice as many with rolling resistance, of floats : negative for contacts that
+    slide under a negative force; ``tip``, ``negligible`` : a force and a rate of a force that are none; ``count``
+    (3, n) : room to count in. A rattler that rests on one contact and that no more ties than it has freedoms, pushed
+    along by another disk, bears nothing there however it moves: such a contact opens when the other disk withdraws, and
+    nothing else happens to it.
+
+    Returns how many are within ``tip`` of their change.
+    """
+    radius, disks, size, m = listed.radius, listed.disks, here.normal.size, listed.pairs
+    n, like, turns = radius.size, spread(0.0), v.size == 3 * radius.size
+    rests = False
+    whole = m - m % WIDTH
+    for c in range(0, whole, WIDTH):
+        wx = gather(v, 0, disks, c, 0) - gather(v, 0, disks, c, 1)
+        wz = gather(v, n, disks, c, 0) - gather(v, n, disks, c, 1)
+        x, z = take(here.nx, c, like), take(here.nz, c, like)
+        along = wz * x - wx * z
+        if turns:
+            turn = gather(radius, 0, disks, c, 0) * gather(v, 2 * n, disks, c, 0)
+            along = along - (turn + gather(radius, 0, disks, c, 1) * gather(v, 2 * n, disks, c, 1))
+        xi, fn, sense = take(here.overlap, c, like), take(here.normal, c, like), take(status, c, like)
+        rests = rests or anywhere((magnitude(sense) > 0.0) & (fn <= tip))
+        law = listed.pair_law
+        k = stiffness(law, xi, take(listed.shape, c, like))
+        does, until, speed = _next(
+            sense, wx * x + wz * z, along, xi, fn, take(here.tangential, c, like), k, law, tip, negligible
+        )
+        put(found.what, c, does)
+        put(found.left, c, until)
+        put(found.rate, c, speed)
+    for c in range(whole, size):
+        law, fn, xi = law_of(listed, c), here.normal[c], here.overlap[c]
+        apart, along = _motion(v, disks[c, 0], disks[c, 1], here.nx[c], here.nz[c], radius)
+        rests = rests or (status[c] != 0.0 and fn <= tip)
+        k = stiffness(law, xi, take(listed.shape, c, 0.0))
+        found.what[c], found.left[c], found.rate[c] = _next(
+            status[c], apart, along, xi, fn, here.tangential[c], k, law, tip, negligible
+        )
+    for r in range(size, status.size):
+        c, does, until, speed = r - size, 0.0, 0.0, 0.0
+        if status[r] != 0.0:
+            k = stiffness(law_of(listed, c), here.overlap[c], take(listed.shape, c, 0.0))
+            apart, _ = _motion(v, disks[c, 0], disks[c, 1], here.nx[c], here.nz[c], radius)
+            friction, grows, falls = _rolling_rates(c, v, apart, k, listed)
+            does, until, speed = _next_to_limit(
+                does, until, speed, status[r], friction * here.normal[c], here.tangential[r], grows, falls, tip,
+                negligible,
+            )  # fmt: skip
+        found.what[r], found.left[r], found.rate[r] = does, until, speed
+    if rests:
+        _keep_rattlers(v, listed, here, status, tip, negligible, count, found)
+    due = 0
+    for c in range(found.rate.size):
+        due += found.rate[c] > 0.0 and found.left[c] <= tip
+    return due
+
+
+@kernel
+def _keep_rattlers(v, listed, here, status, tip, negligible, count, found):
+    """Let contacts of rattlers that bear nothing do nothing but open, as :func:`next_changes` says."""
+    n, disks, size = listed.radius.size, listed.disks, here.normal.size
+    freedoms = v.size // n
+    count[:, :] = 0
+    for i in range(n):
+        count[0, i] = listed.loaded[i]
+    count_ties(listed, status, here.normal, tip, count)
+    for c in range(size):
+        if status[c] == 0.0 or here.normal[c] > tip:
+            continue
+        i, j = disks[c, 0], disks[c, 1]
+        first = count[0, i] <= freedoms and count[1, i] <= 1
+        if not (first or (j >= 0 and count[0, j] <= freedoms and count[1, j] <= 1)):
+            continue
+        does, speed = 0.0, 0.0
+        if j >= 0:
+            # the velocity of the rattler towards the other disk: one that would be drawn along stays behind
+            nx, nz = here.nx[c], here.nz[c]
+            drawn = -(v[i] * nx + v[n + i] * nz) if first else v[j] * nx + v[n + j] * nz
+            if listed.pair_law.normal_stiffness * drawn > negligible:
+                does, speed = float(OPENS), listed.pair_law.normal_stiffness * drawn
+        found.what[c], found.left[c], found.rate[c] = does, 0.0, speed
+        if status.size > size:
+            found.what[size + c], found.left[size + c], found.rate[size + c] = 0.0, 0.0, 0.0
+
+
+@kernel
+def first_change(left, rate):
+    """The contact that changes first, and after which growth of the load factor; 0 and infinity where none does."""
+    first, length = 0, math.inf
+    for c in range(rate.size):
+        if rate[c] > 0.0 and max(left[c], 0.0) < length * rate[c]:
+            first, length = c, max(left[c], 0.0) / rate[c]
+    return first, length
+
+
+@kernel(forceinline=True)
+def _slopes(status, c, part, k, slope, listed):
+    """Derivatives of one part of the force of contact ``c`` by the displacement along n, and along t or the rolling.
+
+    ``part`` : 0 along n, 1 along t, 2 along the rolling, a couple; ``k`` : normal stiffness; ``slope`` : of the limit.
+    """
+    sense = 1.0 if status > 0 else -1.0
+    if status == OPEN:
+        return 0.0, 0.0
+    if part == 0:
+        return -k, 0.0
+    if part == 1:
+        if abs(status) == SLIDING:
+            return -(slope * sense) * k, 0.0
+        return 0.0, -law_of(listed, c).tangential_stiffness
+    arm = listed.arm[c]
+    if abs(status) == SLIDING:
+        return -sense * arm * listed.rolling_friction[c] * k, 0.0
+    return 0.0, -arm * arm * listed.rolling_stiffness[c]
+
+
+@kernel
+def changed_stiffness(contacts, before, after, q, listed, freedoms, place, columns):
+    """Fill rows of ``columns`` (:class:`Columns`) with what other statuses of contacts add to the tangent.
+
+    As many rows as are returned: one where a contact changes between sticking, sliding and open along one direction,
+    two where it opens from sticking. ``contacts`` (k,) : which, from m + w on along the rolling; ``before``, ``after``
+    : signed statuses of all; ``place`` (n,) : of disks in the order of the tangent.
+    """
+    owner, places, left, right = columns
+    size, radius = listed.gap.size, listed.radius
+    rows = 0
+    for c in contacts:
+        at = c % size
+        i, j, nx, nz, overlap, k = contact_at(at, q, listed)
+        law = law_of(listed, at)
+        slope = limit_slope(law, elastic_force(law, max(overlap, 0.0), take(listed.shape, at, 0.0)))
+        # force along n and t on the first disk, of which the part along n changes with the overlap alone, or couple
+        for part in range(2, 3) if c >= size else range(2):
+            new_n, new_t = _slopes(after[c], at, part, k, slope, listed)
+            old_n, old_t = _slopes(before[c], at, part, k, slope, listed)
+            by_n, by_t = new_n - old_n, new_t - old_t
+            if by_n == 0.0 and by_t == 0.0:
+                continue
+            ex, ez = (nx, nz) if part == 0 else (-nz, nx)
+            rx, rz = by_n * nx - by_t * nz, by_n * nz + by_t * nx
+            for e in range(2):
+                sign = 1.0 if e == 0 else -1.0
+                live = 1.0 if e == 0 or j >= 0 else 0.0
+                disk = i if e == 0 or j < 0 else j
+                base = 3 * e
+                for a in range(3):
+                    places[rows, base + a] = place[disk] * freedoms + min(a, freedoms - 1)
+                turns = live if freedoms == 3 else 0.0
+                if part < 2:
+                    couple = 0.0 if part == 0 else 1.0
+                    left[rows, base] = -live * sign * ex
+                    left[rows, base + 1] = -live * sign * ez
+                    left[rows, base + 2] = turns * radius[disk] * couple
+                    right[rows, base] = live * sign * rx
+                    right[rows, base + 1] = live * sign * rz
+                    right[rows, base + 2] = -turns * radius[disk] * by_t
+                else:
+                    left[rows, base], left[rows, base + 1], left[rows, base + 2] = 0.0, 0.0, -live * sign
+                    right[rows, base] = live * sign * by_n * nx
+                    right[rows, base + 1] = live * sign * by_n * nz
+                    right[rows, base + 2] = live * sign * by_t
+            owner[rows] = c
+            rows += 1
+    return rows
