@@ -190,6 +190,12 @@ class Leg:
         """A load factor one ``step`` on, or the target where that is no more than a tenth of a step away."""
         return factor + self.direction * step if abs(self.target - factor) > 1.1 * step else self.target
 
+    def ended(self, point: Point) -> Point | None:
+        """The point at the target, if its load is that of the target to within the force of an event; else None."""
+        if abs(self.target - point.factor) * self.unit > point.rate_problem.force:
+            return None
+        return replace(point, factor=self.target)
+
     def increased(self, point: Point, new: float) -> Trial | None:
         """Equilibrium with the return map, one increment on, whatever changes within it."""
         system, q, external = point.system, point.known.q, external_force(self.problem, new)
