@@ -11,7 +11,8 @@ that can neither stay open nor stick slides.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,6 +32,8 @@ class RateOptions:
     worst: int = 60
     #: Part of the largest rate from which on a contact is among the worst: a mirror pair differs by rounding.
     as_bad: float = 0.999
+    #: Part to which all displacements must fall where contacts that bear nothing open, or they stay closed.
+    less: float = 1.0 - 1e-6
 
 
 OPTIONS = RateOptions()
@@ -95,6 +98,7 @@ class Rates:
     velocity: FloatArray  #: (dof,)
     changes: Changes
 
+    free: bool  #: whether contacts that bear nothing have opened so that they need not be followed
     idle: np.ndarray  #: unknowns that change no force: angles of disks of which no contact sticks
 
 
@@ -160,7 +164,8 @@ class RateProblem:
                     break
                 found = self.changes(trial, velocity, now)
                 if not found.now:
-                    return Rates(now, factor, velocity, found, self.system.idle(trial, now))
+                    rates = Rates(now, factor, velocity, found, False, self.system.idle(trial, now))
+                    return self._let_go(trial, rates)
                 due = found.due(self.force)
                 if worst:
                     rates = found.rate[due]
@@ -178,3 +183,26 @@ class RateProblem:
                     break
                 tried.add(now.tobytes())
         return None
+
+    def _let_go(self, trial: Trial, rates: Rates) -> Rates:
+        """The same with less motion, where contacts open that bear nothing and go on so.
+
+        A disk that nothing resists could follow another one at such a contact for ever. It stays.
+        """
+        sense, velocity, known = rates.sense, rates.velocity, trial.configuration
+        bare = np.flatnonzero((trial.normal <= self.force) & (sense[: len(trial.normal)] != OPEN))
+        if bare.size:
+            apart = [self.until(trial, int(c), events.OPENS, velocity)[1] for c in bare]
+            bare = bare[np.abs(apart) <= self.negligible]
+        if not bare.size:
+            return rates
+        opened = sense.copy()
+        opened[bare] = OPEN
+        opened = self.system.coupled(opened)
+        with suppress(RuntimeError):
+            factor = self.system.updated_factor(known, opened)
+            less = self.velocity(known, opened, factor)
+            changes = self.changes(trial, less, opened)
+            if not changes.now and np.linalg.norm(less) < OPTIONS.less * np.linalg.norm(velocity):
+                return Rates(opened, factor, less, changes, True, self.system.idle(trial, opened))
+        return replace(rates, factor=self.system.updated_factor(known, sense))

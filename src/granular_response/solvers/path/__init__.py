@@ -151,6 +151,7 @@ def step(leg: Leg, point: Point, stuck: bool) -> Point:
     if rates is None:
         return leg.ended(point) or relisted(leg, beyond(leg, point, "no statuses of the contacts go on"))
     leg.record.events += events.changes(point, rates.sense)
+    leg.free = leg.free or rates.free
     negative, before = rates.factor.negative_pivots, point.negative
     # one real eigenvalue is negative, or real ones have passed zero; where contacts slide these may not go along
     if negative % 2 or negative not in (0, before):

@@ -15,7 +15,7 @@ from ..equilibrium import attainable, certify, external_force
 from ..increment import Work, solve_increment
 from ..problem import Problem
 from ..rates import RateProblem
-from ..stability import Spectrum, diverging
+from ..stability import judged
 from ..system import Configuration, StaticSystem, Trial
 
 
@@ -166,6 +166,8 @@ class Leg:
         self.stiffest = max(law.tangential_stiffness for law in laws)
         #: whether the stiffness of contacts varies with their overlap
         self.varying = any(law.stiffest(2.0) != law.stiffest(1.0) for law in laws)
+        #: whether a motion that nothing resists has been met: residuals over rounding are no displacements then
+        self.free = bool(self.start.reached.certificate and self.start.certificate.undetermined)
         self.gone_on()
 
     def gone_on(self) -> None:
@@ -233,9 +235,10 @@ class Leg:
     def kept(self, point: Point) -> State:
         """The certified state of a point."""
         trial, state = point.at_rest()
-        modes = diverging(Spectrum(point.system, trial))
+        modes, undetermined = judged(point.system, trial)
         self.count(point.system)
-        work, certificate = self.record.work, certify(self.problem, state, modes=modes)
+        work = self.record.work
+        certificate = certify(self.problem, state, modes=modes, undetermined=undetermined)
         reached = Reached("path", certificate, increments=work.increments, factorisations=work.factorisations)
         return replace(state, reached=reached)
 
