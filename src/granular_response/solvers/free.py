@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..state import FloatArray
+from ..state import OPEN, FloatArray
 from .system import OPTIONS as SYSTEM
 from .system import StaticSystem, Trial
 
@@ -27,6 +27,9 @@ class FreeOptions:
     soft: float = 1e7
     #: Stiffness below which a direction is free (mean weights per mean radius); rounding makes 1e-10 of none.
     stiffness: float = 1e-6
+    #: Normal force (mean weights) up to which a contact bears nothing, as of ``PathOptions.passing``: it is no tie, since
+    #: it may open.
+    bare: float = 1e-8
     #: Part of a free motion below which a disk does not take part in it.
     part: float = 1e-6
     #: Directions that are looked for at once, doubled while all of them are free.
@@ -49,6 +52,23 @@ def least(system: StaticSystem, solve: Callable[[FloatArray], FloatArray], step:
     return step - SYSTEM.regularisation * system.problem.stiffness * solve(step)
 
 
+def without_bare(system: StaticSystem, trial: Trial) -> Trial | None:
+    """The trial with its contacts open that bear nothing; None where there are none."""
+    bare = (trial.status != OPEN) & (trial.normal <= OPTIONS.bare)
+    if not bare.any():
+        return None
+    sense = trial.sense.copy()
+    sense[: len(bare)][bare] = OPEN
+    return system.trial(trial.configuration, trial.configuration.q, fixed=system.coupled(sense))
+
+
+def touched(system: StaticSystem, trial: Trial) -> bool:
+    """Whether each disk has a closed contact."""
+    closed, at_wall = system.split(trial.status != OPEN)
+    ties = np.concatenate([system.first[closed], system.second[closed], system.wall_disk[at_wall]])
+    return bool(np.bincount(ties, minlength=system.problem.n).all())
+
+
 def free_disks(system: StaticSystem, trial: Trial) -> tuple[int, ...]:
     """Disks that a motion moves which changes no force, with the statuses of a trial.
 
@@ -57,7 +77,9 @@ def free_disks(system: StaticSystem, trial: Trial) -> tuple[int, ...]:
     problem, places = system.problem, system.pattern
     regularised = SYSTEM.regularisation * problem.stiffness
     matrix = system.tangent(trial)
-    matrix.data[places.diagonal] += np.where(places.without_effect(matrix), problem.stiffness, 0.0)
+    idle = places.without_effect(matrix).reshape(problem.n, problem.freedoms)
+    idle[:, :2] = False
+    matrix.data[places.diagonal] += np.where(idle.ravel(), problem.stiffness, 0.0)
     factor = system.storage.factor(places.with_shift(matrix, regularised))
     random = np.random.default_rng(0)
     probe = factor.solve(random.standard_normal(system.dof))

@@ -26,7 +26,7 @@ from ..errors import EquilibriumError
 from ..kernels.events import SLIDES, STICKS
 from ..linalg.lowest import Eigenpair, followed, lowest_real
 from ..state import SLIDING, STICKING, FloatArray
-from .free import free_disks
+from .free import free_disks, touched, without_bare
 from .rates import next_changes
 from .system import StaticSystem, Trial
 
@@ -96,7 +96,10 @@ class Spectrum:
     @cached_property
     def undetermined(self) -> tuple[int, ...]:
         """Disks that a motion moves which nothing resists."""
-        return () if self.stiff else free_disks(self.system, self.trial)
+        opened = without_bare(self.system, self.trial)
+        if opened is None and touched(self.system, self.trial) and self.stiff:
+            return ()
+        return free_disks(self.system, opened or self.trial)
 
     @cached_property
     def negative_modes(self) -> int | None:
