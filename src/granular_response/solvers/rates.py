@@ -34,6 +34,9 @@ class RateOptions:
     as_bad: float = 0.999
     #: Part to which all displacements must fall where contacts that bear nothing open, or they stay closed.
     less: float = 1.0 - 1e-6
+    #: Force that events leave at the contacts of a disk that bears nothing (mean weights): some times that of
+    #: ``PathOptions.passing``.
+    bare: float = 1e-7
     #: Part of the largest rate of a displacement that rounding makes of a gap's where a disk bears nothing; a tenth of
     #: a thousandth was seen.
     rounding: float = 1e-3
@@ -193,12 +196,15 @@ class RateProblem:
         A disk that nothing resists could follow another one at such a contact for ever. It stays.
         """
         sense, velocity, known = rates.sense, rates.velocity, trial.configuration
-        bare = np.flatnonzero((trial.normal <= self.force) & (sense[: len(trial.normal)] != OPEN))
+        closed = sense[: len(trial.normal)] != OPEN
+        bare = np.flatnonzero((trial.normal <= OPTIONS.bare) & closed)
         if bare.size:
             apart = np.abs([self.until(trial, int(c), events.OPENS, velocity)[1] for c in bare])
             # rates are those of next to no stiffness where a disk bears nothing at all, and rounding is large
             rough = OPTIONS.rounding * self.system.problem.stiffness * np.abs(velocity).max()
-            bare = bare[apart <= np.where(self._bears_nothing(trial, bare), rough, self.negligible)]
+            rests = trial.normal[bare] <= self.force
+            least = np.where(rests, self.negligible, -1.0)
+            bare = bare[apart <= np.where(self._bears_nothing(trial, bare), rough, least)]
         if not bare.size:
             return rates
         opened = sense.copy()
@@ -221,4 +227,4 @@ class RateProblem:
             np.maximum.at(bears, disk, normal)
         first = np.concatenate([system.first, system.wall_disk])[contacts]
         second = np.concatenate([system.second, system.wall_disk])[contacts]
-        return np.minimum(bears[first], bears[second]) <= 10.0 * self.force
+        return np.minimum(bears[first], bears[second]) <= OPTIONS.bare

@@ -145,6 +145,8 @@ def smooth(
         along = abs(factor - point.factor)
         trial = system.trial(known, q, fixed=rates.sense, velocity=rates.velocity, length=along)
         force = trial.contact_force + external_force(leg.problem, factor)
+        if leg.free:
+            force = leg.resisted(system, by, force)
         size = largest(force)
         left, rate = (0.0, 0.0) if event is None else until(trial, *event, velocity)
         if not np.isfinite(size):
@@ -169,6 +171,7 @@ def smooth(
         longest = largest(step[: 2 * leg.problem.n])
         if leg.free or suspicious(system, longest, size):
             step = least(system, lambda one, by=by: system.deinterleave(by.solve(system.interleave(one))), step)
+            step[rates.idle] = 0.0
             longest = largest(step[: 2 * leg.problem.n])
         if longest > NEWTON.longest_step:  # a contact of the 3/2 law that has just closed has no stiffness yet
             step *= NEWTON.longest_step / longest

@@ -8,12 +8,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...errors import SolveError
+from ...linalg import Factor
 from ...linalg.lowest import Eigenpair
 from ...state import OPEN, STICKING, Event, FloatArray, Reached, State
 from ..dynamics import Dynamics
 from ..equilibrium import attainable, certify, external_force
 from ..increment import Work, solve_increment
 from ..problem import Problem
+from ..free import least
+from ..rates import OPTIONS as RATES
 from ..rates import RateProblem
 from ..stability import judged
 from ..system import Configuration, StaticSystem, Trial
@@ -191,6 +194,11 @@ class Leg:
     def towards(self, factor: float, step: float) -> float:
         """A load factor one ``step`` on, or the target where that is no more than a tenth of a step away."""
         return factor + self.direction * step if abs(self.target - factor) > 1.1 * step else self.target
+
+    def resisted(self, system: StaticSystem, by: Factor, force: FloatArray) -> FloatArray:
+        """Forces out of balance (dof,) without what events have left of them along motions that nothing resists."""
+        held = least(system, lambda one: system.deinterleave(by.solve(system.interleave(one))), force)
+        return held if largest(force - held) <= RATES.bare else force
 
     def ended(self, point: Point) -> Point | None:
         """The point at the target, if its load is that of the target to within the force of an event; else None."""
