@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..state import Event, State
+from ..state import State
 
 #: Displacement (mean radii) from which on a disk has left its place: the elastic displacements of the paper's loads are
 #: below a hundredth, and disks of a lattice exchange neighbours from some tenths on.

@@ -18,7 +18,7 @@ import numpy as np
 from ..errors import EquilibriumError
 from ..state import Certificate, FloatArray, State
 from ..state.box import bodies
-from .free import least, suspicious
+from .free import least, solved_by, suspicious
 from .problem import Problem
 from .stability import Spectrum
 from .system import Configuration, StaticSystem, Trial
@@ -118,7 +118,7 @@ def newton(
             break
         length = float(np.abs(step[: 2 * n]).max())
         if suspicious(system, length, size) and (by := system.kept_factor(trial)) is not None:
-            step = least(system, lambda one, by=by: system.deinterleave(by.solve(system.interleave(one))), step)
+            step = least(system, solved_by(system, by), step)
             length = float(np.abs(step[: 2 * n]).max())
         scale = min(1.0, OPTIONS.longest_step / length) if length > 0 else 1.0
         for _ in range(6):

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..linalg import Factor
 from ..state import OPEN, FloatArray
 from .system import OPTIONS as SYSTEM
 from .system import StaticSystem, Trial
@@ -25,15 +26,15 @@ class FreeOptions:
     #: Displacement per force, in units of the inverse normal stiffness, from which on a step may go along a null
     #: direction: the softest directions of packings have up to 1e5, a null direction 1e10.
     soft: float = 1e7
-    #: Stiffness below which a direction is free (mean weights per mean radius); rounding makes 1e-10 of none.
-    stiffness: float = 1e-6
-    #: Normal force (mean weights) up to which a contact bears nothing, as of ``PathOptions.passing``: it is no tie, since
-    #: it may open.
+    #: Normal force (mean weights) up to which a contact bears nothing, as of ``PathOptions.passing``: it is no tie, as it
+    #: may open.
     bare: float = 1e-8
-    #: Part of a free motion below which a disk does not take part in it.
+    #: Random vectors, and times that the tangent's inverse takes from them what some stiffness resists: a direction of
+    #: 1e-4 mean weights per mean radius keeps 3e-8 of itself, a null direction all.
+    vectors: int = 3
+    times: int = 3
+    #: Part of itself that a vector keeps from which on a disk moves freely.
     part: float = 1e-6
-    #: Directions that are looked for at once, doubled while all of them are free.
-    block: int = 8
 
 
 OPTIONS = FreeOptions()
@@ -69,6 +70,11 @@ def touched(system: StaticSystem, trial: Trial) -> bool:
     return bool(np.bincount(ties, minlength=system.problem.n).all())
 
 
+def solved_by(system: StaticSystem, factor: Factor) -> Callable[[FloatArray], FloatArray]:
+    """What solves for displacements (dof,) by a factorisation."""
+    return lambda force: system.deinterleave(factor.solve(system.interleave(force)))
+
+
 def free_disks(system: StaticSystem, trial: Trial) -> tuple[int, ...]:
     """Disks that a motion moves which changes no force, with the statuses of a trial.
 
@@ -81,21 +87,12 @@ def free_disks(system: StaticSystem, trial: Trial) -> tuple[int, ...]:
     idle[:, :2] = False
     matrix.data[places.diagonal] += np.where(idle.ravel(), problem.stiffness, 0.0)
     factor = system.storage.factor(places.with_shift(matrix, regularised))
-    random = np.random.default_rng(0)
-    probe = factor.solve(random.standard_normal(system.dof))
-    if not suspicious(system, float(np.abs(probe).max()), 1.0):
-        return ()
-    count = OPTIONS.block
-    while True:
-        count = min(count, system.dof)
-        found = random.standard_normal((count, system.dof))
-        for _ in range(2):
-            found = np.linalg.qr(factor.solve(found).T)[0].T
-        _, stiffness, ways = np.linalg.svd(matrix @ found.T, full_matrices=False)
-        free = ways[stiffness < OPTIONS.stiffness] @ found
-        if len(free) < count or count == system.dof:
-            break
-        count *= 2
-    moved = np.stack([system.deinterleave(way) for way in free]) if len(free) else np.zeros((0, system.dof))
-    size = np.sqrt((moved.reshape(len(moved), problem.freedoms, problem.n) ** 2).sum(axis=(0, 1)))
+    # what is left of random vectors along null directions
+    left = np.random.default_rng(0).standard_normal((OPTIONS.vectors, system.dof))
+    for _ in range(OPTIONS.times):
+        left = regularised * factor.solve(left)
+        if float(np.abs(left).max()) < OPTIONS.part:
+            return ()
+    moved = np.stack([system.deinterleave(one) for one in left])
+    size = np.abs(moved).reshape(-1, problem.n).max(axis=0)
     return tuple(np.flatnonzero(size > OPTIONS.part).tolist())

@@ -170,7 +170,7 @@ def _certificate(result: xr.Dataset) -> Iterator[tuple[str, list[str]]]:
                 values = ["not determined" if value == str(NOT_DETERMINED) else value for value in values]
             yield _CERTIFICATE.get(key, key.replace("_", " ")), values
     if "undetermined" in result:
-        yield "disks not determined", map(str, result["undetermined"].values.sum(axis=1))
+        yield "disks not determined", [f"{number}" for number in result["undetermined"].values.sum(axis=1)]
     if "reached_stopped_rattlers" in result:
         stopped = result["reached_stopped_rattlers"].values
         yield "rattlers stopped by hand", ["0" if number == NOT_DETERMINED else f"{number:g}" for number in stopped]

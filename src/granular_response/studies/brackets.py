@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 from ..errors import GranularError
 
-
 #: Part of a value by which the two ends of an answer may differ and are said as one number, of four digits.
 SAME = 1e-3
 

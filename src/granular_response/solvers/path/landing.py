@@ -12,7 +12,7 @@ from ...linalg.updated import Updated
 from ...state import FloatArray
 from ..equilibrium import OPTIONS as NEWTON
 from ..equilibrium import attainable, external_force
-from ..free import least, suspicious
+from ..free import least, solved_by, suspicious
 from ..rates import Changes, Rates, changed
 from ..system import Trial
 from .points import Leg, Point, largest
@@ -170,7 +170,7 @@ def smooth(
         step[rates.idle] = 0.0  # it would be the rounding of a torque over next to no stiffness
         longest = largest(step[: 2 * leg.problem.n])
         if leg.free or suspicious(system, longest, size):
-            step = least(system, lambda one, by=by: system.deinterleave(by.solve(system.interleave(one))), step)
+            step = least(system, solved_by(system, by), step)
             step[rates.idle] = 0.0
             longest = largest(step[: 2 * leg.problem.n])
         if longest > NEWTON.longest_step:  # a contact of the 3/2 law that has just closed has no stiffness yet
