@@ -6,6 +6,7 @@ from .api.event import find_event as find_event
 from .api.event_table import Events as Events
 from .api.motion import motion as motion
 from .api.observables import coordination_number as coordination_number
+from .api.observables import disk_stress as disk_stress
 from .api.observables import elastic_moduli as elastic_moduli
 from .api.observables import fabric_tensor as fabric_tensor
 from .api.observables import force_distribution as force_distribution

@@ -156,3 +156,51 @@ def test_a_stored_result_has_the_same_observables(result, tmp_path):
         xr.testing.assert_identical(getattr(gr, name)(back), getattr(gr, name)(result))
     one, two = (gr.stiffness_matrix(each, sliding="stick") for each in (back, result))
     assert (one != two).nnz == 0
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "radius"),
+    [([1.0, 3.0, 2.0], [1.0, 1.0, 2.74], [1.0, 1.0, 1.0]), ([1.0, 3.5, 2.711], [1.0, 0.7, 2.536], [1.0, 0.7, 1.3])],
+    ids=["equal", "unequal"],
+)
+def test_the_stress_of_a_disk_is_the_virial_of_its_contacts(x, z, radius):
+    """Three disks on each other between walls, by the table of contacts; compression along z is positive."""
+    scene = gr.Scene.from_arrays(x, z, radius, width=x[1] + radius[1], scene={"loads": []})
+    found = gr.solve(scene.updated({"contact": {"friction": 0.5}, "wall": {"friction": 0.5}}), progress=False)
+    state, radius = found.rest, found.to_dataset()["radius"].values
+    expected = np.zeros((3, 2, 2))
+    normal, walls = state.pair_normal(), wall_normals(state.walls.second)
+    table = found.contacts_table(0)
+    k, w = np.flatnonzero(state.pairs.touching), np.flatnonzero(state.walls.touching)
+    for (_, row), (n, i, j) in zip(
+        table.iterrows(),
+        [(normal[c], state.pairs.first[c], state.pairs.second[c]) for c in k]
+        + [(walls[c], state.walls.first[c], None) for c in w],
+        strict=True,
+    ):
+        force = row.normal_force * n + row.tangential_force * np.array([-n[1], n[0]])
+        at = np.array([row.x, row.z])
+        expected[i] -= np.outer(force, at - state.position[i])
+        if j is not None:
+            expected[j] += np.outer(force, at - state.position[j])
+    expected /= (np.pi * radius**2)[:, None, None]
+    stress = gr.disk_stress(found, state=0)
+    np.testing.assert_allclose(stress.values, expected, atol=1e-12)
+    assert (stress.sel(force="z", branch="z") > 0.0).all() and stress.attrs["units"] == "mean_weight / mean_radius"
+
+
+def test_the_stresses_of_disks_sum_to_the_stress_of_the_packing(result):
+    """Areas times stresses are the sum of f d over all contacts, and what a load adds is the difference of forces."""
+    state = result.loaded[-1]
+    area = np.pi * result.to_dataset()["radius"].values ** 2
+    total = (gr.disk_stress(result, added=False).values * area[:, None, None]).sum(axis=0)
+    at_wall = state.position[state.walls.first]
+    branch = [state.pair_separation(), at_wall - state.box.on_wall(at_wall, state.walls.second)]
+    force = [state.pair_force(), state.wall_force()]
+    expected = sum(f.T @ d for f, d in zip(force, branch, strict=True))
+    np.testing.assert_allclose(total, expected, atol=1e-10)
+    added = gr.disk_stress(result)
+    assert abs(float(added.sum())) > 1.0  # and the geometry of the load hardly changes what gravity did
+    apart = gr.disk_stress(result, added=False) - gr.disk_stress(result, state=0)
+    np.testing.assert_allclose(added.values, apart.values, atol=0.02)
+    refuses(ValueError, "added: a load adds nothing", lambda: gr.disk_stress(result, state=0, added=True))

@@ -177,3 +177,9 @@ test_bad_samples_are_refused = refusals(
     (lambda: find_peaks(X, np.ones(X.size), relative_prominence=0.0), r"relative_prominence = 0\.0"),
     (lambda: asymmetry(X, -np.ones(X.size)), "positive"),
 )
+
+
+def test_the_dip_that_separates_two_peaks_is_an_argument():
+    shallow = profile(0.998, 1.0, 0.5)
+    assert is_double_peaked(X, shallow, relative_prominence=0.0019)
+    assert not is_double_peaked(X, shallow, relative_prominence=0.0021)

@@ -8,6 +8,7 @@ import pytest
 from refusals import refusals
 from small_scenes import scene
 
+import granular_response as gr
 from granular_response.observe.peaks import asymmetry_sign
 from granular_response.observe.widths import half_maximum_width
 from granular_response.state import OPEN, STICKING
@@ -228,3 +229,27 @@ test_equal_ends_are_an_error = refusals(EventNotBracketed, (within(0.0, 2.0, 0.1
 test_bad_intervals_are_refused = refusals(
     ValueError, (within(1.0, 1.0, 0.1), "low"), (within(2.0, 1.0, 0.1), "low"), (within(0.0, 1.0, 0.0), "tolerance")
 )
+
+
+def test_where_nothing_happens_is_said_in_words():
+    assert str(gr.studies.first_change([10.0, 20.0, 30.0], [False, False, False])) == "not up to 30"
+    assert str(gr.studies.first_change([10.0, 20.0, 30.0], [False, True, True])) == "between 10 and 20"
+    assert str(gr.studies.first_change([10.0], [True])) == "at 10 or below"
+    assert str(gr.studies.First(20.19, 20.2)) == "from 20.2"
+    assert str(gr.studies.linear_end([1.0], [np.nan], 0.01)) == "not known"
+    assert not gr.studies.First(30.0, np.nan).happened
+
+
+def test_two_peaks_have_a_prominence_that_is_asked_for():
+    """A dip of 0.5 % is two peaks by a tenth of a percent, and one by one percent; the definition says which."""
+    scene = gr.Scene(packing=gr.Slab(layers=6, disks_per_row=21), loads=[gr.Load(disk="top-centre", force=(0, -1))])
+    path = gr.studies.LoadPath.of(scene.updated({"contact.friction": 0.2}))
+    measures = gr.studies.Measures(path)
+    forces = [1.0, 2.0, 4.0, 8.0, 16.0]
+    by = {asked: path.first(forces, gr.studies.two_peaks(measures, prominence=asked)) for asked in (1e-3, 1e-2, 0.1)}
+    assert by[1e-3] == path.first(forces, gr.studies.two_peaks(measures))
+    assert by[1e-3].high < by[1e-2].high < by[0.1].high
+    assert measures.dip(path.at(by[1e-2].high)) > 0.0099
+    assert "0.01" in gr.studies.two_peaks(measures, prominence=0.01).definition
+    with pytest.raises(ValueError, match="prominence"):
+        gr.studies.two_peaks(measures, prominence=0.0)

@@ -12,19 +12,22 @@ import numpy as np
 import xarray as xr
 
 from ..observe import network
+from ..observe.difference import pair_force_difference, wall_force_difference
 from ..observe.positive import check_positive
+from ..observe.stress import virial_stress
 from ..scene.laboratory import FORCE, LENGTH
 from ..solvers.modes import lowest_modes
 from ..solvers.modes import stiffness_matrix as _stiffness
 from ..solvers.strain import Following, strained
 from ..solvers.work import slid, stored
 from ..solvers.work import work as done_by_loads
-from ..store.result import common_candidates, load_coordinates
+from ..store.result import common_candidates, load_coordinates, state_from
 from .result import Result
 
 _AXES = ["x", "z"]
 #: Strains and stresses in the order of moduli.
 _COMPONENTS = ["xx", "zz", "xz"]
+_STRESS = f"{FORCE} / {LENGTH}"
 
 
 def _along(result: Result) -> dict[str, Any]:
@@ -133,6 +136,49 @@ def force_distribution(result: Result, *, state: int = -1, bins: int = 24, to: f
     return xr.DataArray(density, {"force": middles}, ("force",), "force_distribution", labels)
 
 
+def disk_stress(result: Result, *, state: int = -1, added: bool | None = None) -> xr.DataArray:
+    """The stress of each disk, the virial of its contact forces over its area, in mg per mean radius.
+
+        sigma_ab = - sum_contacts f_a (c - r)_b / (pi R^2)
+
+    with the force f on the disk at its contact c, its centre r and its radius R; compression is positive. Its
+    coarse-grained field is :meth:`Result.stress`. LAMMPS's ``stress/atom`` takes half of the branch vector in place of
+    c - r, the same between equal disks, and no area.
+
+    Parameters
+    ----------
+    state : as of :meth:`Result.influence`, with its errors.
+    added : as of :meth:`Result.stress` : the incremental forces, the default for states under load.
+
+    Returns
+    -------
+    Dimensions ``disk``, ``force`` and ``branch`` ("x", "z"): the first index of the tensor is the force's. 0 for a disk
+    that no force acts on.
+
+    Raises ValueError for the added part of the initial equilibrium.
+
+    Examples
+    --------
+    >>> stress = gr.disk_stress(result, state=0)
+    >>> pressure = 0.5 * (stress.sel(force="x", branch="x") + stress.sel(force="z", branch="z"))
+    >>> pressure.dims, bool((pressure > 0.0).all())
+    (('disk',), True)
+    """
+    index = result._index(state)
+    added = index > 0 if added is None else added
+    if added and index == 0:
+        raise ValueError("added: a load adds nothing to the initial equilibrium, must be False for state 0")
+    data = result._data
+    rest, now = (state_from(data, k) for k in (0, index))  # on one list of candidates
+    forces = now.pair_force(), now.wall_force()
+    if added:
+        forces = pair_force_difference(rest, now), wall_force_difference(rest, now)
+    coordinates = {"force": _AXES, "branch": _AXES}
+    labels = {"long_name": "incremental stress of a disk" if added else "stress of a disk", "units": _STRESS}
+    values = virial_stress(now, data["radius"].values, *forces)
+    return xr.DataArray(values, coordinates, ("disk", "force", "branch"), "disk_stress", labels)
+
+
 def stiffness_matrix(result: Result, *, state: int = -1, sliding: str = "refuse") -> Any:
     """The tangent stiffness K = -dF/dq of a stable state, as a ``scipy.sparse.csc_array`` in mg per mean radius.
 
@@ -207,7 +253,7 @@ def elastic_moduli(
     """
     chosen = result._solved_state(state)
     found = strained(result._solved.problem, chosen, following, margin=margin, prestress=prestress)
-    labels = {"long_name": "elastic moduli", "units": f"{FORCE} / {LENGTH}"}
+    labels = {"long_name": "elastic moduli", "units": _STRESS}
     coordinates = {"stress": _COMPONENTS, "strain": _COMPONENTS}
     return xr.DataArray(found.moduli, coordinates, ("stress", "strain"), "elastic_moduli", labels)
 

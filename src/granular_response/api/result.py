@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..observe.broke_in import broke_in
 from ..observe.floor import origin_of, smoothed_response
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
 from ..scene import Scene
@@ -424,7 +425,8 @@ class Result:
         return self._dataset
 
     def _rows(self) -> list[tuple[str, str]]:
-        """A line for each state: which, and what its certificate says; and how far given disks have moved to rest."""
+        """A line for each state: which, and what its certificate says; whether the load broke in; and how far given
+        disks have moved to rest."""
         rows = []
         for k, state in enumerate(self._states):
             touching = int(state.pairs.touching.sum())
@@ -434,9 +436,14 @@ class Result:
             stable = {True: "stable", False: "unstable", None: "stability not determined"}[state.certificate.stable]
             stable = stable if state.certificate.balanced else "not in balance"
             text = f"{stable}, max. unbalanced force {state.certificate.force_residual:.1e}, {contacts}"
+            if free := len(state.certificate.undetermined):
+                text += f", {free} disk{'s' if free > 1 else ''} not determined"
             if stopped := state.reached.stopped_rattlers:
                 text += f", {stopped} rolling rattler{'s' if stopped > 1 else ''} stopped by hand"
             rows.append((name, text))
+        loads = self._solution.problem.load_disk if self._solution else self._data["loaded_disk"].values
+        if text := broke_in(self._states, loads):
+            rows.append(("the load broke in", text))
         if self._solution:  # which is asked without a dataset of it
             moved = self._solution.problem.packing.moved(self.rest.position)
         else:

@@ -139,13 +139,16 @@ def central_dip(x: ArrayLike, response: ArrayLike, *, interior: Interior = None)
     return (sides - float(np.interp(0.0, x, r))) / scale
 
 
-def is_double_peaked(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) -> bool:
-    """Whether the response has two peaks in the sense of the paper's crossover (Secs. IV.A, V.A and V.B).
+def is_double_peaked(
+    x: ArrayLike, response: ArrayLike, *, interior: Interior = None, relative_prominence: float = RELATIVE_PROMINENCE
+) -> bool:
+    """Whether the response has two peaks: the paper's crossover (Secs. IV.A, V.A and V.B).
 
     That is: on each side of x = 0 there is a peak that exceeds the response at x = 0 by at least
-    ``RELATIVE_PROMINENCE`` times the largest response. A small third peak at x = 0 does not matter.
+    ``relative_prominence`` times the largest response. A small third peak at x = 0 does not matter. Raises
+    ``ValueError`` as :func:`find_peaks`, or if x = 0 has no samples on both sides.
     """
-    return _outer_peaks(x, response, interior) is not None
+    return _outer_peaks(x, response, interior, relative_prominence) is not None
 
 
 def third_peak(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) -> float:
@@ -180,13 +183,15 @@ def asymmetry_sign(x: FloatArray, response: FloatArray) -> int:
     return int(np.sign(response[x > 1e-6].sum() - response[x < -1e-6].sum()))
 
 
-def _outer_peaks(x: ArrayLike, response: ArrayLike, interior: Interior) -> Peaks | None:
+def _outer_peaks(
+    x: ArrayLike, response: ArrayLike, interior: Interior, relative_prominence: float = RELATIVE_PROMINENCE
+) -> Peaks | None:
     """All peaks, if there are peaks above the centre on both sides of it; else None."""
-    peaks = find_peaks(x, response, interior=interior)
+    peaks = find_peaks(x, response, interior=interior, relative_prominence=relative_prominence)
     x, r = _samples(x, response, interior)
     if not x[0] < 0.0 < x[-1]:
         raise ValueError(f"x: runs from {x[0]} to {x[-1]}; it must have samples on both sides of 0")
-    high = peaks.height >= np.interp(0.0, x, r) + RELATIVE_PROMINENCE * np.max(np.abs(r))
+    high = peaks.height >= np.interp(0.0, x, r) + relative_prominence * np.max(np.abs(r))
     both = np.any(high & (peaks.position < 0.0)) and np.any(high & (peaks.position > 0.0))
     return peaks if both else None
 

@@ -124,6 +124,27 @@ def coarse_grained_stress(
     return stress.reshape(*points.shape[:-1], 2, 2)
 
 
+def virial_stress(state: State, radius: FloatArray, pair_force: FloatArray, wall_force: FloatArray) -> FloatArray:
+    """(n, 2, 2) stress of each disk from forces (m, 2) and (w, 2) at its contacts, compression positive.
+
+        sigma_ab = - sum_contacts f_a (c - r)_b / (pi R^2)
+
+    with ``f`` the force on the disk, ``r`` its centre and ``c`` the point of contact, in the middle of the overlap, so
+    that the two arms of a contact between disks add up to its branch vector. ``radius`` (n,) : of the disks.
+    """
+    pairs, walls = state.pairs, state.walls
+    normal, overlap = state.pair_normal(), 0.5 * pairs.overlap
+    # from the point of contact to the centre, of both disks of a pair, and of disks at walls
+    arms = [(radius[pairs.first] - overlap)[:, None] * normal, (overlap - radius[pairs.second])[:, None] * normal]
+    at_wall = state.position[walls.first]
+    arms.append(at_wall - state.box.on_wall(at_wall, walls.second))
+    disks = pairs.first, pairs.second, walls.first
+    total = np.zeros((len(radius), 2, 2))
+    for disk, force, arm in zip(disks, (pair_force, -pair_force, wall_force), arms, strict=True):
+        np.add.at(total, disk, force[:, :, None] * arm[:, None, :])
+    return total / (np.pi * radius**2)[:, None, None]
+
+
 def couple_stress(
     state: State, radius: FloatArray, points: FloatArray, width: float = 2.0, cutoff: float = 4.0
 ) -> FloatArray:

@@ -87,7 +87,7 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
             raise EquilibriumError(f"no minimum of the energy within {OPTIONS.iterations} iterations")
         descent.go_on()
     state = descent.system.state(descent.trial, load_factor)
-    certificate = certify(problem, state, modes=0)
+    certificate = certify(problem, state, modes=0, undetermined=descent.undetermined)
     reached = Reached("minimise", certificate, newton_iterations=descent.iterations, escapes=descent.escapes)
     return replace(state, reached=reached)
 
@@ -102,6 +102,7 @@ class _Descent:
         self.known = self.system.start(start)
         self.damping = (OPTIONS.first_near if self._large else OPTIONS.first_damping) * self.stiffness
         self.iterations = self.escapes = 0
+        self.undetermined: tuple[int, ...] = ()  #: disks that nothing determines at the last equilibrium looked at
         q = self.system.displaced(self.known.q, load_factor).copy()
         self._move(q, self.system.trial(self.known, q))
 
@@ -125,7 +126,13 @@ class _Descent:
         look = settled or self.iterations % OPTIONS.look_every == OPTIONS.look_every - 1
         if look and self.system.meets_unlisted(self.q):
             raise Rearranged("the packing rearranges on its way to a minimum of the energy; use method dynamics")
-        return settled and Spectrum(self.system, self.trial).negative_modes == 0
+        if not settled:
+            return False
+        spectrum = Spectrum(self.system, self.trial)
+        if not spectrum.stiff and spectrum.negative_modes != 0:
+            return False
+        self.undetermined = spectrum.undetermined
+        return spectrum.negative_modes == 0
 
     def go_on(self) -> None:
         """One iteration: away from a saddle, or a damped step, or more damping where a step would be no good."""

@@ -19,6 +19,7 @@ from ..contact.coulomb import limit
 from ..errors import EquilibriumError
 from ..state import Certificate, FloatArray, State
 from ..state.box import bodies
+from .free import least, solved_by, suspicious
 from .problem import Problem
 from .stability import Spectrum
 from .system import Configuration, StaticSystem, Trial
@@ -117,6 +118,9 @@ def newton(
         if not np.isfinite(step).all():
             break
         length = float(np.abs(step[: 2 * n]).max())
+        if suspicious(system, length, size) and (by := system.kept_factor(trial)) is not None:
+            step = least(system, solved_by(system, by), step)
+            length = float(np.abs(step[: 2 * n]).max())
         scale = min(1.0, OPTIONS.longest_step / length) if length > 0 else 1.0
         for _ in range(6):
             new = system.trial(known, q + scale * step)
@@ -167,10 +171,13 @@ def reaction(problem: Problem, state: State) -> FloatArray:
     return result
 
 
-def certify(problem: Problem, state: State, *, modes: int | None = None) -> Certificate:
+def certify(
+    problem: Problem, state: State, *, modes: int | None = None, undetermined: tuple[int, ...] = ()
+) -> Certificate:
     """Measure a state's certificate from its own positions and contact forces.
 
-    ``modes`` : unstable directions of its tangent, where they have been counted. A disk that is not where a load holds
+    ``modes`` : unstable directions of its tangent, where they have been counted; ``undetermined`` : disks that a motion
+    without resistance moves. A disk that is not where a load holds
     it counts as out of balance by what one contact would feel.
     """
     n, held = problem.n, problem.held
@@ -200,6 +207,7 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
         loose_disks=int((state.contact_count() < 2).sum()),
         unbalanced_part=float((np.maximum(np.abs(force).max(axis=1), turned) / bears).max()),
         rolling_excess=beyond,
+        undetermined=undetermined,
     )
 
 
@@ -266,7 +274,9 @@ def finish(problem: Problem, state: State) -> State:
         raise EquilibriumError(
             f"the equilibrium that Newton's method finds is {moved:.2g} mean radii away; {_cure(problem)}"
         )
-    certificate = certify(problem, solved, modes=Spectrum(system, trial).negative_modes)
+    spectrum = Spectrum(system, trial)
+    undetermined = spectrum.undetermined
+    certificate = certify(problem, solved, modes=spectrum.negative_modes, undetermined=undetermined)
     if not certificate.balanced:
         raise EquilibriumError(
             f"a disk is out of balance by {certificate.unbalanced_part:.1g} of what it bears; {_cure(problem)}"

@@ -11,7 +11,8 @@ that can neither stay open nor stick slides.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,6 +33,14 @@ class RateOptions:
     worst: int = 60
     #: Part of the largest rate from which on a contact is among the worst: a mirror pair differs by rounding.
     as_bad: float = 0.999
+    #: Part to which all displacements must fall where contacts that bear nothing open, or they stay closed.
+    less: float = 1.0 - 1e-6
+    #: Force that events leave at the contacts of a disk that bears nothing (mean weights): some times that of
+    #: ``PathOptions.passing``.
+    bare: float = 1e-7
+    #: Part of the largest rate of a displacement that rounding makes of a gap's where a disk bears nothing; a tenth of
+    #: a thousandth was seen.
+    rounding: float = 1e-3
 
 
 OPTIONS = RateOptions()
@@ -93,6 +102,7 @@ class Rates:
     velocity: FloatArray  #: (dof,)
     changes: Changes
 
+    free: bool  #: whether contacts that bear nothing have opened so that they need not be followed
     idle: np.ndarray  #: unknowns that change no force: angles of disks of which no contact sticks
 
 
@@ -153,7 +163,8 @@ class RateProblem:
                     break
                 found = self.changes(trial, velocity, now)
                 if not found.now:
-                    return Rates(now, factor, velocity, found, self.system.idle(trial, now))
+                    rates = Rates(now, factor, velocity, found, False, self.system.idle(trial, now))
+                    return self._let_go(trial, rates)
                 due = found.due(self.force)
                 if worst:
                     rates = found.rate[due]
@@ -171,3 +182,42 @@ class RateProblem:
                     break
                 tried.add(now.tobytes())
         return None
+
+    def _let_go(self, trial: Trial, rates: Rates) -> Rates:
+        """The same with less motion, where contacts open that bear nothing and go on so.
+
+        A disk that nothing resists could follow another one at such a contact for ever. It stays.
+        """
+        sense, velocity, known = rates.sense, rates.velocity, trial.configuration
+        closed = sense[: len(trial.normal)] != OPEN
+        bare = np.flatnonzero((trial.normal <= OPTIONS.bare) & closed)
+        if bare.size:
+            apart = np.abs([self.until(trial, int(c), events.OPENS, velocity)[1] for c in bare])
+            # rates are those of next to no stiffness where a disk bears nothing at all, and rounding is large
+            rough = OPTIONS.rounding * self.system.problem.stiffness * np.abs(velocity).max()
+            rests = trial.normal[bare] <= self.force
+            least = np.where(rests, self.negligible, -1.0)
+            bare = bare[apart <= np.where(self._bears_nothing(trial, bare), rough, least)]
+        if not bare.size:
+            return rates
+        opened = sense.copy()
+        opened[bare] = OPEN
+        opened = self.system.coupled(opened)
+        with suppress(RuntimeError):
+            factor = self.system.updated_factor(known, opened)
+            less = self.velocity(known, opened, factor)
+            changes = self.changes(trial, less, opened)
+            if not changes.now and np.linalg.norm(less) < OPTIONS.less * np.linalg.norm(velocity):
+                return Rates(opened, factor, less, changes, True, self.system.idle(trial, opened))
+        return replace(rates, factor=self.system.updated_factor(known, sense))
+
+    def _bears_nothing(self, trial: Trial, contacts: np.ndarray) -> np.ndarray:
+        """Of each of ``contacts`` whether no contact of one of its disks bears a force: a load holds that disk."""
+        system = self.system
+        between, at_wall = system.split(trial.normal)
+        bears = np.zeros(system.problem.n)
+        for disk, normal in ((system.first, between), (system.second, between), (system.wall_disk, at_wall)):
+            np.maximum.at(bears, disk, normal)
+        first = np.concatenate([system.first, system.wall_disk])[contacts]
+        second = np.concatenate([system.second, system.wall_disk])[contacts]
+        return np.minimum(bears[first], bears[second]) <= OPTIONS.bare

@@ -20,7 +20,7 @@ from .dynamics import Dynamics, Stop, relax
 from .energy import minimise
 from .equilibrium import certify, check_overlaps, finish, reaction
 from .path import follow
-from .path.events import lost
+from .path.events import lost, side
 from .problem import Problem
 from .settle import PROTOCOL, NotSettled, not_settled, settle
 from .size import check_memory
@@ -331,11 +331,18 @@ def _by_minimisation(problem: Problem, before: State, factor: float, progress: P
         # what is held goes its way in short steps, so that it meets what is on it
         for part in np.linspace(before.load_factor, factor, math.ceil(way / LONGEST_WAY) + 1)[1:-1]:
             before = problem.relisted(minimise(problem, before, load_factor=float(part)))
-        return minimise(problem, before, load_factor=factor)
+        found = minimise(problem, before, load_factor=factor)
+        if not found.reached.escapes:
+            return found
+        moved = found.position - before.position
+        reason = f"unstable, to the {side(moved)}"
+        left = lost("bifurcation", before.load_factor, factor, before.position, moved, reason)
+        return replace(found, reached=replace(found.reached, events=(left,)))
     except EquilibriumError:
         # the packing collapses or rearranges here: its motion decides where it comes to rest
         state = _by_dynamics(problem, before, factor, progress)
-        moved, reason = state.position - before.position, "no minimum of the energy nearby"
+        moved = state.position - before.position
+        reason = f"no minimum of the energy nearby, to the {side(moved)}"
         jump = lost("jump", before.load_factor, factor, before.position, moved, reason)
         return replace(state, reached=replace(state.reached, events=(jump,)))
 

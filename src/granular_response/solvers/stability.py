@@ -26,6 +26,7 @@ from ..errors import EquilibriumError
 from ..kernels.transitions import SLIDES, STICKS
 from ..linalg.lowest import Eigenpair, followed, lowest_real
 from ..state import SLIDING, STICKING, FloatArray
+from .free import free_disks, touched, without_bare
 from .rates import next_changes
 from .system import StaticSystem, Trial
 
@@ -37,6 +38,9 @@ class StabilityOptions:
     #: Eigenvalue of M^-1 K, in g/R, above minus which nothing counts as unstable: disks that roll freely have 0, and
     #: what grows no faster than a thousandth in sqrt(R/g) does not in any time of interest.
     neutral: float = 1e-6
+    #: Eigenvalue from which on no direction is unstable or free, so that one factorisation settles both; the softest of
+    #: a packing of some hundred layers is 0.1.
+    soft: float = 1e-4
     #: Part of the normal stiffness that rounding makes of a stiffness of 0; softer disks than that cannot be judged.
     rounding: float = 1e-14
     #: How far to the left of zero the search begins, in units of the normal stiffness: the first that the symmetric
@@ -80,6 +84,24 @@ class Spectrum:
         return None
 
     @cached_property
+    def stiff(self) -> bool:
+        """Whether all eigenvalues are above ``StabilityOptions.soft``: nothing is unstable, and nothing is free.
+
+        All but that of the packing as a whole where nothing holds it along x.
+        """
+        system = self.system
+        raised = system.pattern.with_shift(self._symmetric, -OPTIONS.soft)
+        return system.storage.negative_eigenvalues(raised) == int(system.problem.slides_freely)
+
+    @cached_property
+    def undetermined(self) -> tuple[int, ...]:
+        """Disks that a motion moves which nothing resists."""
+        opened = without_bare(self.system, self.trial)
+        if opened is None and touched(self.system, self.trial) and self.stiff:
+            return ()
+        return free_disks(self.system, opened or self.trial)
+
+    @cached_property
     def negative_modes(self) -> int | None:
         """Number of real negative eigenvalues; None where it cannot be determined.
 
@@ -89,7 +111,8 @@ class Spectrum:
         """
         if self._followed is not None:
             return 1
-        modes = self.system.storage.negative_eigenvalues(self._symmetric)
+        known = vars(self).get("stiff", False)  # if it has been asked
+        modes = 0 if known else self.system.storage.negative_eigenvalues(self._symmetric)
         if modes == 0:
             return None if _too_light(self.system, self.trial) else 0
         if not _slides(self.trial):
@@ -188,6 +211,13 @@ def divergence(spectrum: Spectrum) -> FloatArray | None:
     return None
 
 
+def judged(system: StaticSystem, trial: Trial) -> tuple[int | None, tuple[int, ...]]:
+    """Unstable directions as :func:`diverging` counts them, and disks that nothing determines."""
+    spectrum = Spectrum(system, trial)
+    undetermined = spectrum.undetermined
+    return diverging(spectrum), undetermined
+
+
 def diverging(spectrum: Spectrum) -> int | None:
     """The number of unstable directions that contacts go along with, 1 for any number where contacts slide.
 
@@ -206,8 +236,13 @@ def _slides(trial: Trial) -> bool:
 
 
 def _too_light(system: StaticSystem, trial: Trial) -> bool:
-    """Whether a disk bears so little that the turn of its contacts is lost in the rounding of their stiffness."""
+    """Whether a disk bears so little that the turn of its contacts is lost in the rounding of their stiffness.
+
+    One whose height a load holds may bear nothing.
+    """
     stiffness = system.state(trial, 0.0).largest_normal_force() / system.problem.packing.radius
+    held = system.problem.held
+    stiffness[held.disk[held.axis == 1]] = 0.0
     return bool(((stiffness > 0.0) & (stiffness < OPTIONS.rounding * system.problem.stiffness)).any())
 
 

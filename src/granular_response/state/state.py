@@ -37,7 +37,11 @@ class Certificate:
     number; None: not determined). ``loose_disks``: disks with fewer than two contacts.
     ``unbalanced_part``: largest unbalanced force on a disk, or torque per radius, relative to its weight or its largest
     contact force (nan: not measured).
-    ``rolling_excess``: largest rolling force beyond its limit.
+    ``rolling_excess``: largest rolling force beyond its limit. ``undetermined``: disks of which forces do not determine
+    the place or the turn, since a motion moves them that nothing resists, such as a disk without contacts, one that
+    rolls on the floor, or disks that roll on each other like gears. They are where the least motion leaves them; the
+    forces of the state do not depend on it. Looked for wherever ``negative_modes`` is determined. Turns of disks whose
+    contacts all slide, and a packing that nothing holds along x as a whole, do not count.
 
     Examples
     --------
@@ -54,6 +58,7 @@ class Certificate:
     loose_disks: int
     unbalanced_part: float = float("nan")
     rolling_excess: float = 0.0
+    undetermined: tuple[int, ...] = ()
 
     @property
     def balanced(self) -> bool:

@@ -95,6 +95,11 @@ def certificates_dataset(states: Sequence[State], dimension: str = "state") -> x
             values = [getattr(state.certificate, name) for state in states]
             numbers = [NOT_DETERMINED if value is None else value for value in values]
             found[f"certificate_{name}"] = described(f"certificate_{name}", numbers, along=dimension)
+    if any(state.certificate.undetermined for state in states):
+        mask = np.zeros((len(states), len(states[0].position)), np.int8)
+        for row, state in zip(mask, states, strict=True):
+            row[list(state.certificate.undetermined)] = 1
+        found["undetermined"] = described("undetermined", mask, along=dimension)
     return xr.Dataset(found)
 
 
@@ -373,7 +378,8 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         numbers = {name: value.item() for name, value in stored_values(one, "certificate_", CERTIFICATE).items()}
         if numbers["negative_modes"] == NOT_DETERMINED:
             numbers["negative_modes"] = None
-        certificate = Certificate(**numbers)
+        free = np.flatnonzero(one["undetermined"].values).tolist() if "undetermined" in one else []
+        certificate = Certificate(**numbers, undetermined=tuple(free))
 
     def contacts(prefix: str) -> Contacts:
         found = stored_values(one, f"{prefix}_", (*CONTACT, *ROLLING))

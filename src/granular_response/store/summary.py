@@ -14,11 +14,12 @@ from rich.console import OverflowMethod, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from ..observe.broke_in import broke_in
 from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from . import files as store
 from .checked import result_of
-from .result import events_from, stored_values
+from .result import events_from, state_from, stored_values
 from .variables import EVENT_KINDS, NOT_DETERMINED
 
 #: Attributes that a summary shows elsewhere or not at all.
@@ -75,6 +76,9 @@ def _result(result: xr.Dataset) -> Iterator[tuple[str, RenderableType]]:
     if "event_state" in result:
         yield from _events(result)
     yield "certificate", _by_factor(result, _certificate(result))
+    states = [state_from(result, k) for k in range(result.sizes["state"])]
+    if text := broke_in(states, result["loaded_disk"].values):
+        yield "the load broke in", _text(text)
     if "distance_from_given" in result:
         yield "distance of disks from where they were given", _by_factor(result, _from_given(result))
     if "reaction" in result:
@@ -112,6 +116,8 @@ def _certificate(result: xr.Dataset) -> Iterator[tuple[str, list[str]]]:
             if key == "negative_modes":
                 values = ["not determined" if value == str(NOT_DETERMINED) else value for value in values]
             yield _CERTIFICATE.get(key, key.replace("_", " ")), values
+    if "undetermined" in result:
+        yield "disks not determined", [f"{number}" for number in result["undetermined"].values.sum(axis=1)]
     if "reached_stopped_rattlers" in result:
         stopped = result["reached_stopped_rattlers"].values
         yield "rattlers stopped by hand", ["0" if number == NOT_DETERMINED else f"{number:g}" for number in stopped]

@@ -17,10 +17,10 @@ Examples
 True
 """
 
-from .brackets import Bracket, EventNotBracketed
+from .brackets import Bracket, EventNotBracketed, First
 from .measures import Measures, first_opening, happenings, reaches_floor, two_peaks
 from .path import Happening, LoadPath, by_motion, lost
 from .search import bisect_event, first_change, linear_end
 
-__all__ = ["Bracket", "EventNotBracketed", "Happening", "LoadPath", "Measures", "bisect_event", "by_motion"]
+__all__ = ["Bracket", "EventNotBracketed", "First", "Happening", "LoadPath", "Measures", "bisect_event", "by_motion"]
 __all__ += ["first_change", "first_opening", "happenings", "linear_end", "lost", "reaches_floor", "two_peaks"]

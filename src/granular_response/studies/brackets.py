@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..errors import GranularError
+
+#: Part of a value by which the two ends of an answer may differ and are said as one number, of four digits.
+SAME = 1e-3
 
 
 class EventNotBracketed(GranularError, ValueError):
@@ -40,3 +45,33 @@ class Bracket:
     def ends(self) -> tuple[float, float]:
         """Both of them."""
         return self.low, self.high
+
+
+class First(NamedTuple):
+    """Between which two values something happens first: after ``low``, and not after ``high``.
+
+    ``low`` is 0 where it has happened at the first value already, ``high`` nan where it has not up to the last one.
+    ``str`` says it in words.
+
+    Examples
+    --------
+    >>> str(gr.studies.First(20.19, 20.2)), str(gr.studies.First(30.0, float("nan")))
+    ('from 20.2', 'not up to 30')
+    """
+
+    low: float
+    high: float
+
+    @property
+    def happened(self) -> bool:
+        """Whether it happens at all."""
+        return not math.isnan(self.high)
+
+    def __str__(self) -> str:
+        if not self.happened:
+            return "not known" if math.isnan(self.low) else f"not up to {self.low:.4g}"
+        if self.low == 0.0:
+            return f"at {self.high:.4g} or below"
+        if self.high - self.low > SAME * self.high:
+            return f"between {self.low:.4g} and {self.high:.4g}"
+        return f"from {self.high:.4g}"

@@ -19,6 +19,7 @@ from ..solvers.problem import Problem
 from ..solvers.solution import Solution, loaded_states
 from ..state import OPEN, STICKING, Event, State
 from ..sweeps.rest import rest_state
+from .brackets import First
 from .search import bisect_event, first_change
 
 #: What a path leaves of the force of an event, as a part of it.
@@ -148,7 +149,7 @@ class LoadPath:
         *,
         tolerance: float | None = None,
         beside: float = 0.0,
-    ) -> tuple[float, float]:
+    ) -> First:
         """Between which forces something happens first: after the one and not after the other.
 
         ``forces`` are neighbours on the path. The first of them at which it has happened is narrowed
@@ -156,7 +157,8 @@ class LoadPath:
         force), or to an absolute ``tolerance``. Events are looked at exactly, or so far ``beside`` on both sides, where
         contacts have their status before and after.
 
-        The former is 0 if it has happened at the first force already, the latter nan if not up to the last one.
+        ``low`` is 0 if it has happened at the first force already, ``high`` nan if not up to the last one; ``print`` of
+        both says so in words.
 
         Examples
         --------
@@ -166,15 +168,15 @@ class LoadPath:
         >>> low < high < 4.0
         True
         """
-        low, high = first_change(forces, map(happening.happened, self.through(forces)))
-        if not np.isfinite(high):
-            return low, high
+        low, high = found = first_change(forces, map(happening.happened, self.through(forces)))
+        if not found.happened:
+            return found
         passed = self.known[high].reached.events
         if happening.of_contacts:
             at = self._change(self.known.get(low, self.rest), passed, happening)
             if at is not None:
                 within = max(EXACT * at, self.known[high].reached.events_within or 0.0)
-                return max(at - within, low), min(at * (1.0 + EXACT), high)
+                return First(max(at - within, low), min(at * (1.0 + EXACT), high))
         ends = _knots(low, high, passed, beside or width * high, beside)
         while len(ends) > 2:
             middle = 1 if happening.in_turn else len(ends) // 2
@@ -184,15 +186,14 @@ class LoadPath:
         if gone := lost([self.known[high]]):  # and no equilibrium from there on
             before = gone[0].load_factor - (beside or narrow)
             if before <= low or not happening.happened(self.at(before)):
-                return max(before, low), high
+                return First(max(before, low), high)
             high = before
             narrow = width * high if tolerance is None else tolerance
         if high - low > narrow:
-            found = bisect_event(
+            low, high = bisect_event(
                 lambda force: happening.happened(self.at(force)), low, high, narrow, at_low=False, at_high=True
-            )
-            low, high = found.ends
-        return low, high
+            ).ends
+        return First(low, high)
 
     def _change(self, state: State, passed: Iterable[Event], happening: Happening) -> float | None:
         """The force of the event by which the contacts of ``state`` come to what has happened; None if by no event."""

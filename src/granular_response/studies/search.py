@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ..observe.positive import check_positive
 from ..state import FloatArray
-from .brackets import Bracket, EventNotBracketed
+from .brackets import Bracket, EventNotBracketed, First
 
 
 def bisect_event(
@@ -62,7 +62,7 @@ def unchanged(at_both: bool, low: float, high: float) -> str:
     return f"the predicate is {at_both} at both {low} and {high}; no event between them is known"
 
 
-def first_change(values: Sequence[float] | FloatArray, happened: Iterable[bool]) -> tuple[float, float]:
+def first_change(values: Sequence[float] | FloatArray, happened: Iterable[bool]) -> First:
     """The last of ``values`` before the first True of ``happened`` and its own.
 
     The former is 0 where it has happened at the first value already, the latter nan where it has not up to the last.
@@ -70,15 +70,15 @@ def first_change(values: Sequence[float] | FloatArray, happened: Iterable[bool])
     Examples
     --------
     >>> gr.studies.first_change([1.0, 2.0, 4.0], [False, False, True])
-    (2.0, 4.0)
+    First(low=2.0, high=4.0)
     """
     k = next((k for k, yes in enumerate(happened) if yes), None)
     if k is None:
-        return float(values[-1]), np.nan
-    return float(values[k - 1]) if k else 0.0, float(values[k])
+        return First(float(values[-1]), np.nan)
+    return First(float(values[k - 1]) if k else 0.0, float(values[k]))
 
 
-def linear_end(force: ArrayLike, response: ArrayLike, tolerance: float) -> tuple[float, float]:
+def linear_end(force: ArrayLike, response: ArrayLike, tolerance: float) -> First:
     """Forces (k,) between which ``response`` (k,) is first off its first value by more than ``tolerance`` of it.
 
     The latter is nan if it never is. Responses may be nan from some force on; both are nan if all of them are.
@@ -86,10 +86,10 @@ def linear_end(force: ArrayLike, response: ArrayLike, tolerance: float) -> tuple
     Examples
     --------
     >>> gr.studies.linear_end([1.0, 2.0, 4.0], [0.1, 0.1, 0.12], 0.01)
-    (2.0, 4.0)
+    First(low=2.0, high=4.0)
     """
     force, response = np.asarray(force, float), np.asarray(response, float)
     known = np.isfinite(response)
     if not known.any():
-        return np.nan, np.nan
+        return First(np.nan, np.nan)
     return first_change(force[known], np.abs(response[known] / response[0] - 1.0) > tolerance)

@@ -144,24 +144,26 @@ def followed(leg: Leg, point: Point, together: Together | None, watched: bool = 
 def step(leg: Leg, point: Point, stuck: bool) -> Point:
     """The next point: where a contact changes, the target, or beyond an equilibrium that is lost.
 
-    ``stuck`` : whether contacts have changed again and again at one load.
+    ``stuck`` : whether contacts have changed again and again at one load. Where an equilibrium is lost at the target
+    itself the point is kept: it is the last of its branch, and the next leg goes on from there.
     """
     rates = None if stuck else point.rate_problem.solve(point.trial, point.due)
     if rates is None:
-        return relisted(leg, beyond(leg, point, "no statuses of the contacts go on"))
+        return leg.ended(point) or relisted(leg, beyond(leg, point, "no statuses of the contacts go on"))
     leg.record.events += events.changes(point, rates.sense)
+    leg.free = leg.free or rates.free
     negative, before = rates.factor.negative_pivots, point.negative
     # one real eigenvalue is negative, or real ones have passed zero; where contacts slide these may not go along
     if negative % 2 or negative not in (0, before):
         near = point.unstable if negative == before else None
         direction, unstable = diverges(point, point.trial, rates.sense, near)
         if direction is not None:
-            return by_motion(leg, point, "bifurcation", "unstable", direction)
+            return leg.ended(point) or by_motion(leg, point, "bifurcation", "unstable", direction)
         point = replace(point, unstable=unstable)
     found = landed(leg, point, rates)
     if found is None:
         point = replace(point, velocity=rates.velocity, negative=negative)
-        return relisted(leg, beyond(leg, point, "no equilibrium with these statuses"))
+        return leg.ended(point) or relisted(leg, beyond(leg, point, "no equilibrium with these statuses"))
     leg.record.work.increments += 1
     if abs(found.factor - point.factor) * leg.unit > point.rate_problem.force:
         leg.gone_on()

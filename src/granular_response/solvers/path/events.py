@@ -42,6 +42,11 @@ def lost(kind: str, factor: float, until: float, position: FloatArray, moved: Fl
     return Event(factor, kind, i, x=float(x), z=float(z), until=until, displacement=float(far[i]), reason=reason)
 
 
+def side(moved: FloatArray) -> str:
+    """To which side displacements (n, 2) lead, taken together: right or left."""
+    return "right" if float(moved[:, 0].sum()) >= 0.0 else "left"
+
+
 def _kinds(before: int, after: int, *, rolls: bool) -> tuple[str, ...]:
     """What a contact does between two signed statuses; if these are of its rolling, beside what it does anyway."""
     if rolls and OPEN in (before, after):

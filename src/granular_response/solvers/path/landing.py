@@ -12,6 +12,7 @@ from ...linalg.updated import Updated
 from ...state import FloatArray
 from ..equilibrium import OPTIONS as NEWTON
 from ..equilibrium import attainable, external_force
+from ..free import least, solved_by, suspicious
 from ..rates import Changes, Rates, changed
 from ..system import Trial
 from .points import Leg, Point, largest
@@ -144,6 +145,8 @@ def smooth(
         along = abs(factor - point.factor)
         trial = system.trial(known, q, fixed=rates.sense, velocity=rates.velocity, length=along)
         force = trial.contact_force + external_force(leg.problem, factor)
+        if leg.free:
+            force = leg.resisted(system, by, force)
         size = largest(force)
         left, rate = (0.0, 0.0) if event is None else until(trial, *event, velocity)
         if not np.isfinite(size):
@@ -166,6 +169,10 @@ def smooth(
         step = system.deinterleave(by.solve(system.interleave(force)))
         step[rates.idle] = 0.0  # it would be the rounding of a torque over next to no stiffness
         longest = largest(step[: 2 * leg.problem.n])
+        if leg.free or suspicious(system, longest, size):
+            step = least(system, solved_by(system, by), step)
+            step[rates.idle] = 0.0
+            longest = largest(step[: 2 * leg.problem.n])
         if longest > NEWTON.longest_step:  # a contact of the 3/2 law that has just closed has no stiffness yet
             step *= NEWTON.longest_step / longest
         if event is not None and rate <= 0.0:  # it does not come nearer: on with new rates from here

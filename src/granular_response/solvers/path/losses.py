@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...linalg.lowest import Eigenpair
 from ...state import OPEN, FloatArray, State
-from ..dynamics import Stop
+from ..dynamics import DynamicsError, Stop
 from ..settle import CROSSING, CROSSING_STOP, NotSettled, nudged, settle
 from ..stability import Clustered, Spectrum, divergence, diverging
 from ..system import Trial
@@ -110,12 +110,14 @@ def beyond(leg: Leg, point: Point, reason: str) -> Point:
 def by_motion(leg: Leg, point: Point, kind: str, reason: str, direction: FloatArray | None) -> Point:
     """The equilibrium that the disks move to from a lost one, displaced a little along ``direction``.
 
-    The load goes on growing as fast as the protocol says.
+    The load goes on growing as fast as the protocol says. Where the target is so near that next to nothing drives the
+    motion, and it does not settle, it goes on beyond the target, as it does where that is far, and the return map leads
+    back.
     """
     leg.count(point.system)
     problem, (_, here) = leg.problem, point.at_rest()
     start = here if direction is None else nudged(problem, here, direction)
-    new = leg.towards(point.factor, leg.jump)
+    new, far = leg.towards(point.factor, leg.jump), point.factor + leg.direction * leg.jump
 
     def accept(state: State) -> bool:
         if state.certificate.stable is True:
@@ -124,16 +126,36 @@ def by_motion(leg: Leg, point: Point, kind: str, reason: str, direction: FloatAr
         return not diverging(Spectrum(there.system, there.trial))
 
     protocol = problem.scene.protocol
-    try:
-        settled = settle(
+
+    def settled(factor: float) -> State:
+        return settle(
             problem, start, CROSSING, Stop(CROSSING_STOP, maximum_steps=protocol.maximum_steps),
-            what=f"load factor {new:g}", accept=accept,
-            load=(point.factor, new, protocol.ramp_time * abs(new - point.factor)),
-            progress=lambda dynamics, _: leg.look_down(new, dynamics),
+            what=f"load factor {factor:g}", accept=accept,
+            load=(point.factor, factor, protocol.ramp_time * abs(factor - point.factor)),
+            progress=lambda dynamics, _: leg.look_down(factor, dynamics),
         )  # fmt: skip
+
+    try:
+        after = replace(leg.at(settled(new)), factor=new)
     except NotSettled as error:
-        raise PathError(f"no equilibrium beyond load factor {point.factor:g}: {error}") from error
-    moved = settled.position - here.position
+        back = None
+        if leg.direction * (far - new) > 0.0:
+            with suppress(NotSettled, DynamicsError):
+                back = _back(leg, replace(leg.at(settled(far)), factor=far), new)
+        if back is None:
+            raise PathError(f"no equilibrium beyond load factor {point.factor:g}: {error}") from error
+        after, reason = back, f"{reason}; reached from load factor {far:.9g}"
+    moved = after.position - here.position
     leg.record.events.append(events.lost(kind, point.factor, new, here.position, moved, reason))
     leg.jump *= 2.0
-    return replace(leg.at(settled), factor=new)
+    return after
+
+
+def _back(leg: Leg, point: Point, factor: float) -> Point | None:
+    """The equilibrium at a load ``factor`` that was passed, by the return map; None where that is not near."""
+    found = leg.increased(replace(point, velocity=None), factor)
+    if found is None:
+        return None
+    after = point.on(factor, found)
+    near = np.abs(after.moved).max(initial=0.0) <= leg.options.nearby
+    return after if near and not diverging(Spectrum(after.system, after.trial)) else None

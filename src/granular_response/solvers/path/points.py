@@ -8,14 +8,17 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...errors import SolveError
+from ...linalg import Factor
 from ...linalg.lowest import Eigenpair
 from ...state import OPEN, STICKING, Event, FloatArray, Reached, State
 from ..dynamics import Dynamics
 from ..equilibrium import attainable, certify, external_force
+from ..free import least, solved_by
 from ..increment import Work, solve_increment
 from ..problem import Problem
+from ..rates import OPTIONS as RATES
 from ..rates import RateProblem
-from ..stability import Spectrum, diverging
+from ..stability import judged
 from ..system import Configuration, StaticSystem, Trial
 
 
@@ -166,6 +169,10 @@ class Leg:
         self.stiffest = max(law.tangential_stiffness for law in laws)
         #: whether the stiffness of contacts varies with their overlap
         self.varying = any(law.stiffest(2.0) != law.stiffest(1.0) for law in laws)
+        #: Whether a disk whose height a load holds has been let go: residuals over rounding are no displacements then.
+        #: Rattlers that gravity holds do not need it.
+        known, held = self.start.reached.certificate, (self.problem.held.axis == 1).any()
+        self.free = bool(held and known and known.undetermined)
         self.gone_on()
 
     def gone_on(self) -> None:
@@ -189,6 +196,17 @@ class Leg:
     def towards(self, factor: float, step: float) -> float:
         """A load factor one ``step`` on, or the target where that is no more than a tenth of a step away."""
         return factor + self.direction * step if abs(self.target - factor) > 1.1 * step else self.target
+
+    def resisted(self, system: StaticSystem, by: Factor, force: FloatArray) -> FloatArray:
+        """Forces out of balance (dof,) without what events have left of them along motions that nothing resists."""
+        held = least(system, solved_by(system, by), force)
+        return held if largest(force - held) <= RATES.bare else force
+
+    def ended(self, point: Point) -> Point | None:
+        """The point at the target, if its load is that of the target to within the force of an event; else None."""
+        if abs(self.target - point.factor) * self.unit > point.rate_problem.force:
+            return None
+        return replace(point, factor=self.target)
 
     def increased(self, point: Point, new: float) -> Trial | None:
         """Equilibrium with the return map, one increment on, whatever changes within it."""
@@ -227,9 +245,10 @@ class Leg:
     def kept(self, point: Point) -> State:
         """The certified state of a point."""
         trial, state = point.at_rest()
-        modes = diverging(Spectrum(point.system, trial))
+        modes, undetermined = judged(point.system, trial)
         self.count(point.system)
-        work, certificate = self.record.work, certify(self.problem, state, modes=modes)
+        work = self.record.work
+        certificate = certify(self.problem, state, modes=modes, undetermined=undetermined)
         reached = Reached("path", certificate, increments=work.increments, factorisations=work.factorisations)
         return replace(state, reached=reached)
 

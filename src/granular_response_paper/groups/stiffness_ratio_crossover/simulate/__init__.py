@@ -83,7 +83,9 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     ended, central = ([happened(one) for one in measured] for _, happened in EVENTS.values())
     # the last stretch of ratios with the maximum at the centre; there may be others below it
     begun = [all(central[k:]) for k in range(len(central))]
-    brackets = {name: studies.first_change(ratios, has) for name, has in zip(EVENTS, (ended, begun), strict=True)}
+    brackets: dict[str, tuple[float, float]] = {
+        name: studies.first_change(ratios, has) for name, has in zip(EVENTS, (ended, begun), strict=True)
+    }
     searches = {
         name: partial(narrow, name, base, force, low, high, tolerance)
         for name, (low, high) in brackets.items()

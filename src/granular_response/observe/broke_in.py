@@ -1,0 +1,53 @@
+"""Whether a load broke in: equilibria that were lost on its way, and how far disks have moved.
+
+A state may be stable after its load has pushed the loaded disk down by rows. One line says so, the same on the terminal
+and in ``print(result)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..state import State
+
+#: Displacement (mean radii) from which on a disk has left its place: the elastic displacements of the paper's loads are
+#: below a hundredth, and disks of a lattice exchange neighbours from some tenths on.
+REMARKABLE = 0.1
+
+
+def broke_in(states: Sequence[State], loaded_disks: NDArray[np.integer]) -> str:
+    """In one line what the loads of ``states`` did that no elastic response does; empty where they did nothing of it.
+
+    Dynamic jumps (equilibria from which motion led to the next), equilibria that were lost with the next one nearby,
+    and the largest displacements from the first state, of a loaded disk and of any. ``loaded_disks`` (l,) : disks with
+    loads.
+    """
+    events = [(state, event) for state in states for event in state.reached.events if event.lost]
+    jumps = [event for _, event in events if event.kind != "stepped over"]
+    far = [np.hypot(*(state.position - states[0].position).T) for state in states]
+    farthest = max(range(len(far)), key=lambda k: float(far[k].max()))
+    if not jumps and not far[farthest].max() > REMARKABLE:
+        return ""
+    said = []
+    if jumps:
+        said.append(f"{_count(len(jumps), 'dynamic jump')}, the first at load factor {jumps[0].load_factor:.4g}")
+        if near := len(events) - len(jumps):
+            said.append(f"{_count(near, 'lost equilibrium', 'lost equilibria')} with the next one nearby")
+    where = [(_displacement(far, disk), int(disk)) for disk in np.unique(loaded_disks)]
+    if where:
+        how_far, disk = max(where)
+        said.append(f"loaded disk {disk} moved by {how_far:.2g}")
+    disk = int(far[farthest].argmax())
+    said.append(f"disk {disk} farthest, by {far[farthest][disk]:.2g} mean radii")
+    return ", ".join(said)
+
+
+def _displacement(far: Sequence[np.ndarray], disk: int) -> float:
+    return max(float(one[disk]) for one in far)
+
+
+def _count(number: int, one: str, many: str = "") -> str:
+    return f"{number} {one if number == 1 else many or one + 's'}"

@@ -1,0 +1,98 @@
+"""Motions that nothing resists: which disks they move.
+
+Along a null direction of the tangent K no force changes, so that equilibrium does not say how far a packing has gone
+along it: a disk without contacts, one that rolls on the floor, disks that roll on each other like gears. The solutions
+of Newton's method are held along such directions by a tiny stiffness alone, and a residual over that is a displacement
+that means nothing: :func:`least` takes it out of a step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..linalg import Factor
+from ..state import OPEN, FloatArray
+from .system import OPTIONS as SYSTEM
+from .system import StaticSystem, Trial
+
+
+@dataclass(frozen=True)
+class FreeOptions:
+    """Numbers by which motions without resistance are told from soft ones."""
+
+    #: Displacement per force, in units of the inverse normal stiffness, from which on a step may go along a null
+    #: direction: the softest directions of packings have up to 1e5, a null direction 1e10.
+    soft: float = 1e7
+    #: Normal force (mean weights) up to which a contact bears nothing, as of ``PathOptions.passing``: it is no tie, as it
+    #: may open.
+    bare: float = 1e-8
+    #: Random vectors, and times that the tangent's inverse takes from them what some stiffness resists: a direction of
+    #: 1e-4 mean weights per mean radius keeps 3e-8 of itself, a null direction all.
+    vectors: int = 3
+    times: int = 3
+    #: Part of itself that a vector keeps from which on a disk moves freely.
+    part: float = 1e-6
+
+
+OPTIONS = FreeOptions()
+
+
+def suspicious(system: StaticSystem, step: float, force: float) -> bool:
+    """Whether a ``step`` is so large for its ``force`` that it may go along a direction that nothing resists."""
+    return step * system.problem.stiffness > OPTIONS.soft * force
+
+
+def least(system: StaticSystem, solve: Callable[[FloatArray], FloatArray], step: FloatArray) -> FloatArray:
+    """``step`` (dof,) without its part along null directions, by what solves with the regularised tangent.
+
+    That multiplies what lies along one by the inverse of the regularisation, anything else by next to nothing of it.
+    """
+    return step - SYSTEM.regularisation * system.problem.stiffness * solve(step)
+
+
+def without_bare(system: StaticSystem, trial: Trial) -> Trial | None:
+    """The trial with its contacts open that bear nothing; None where there are none."""
+    bare = (trial.status != OPEN) & (trial.normal <= OPTIONS.bare)
+    if not bare.any():
+        return None
+    sense = trial.sense.copy()
+    sense[: len(bare)][bare] = OPEN
+    return system.trial(trial.configuration, trial.configuration.q, fixed=system.coupled(sense))
+
+
+def touched(system: StaticSystem, trial: Trial) -> bool:
+    """Whether each disk has a closed contact."""
+    closed, at_wall = system.split(trial.status != OPEN)
+    ties = np.concatenate([system.first[closed], system.second[closed], system.wall_disk[at_wall]])
+    return bool(np.bincount(ties, minlength=system.problem.n).all())
+
+
+def solved_by(system: StaticSystem, factor: Factor) -> Callable[[FloatArray], FloatArray]:
+    """What solves for displacements (dof,) by a factorisation."""
+    return lambda force: system.deinterleave(factor.solve(system.interleave(force)))
+
+
+def free_disks(system: StaticSystem, trial: Trial) -> tuple[int, ...]:
+    """Disks that a motion moves which changes no force, with the statuses of a trial.
+
+    Turns of disks whose contacts all slide, and the packing as a whole where nothing holds it along x, do not count.
+    """
+    problem, places = system.problem, system.pattern
+    regularised = SYSTEM.regularisation * problem.stiffness
+    matrix = system.tangent(trial)
+    idle = places.without_effect(matrix).reshape(problem.n, problem.freedoms)
+    idle[:, :2] = False
+    matrix.data[places.diagonal] += np.where(idle.ravel(), problem.stiffness, 0.0)
+    factor = system.storage.factor(places.with_shift(matrix, regularised))
+    # what is left of random vectors along null directions
+    left = np.random.default_rng(0).standard_normal((OPTIONS.vectors, system.dof))
+    for _ in range(OPTIONS.times):
+        left = regularised * factor.solve(left)
+        if float(np.abs(left).max()) < OPTIONS.part:
+            return ()
+    moved = np.stack([system.deinterleave(one) for one in left])
+    size = np.abs(moved).reshape(-1, problem.n).max(axis=0)
+    return tuple(np.flatnonzero(size > OPTIONS.part).tolist())
