@@ -16,7 +16,7 @@ def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration:
     ``duration`` in sqrt(R/g) that is rounded to four times whole steps. Raises what :func:`.settle.settle` raises.
     """
     protocol = problem.scene.protocol
-    stop = Stop(problem.plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
+    stop = Stop.of(problem)
     most, least = 1.0 + amplitude, 1.0 - amplitude
     for _ in range(taps):
         dynamics = Dynamics(problem, rest, protocol.integrator, resolve_time_step(problem))
