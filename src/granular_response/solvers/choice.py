@@ -125,6 +125,19 @@ def idle_settings(scene: Scene, decided: Plan, *, rotations: bool) -> list[str]:
         if hand_over == protocol.stop_kinetic_energy
         else f"statics takes over at {hand_over:g} already",
     }
+    return _idle(scene, reasons)
+
+
+def idle_in_motion(scene: Scene) -> list[str]:
+    """The same settings of a scene whose motion is followed."""
+    begins = "a motion begins where the disks are"
+    ends = "a motion ends at the last time"
+    reasons = {f"preparation.{key}": begins for key in ("gravity", "ramp_time", "taps")}
+    reasons |= {f"protocol.{key}": ends for key in ("stop_kinetic_energy", "stop_rule", "static_finish")}
+    return _idle(scene, reasons)
+
+
+def _idle(scene: Scene, reasons: dict[str, str]) -> list[str]:
     idle = []
     for key, reason in reasons.items():
         part, name = key.split(".")

@@ -109,13 +109,17 @@ class Dynamics:
     state : where to start: positions, angles, velocities and springs are taken over.
     integrator : a name in ``kernels.integrators.INTEGRATORS``.
     time_step : in units of sqrt(R/g).
+    uncut : whether the motion has the same bits wherever :meth:`advance` cuts it; candidates are listed elsewhere then.
     """
 
-    def __init__(self, problem: Problem, state: State, integrator: str = "beeman", time_step: float = 5e-4):
+    def __init__(
+        self, problem: Problem, state: State, integrator: str = "beeman", time_step: float = 5e-4, *, uncut=False
+    ) -> None:
         self.problem = problem
         self.integrator = INTEGRATORS[integrator]
         self.time_step = float(time_step)
-        self.steps = 0
+        self.uncut = uncut
+        self.steps = self.began = 0
         self.time = 0.0
         self.rebuilds = 0
         self.gravity: Ramp = (1.0, 1.0, 0.0)
@@ -178,7 +182,7 @@ class Dynamics:
 
     def set_ramps(self, gravity: Ramp = (1.0, 1.0, 0.0), load: Ramp = (0.0, 0.0, 0.0)) -> None:
         """Start new linear ramps ``(from, to, duration)`` now; the clock restarts at zero."""
-        self.gravity, self.load, self.time = gravity, load, 0.0
+        self.gravity, self.load, self.time, self.began = gravity, load, 0.0, self.steps
         start, end, duration = load
         self._move_held((end - start) / duration if duration > 0.0 else 0.0)
         self._fill_history()
@@ -206,13 +210,14 @@ class Dynamics:
         left = steps
         listed = False
         while left:
-            schedule = Schedule(self.time, *map(float, self.gravity), *map(float, self.load))
+            start, taken = (0.0, self.steps - self.began) if self.uncut else (self.time, 0)
+            schedule = Schedule(start, *map(float, self.gravity), *map(float, self.load))
             done = advance(
                 self.integrator.scheme, left, self.time_step, schedule, self.candidates.limit,
-                self.q, self.v, self.rows, self.model,
+                self.q, self.v, self.rows, self.model, taken,
             )  # fmt: skip
             self.steps += done
-            self.time += done * self.time_step
+            self.time = start + (taken + done) * self.time_step
             left -= done
             if left:
                 self._relist(self._stride() if done == 0 and listed else 0.0)

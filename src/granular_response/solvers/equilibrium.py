@@ -214,14 +214,8 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
     )
 
 
-def check_overlaps(problem: Problem, state: State) -> None:
-    """Refuse a state whose contacts mean nothing any more.
-
-    Raises
-    ------
-    EquilibriumError
-        When two disks overlap by the smaller radius or more, or a disk and a wall by the radius.
-    """
+def too_deep(problem: Problem, state: State) -> str:
+    """Which two bodies overlap most, where disks overlap by the smaller radius or more, or a disk and a wall by it."""
     radius = problem.packing.radius
     for contacts, size, at_wall in (
         (state.pairs, np.minimum(radius[state.pairs.first], radius[state.pairs.second]), False),
@@ -230,14 +224,18 @@ def check_overlaps(problem: Problem, state: State) -> None:
         beyond = np.flatnonzero(contacts.overlap >= size)
         if len(beyond):
             k = beyond[np.argmax((contacts.overlap / size)[beyond])]
-            cure = "a smaller load or a larger contact.normal_stiffness"
-            if state.load_factor == 0.0:  # no load does this, whatever the scene has
-                cure = "a larger contact.normal_stiffness"
-            raise EquilibriumError(
-                f"{bodies(contacts.first[k], contacts.second[k], at_wall)} overlap by "
-                f"{contacts.overlap[k]:.3g} mean radii at load factor {state.load_factor:g}, as much as a radius: "
-                f"take {cure}"
-            )
+            two = bodies(contacts.first[k], contacts.second[k], at_wall)
+            return f"{two} overlap by {contacts.overlap[k]:.3g} mean radii"
+    return ""
+
+
+def check_overlaps(problem: Problem, state: State) -> None:
+    """Refuse a state whose contacts mean nothing any more: raises EquilibriumError where some are :func:`too_deep`."""
+    if deep := too_deep(problem, state):
+        cure = "a smaller load or a larger contact.normal_stiffness"
+        if state.load_factor == 0.0:  # no load does this, whatever the scene has
+            cure = "a larger contact.normal_stiffness"
+        raise EquilibriumError(f"{deep} at load factor {state.load_factor:g}, as much as a radius: take {cure}")
 
 
 def _cure(problem: Problem) -> str:
