@@ -15,9 +15,11 @@ import numpy as np
 from ..contact import CUT
 from ..kernels import statics
 from ..state import Contacts, FloatArray, State, wall_normals
-from ..state.state import AT_LIMIT
 from .equilibrium import reaction
 from .problem import Problem
+
+#: Part of its limit by which a force may be below it and count as cut: a shorter last step leaves it up to 1 % below.
+CUT_LATELY = 0.05
 
 
 def stored(problem: Problem, state: State, seen: FloatArray | None = None) -> float:
@@ -48,7 +50,7 @@ def stored(problem: Problem, state: State, seen: FloatArray | None = None) -> fl
 def _within(spring, slip, limit, stiffness: float, damping: float) -> FloatArray:
     """(m,) springs, without those of contacts cut to their ``limit`` that only make up for what their dashpot pulls."""
     pull = stiffness * spring + damping * slip
-    return np.where((np.abs(pull) >= (1.0 - AT_LIMIT) * limit) & (spring * pull < 0.0), 0.0, spring)
+    return np.where((np.abs(pull) >= (1.0 - CUT_LATELY) * limit) & (spring * pull < 0.0), 0.0, spring)
 
 
 def _rates(problem: Problem, state: State, v: FloatArray) -> tuple[tuple[FloatArray, FloatArray, FloatArray], ...]:
