@@ -13,7 +13,7 @@ import xarray as xr
 from ..scene import Scene, SceneError
 from ..scene.errors import show
 from ..scene.laboratory import FORCE, LENGTH, MASS, TIME
-from ..solvers.choice import idle_in_motion
+from ..solvers.idle import idle_in_motion
 from ..solvers.motion import trajectory
 from ..solvers.solution import Progress
 from ..state import State

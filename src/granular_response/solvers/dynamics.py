@@ -58,6 +58,8 @@ class RelaxationOptions:
     envelope_time: float = 20.0
     #: Kinetic energy per disk that is rounding: what is left of it need not fall any more.
     motionless: float = 1e-24
+    #: Kinetic energy of a disk that still rolls, over the mean of those that bear others, where accelerations decide.
+    rolls: float = 10.0
     #: Least number of readings of the acceleration, over half a swing: in a small packing that is too short for more.
     readings: int = 10
     #: Acceleration of a disk with fewer than two contacts from which on it falls, or rolls down another one (g).
@@ -477,7 +479,8 @@ class Relaxation:
         loose, problem = dynamics.contact_count() < 2, dynamics.problem
         # what rolls on the floor alone never stops by itself: its energy is left out of the criterion of rest
         energy = problem.weight * (state.velocity**2).sum(axis=1) + problem.packing.inertia * state.angular_velocity**2
-        rolling = int((loose & (0.5 * energy > self.stop.kinetic_energy)).sum()) if self.settled else 0
+        still = OPTIONS.rolls * dynamics.kinetic_energy(bearing_only=True) if self.stop.acceleration else 0.0
+        rolling = int((loose & (0.5 * energy > max(self.stop.kinetic_energy, still))).sum()) if self.settled else 0
         reached = replace(
             state.reached,
             kinetic_energy=dynamics.kinetic_energy(),

@@ -15,10 +15,11 @@ from ..scene import Scene, SceneError
 from ..scene.errors import show
 from ..scene.given import finite_numbers
 from ..state import FloatArray, State
-from .choice import Choice, idle_settings
+from .choice import Choice
 from .dynamics import Dynamics, Stop, relax
 from .energy import minimise
 from .equilibrium import certify, check_overlaps, finish, reaction
+from .idle import idle_settings
 from .nested import rest_start
 from .path import follow
 from .path.events import lost

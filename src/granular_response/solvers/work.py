@@ -9,6 +9,7 @@ tangential forces and the part of their slip that their springs have not taken u
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -29,7 +30,7 @@ def stored(problem: Problem, state: State, seen: FloatArray | None = None) -> fl
     there has a spring that makes up for the dashpot; of such a spring the part counts whose force is within the limit.
     """
     total = float(problem.weight @ state.position[:, 1])
-    rates = ((0.0, 0.0, 0.0),) * 2 if seen is None else _rates(problem, state, seen)
+    rates: Any = ((0.0, 0.0, 0.0),) * 2 if seen is None else _rates(problem, state, seen)
     cut = seen is not None and problem.rule == CUT
     for (contacts, law, shape, rolling), (apart, slip, turn) in zip(problem.kinds(state), rates, strict=True):
         total += statics.elastic_energy(contacts.overlap, shape, law)
