@@ -66,7 +66,8 @@ def fallen(described: Scene) -> tuple[State, Problem, float]:
 def measure(words: str) -> dict[str, Any]:
     """The row of one scene."""
     described = Scene().updated({"loads": [], **SCENES[words]})
-    rest_state(Problem.from_scene(described.updated({"packing.layers": 4})))  # compiles
+    for integrator in ("beeman", "leapfrog"):  # compiles
+        rest_state(Problem.from_scene(described.updated({"packing.layers": 4, "protocol.integrator": integrator})))
     found, problem, seconds = fallen(described)
     reached = found.reached
     row = {

@@ -7,6 +7,7 @@ from refusals import refuses
 from small_scenes import free_disks, scene, started
 
 import granular_response as gr
+from granular_response.api import result as results
 from granular_response.errors import EquilibriumError
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.kernels.integrators.stepping import Integrator
@@ -115,7 +116,7 @@ def test_the_protocol_is_taken_at_its_word():
 def test_a_large_packing_goes_on_with_larger_steps(monkeypatch, tmp_path):
     """In fewer steps, to the same network; the result says both steps, and what error they leave."""
     usual = rest_state(rough(10, 21))
-    for module in (choice, timestep, gr.api.result):
+    for module in (choice, timestep, results):
         monkeypatch.setattr(module, "LARGE", 100)
     problem = rough(10, 21)
     assert problem.plan.larger_steps and problem.plan.stop_acceleration == choice.NEARLY_AT_REST

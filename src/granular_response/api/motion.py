@@ -38,7 +38,7 @@ def motion(
     Disks begin where the packing has them, with the velocities and spins of ``scene.motion``, and move under gravity,
     their contacts and the loads, which grow to their values over ``protocol.ramp_time``. ``Scene()`` has a load:
     ``loads=[]`` is a scene without one. The time step is ``protocol.time_step``, without one a 600th of the shortest
-    collision (a 50th without friction and dashpots) or less: restitution is then right to 1e-3 of the speed. Other
+    collision (a 100th without friction and dashpots) or less: restitution is then right to 1e-3 of the speed. Other
     times change no bit of a trajectory. Preparation and ``stop_`` keys have no effect, and a warning says so.
 
     Parameters

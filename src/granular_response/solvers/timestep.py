@@ -59,8 +59,9 @@ SECONDS_A_DISK = 1.5e-8
 #: Expected time of a fall from which on a progress says it (s).
 LONG = 60.0
 #: Time steps in a collision of a motion, for a restitution within 1e-3 of the speed: dashpots and friction begin at the
-#: first step in touch, which is off by up to one. 400 leave 1.3e-3, 800 6e-4; of elastic collisions 25 leave 1.3e-4.
-COLLISION_STEPS, ELASTIC_COLLISION_STEPS = 600, 50
+#: first step in touch, which is off by up to one. 400 leave 1.1e-3, 600 7e-4 (Beeman; leapfrog 1.7e-3 and 1.1e-3). The
+#: force of an elastic contact begins at zero: 50 leave 4e-4, 100 1.2e-4.
+COLLISION_STEPS, ELASTIC_COLLISION_STEPS = 600, 100
 #: Contacts around a disk of a dense packing, on the floor of one, and in its corner.
 NEIGHBOURS, ON_FLOOR, IN_CORNER = 6, 4, 2
 
