@@ -350,8 +350,8 @@ MISTAKES = [
     ("a.csv", "x,z,radius\n1,-1,1\n", "line 2: z = -1.0: must be above the floor 0, which packing.origin says"),
     ("a.csv", f"{ONE}1e300,1,1,1\n", "reach from 0 to 1e+300, packing.origin says where left wall and floor are"),
     ("a.csv", f"{ONE}4,1e300,1,1\n", "z = 1e+300: must be at most 1e+09, 1e9 mean radii"),
-    ("a.csv", f"{ONE}4,1,1,1e-13\n", "line 3: mass = 1e-13: must be at least 1e-12, 1e-12 of the largest"),
-    ("a.csv", f"{ONE}4,1,1e-7,1\n", "line 3: radius = 1e-07: must be at least 1e-06, a millionth of the largest"),
+    ("a.csv", f"{ONE}4,1,1,1e-7\n", "line 3: mass = 1e-07: must be at least 1e-06, a millionth of the largest"),
+    ("a.csv", f"{ONE}4,1,1e-4,1\n", "line 3: radius = 0.0001: must be at least 0.001, a thousandth of the largest"),
 ]  # fmt: skip
 
 

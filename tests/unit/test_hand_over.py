@@ -1,19 +1,24 @@
 """From motion to statics: what is still moving when statics takes over leaves nothing behind in the equilibrium."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from small_scenes import free_disks, scene
+from printed import shown
+from refusals import refuses
+from small_scenes import free_disks, scene, started
 
+import granular_response as gr
+from granular_response.api import result as results
+from granular_response.errors import EquilibriumError
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.kernels.integrators.stepping import Integrator
-from granular_response.solvers import choice
-from granular_response.solvers.dynamics import Dynamics, Relaxation, Stop, relax
+from granular_response.solvers import choice, timestep
+from granular_response.solvers.dynamics import OPTIONS, Dynamics, Relaxation, Stop, relax
+from granular_response.solvers.equilibrium import OPTIONS as STATICS
+from granular_response.solvers.equilibrium import external_force, newton
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.settle import _statics
+from granular_response.solvers.settle import _in_step, _statics
 from granular_response.solvers.solution import rest_state
-from granular_response.solvers.timestep import resolve_time_step
+from granular_response.solvers.timestep import expected_fall, long_fall, resolve_time_step, stability_limit
 from granular_response.state import State
 
 
@@ -34,83 +39,128 @@ def test_statics_finds_the_equilibrium_that_the_motion_ends_in(integrator, monke
     """Springs follow velocities half a step ahead of displacements: left out, that stays in them for ever."""
     problem = rough(protocol__integrator=integrator)
     motion = Dynamics(problem, problem.bare_state(), integrator, resolve_time_step(problem))
-    early, late = relax(motion, Stop(1e-20, quiet_energy=1e-9)), relax(motion, Stop(1e-20))
-    end = _statics(problem, late)
-    error = apart(_statics(problem, early), end)
+    early, late = relax(motion, Stop(1e-20, acceleration=1e-4)), relax(motion, Stop(1e-20))
+    end = _statics(problem, late, integrator)
+    error = apart(_statics(problem, early, integrator), end)
     assert error < 1e-8
     monkeypatch.setattr(Integrator, "lead", 0.0)
-    uncorrected = apart(_statics(problem, early), end)
+    uncorrected = apart(_statics(problem, early, integrator), end)
     assert uncorrected == error if integrator == "leapfrog" else uncorrected > 10.0 * error
 
 
+#: Force (mg) on floor or walls that the end of a fall may be off.
+MOST_LEFT = 1e-5
 ROLLS = {"contact__rolling_friction": 0.1, "contact__rolling_stiffness_ratio": 0.5}
 
 
 @pytest.mark.parametrize(
-    ("friction", "walls", "rolling"),
-    [(0.05, 0.0, {}), (0.5, 0.0, {}), (0.05, 0.2, {}), (0.5, 0.2, {}), (0.5, 0.2, ROLLS)],
-)
-def test_a_vibration_that_changes_no_contact_ends_in_the_same_equilibrium_sooner(friction, walls, rolling):
-    described = {"contact__friction": friction, "wall__friction": walls, **rolling}
+    ("friction", "walls", "more"),
+    [(0.05, 0.0, {}), (0.5, 0.0, {}), (0.05, 0.2, {}), (0.5, 0.2, {}), (0.5, 0.2, ROLLS),
+     (0.2, 0.0, {"packing__polydispersity": 0.05})],
+)  # fmt: skip
+def test_a_fall_ends_where_accelerations_are_small_in_the_equilibrium_of_its_end(friction, walls, more, monkeypatch):
+    """And thirty times earlier it would not."""
+    described = {"contact__friction": friction, "wall__friction": walls, **more}
     quick, paper = rest_state(rough(**described)), rough(**described, protocol__stop_kinetic_energy=1e-21)
-    assert paper.plan.quiet_energy < 1e-16
+    assert paper.plan.stop_acceleration == 0.0
     slow = rest_state(paper)
-    assert quick.reached.steps < 0.7 * slow.reached.steps
-    assert apart(quick, slow) < 1e-8
+    assert quick.reached.steps < 0.8 * slow.reached.steps
+    error = apart(quick, slow)
+    assert error < MOST_LEFT
+    monkeypatch.setattr(choice, "AT_REST", 30.0 * choice.AT_REST)
+    assert apart(rest_state(rough(**described)), slow) > 10.0 * error
 
 
-def test_contacts_are_watched_for_a_whole_period_of_the_slowest_motion():
-    """One that opens, closes or slides within it keeps the packing from being handed over."""
-    problem = rough()
+def test_accelerations_are_watched_for_half_a_period_of_the_slowest_motion():
+    problem = rough(12, 25)
     motion = Dynamics(problem, problem.bare_state())
-    run = Relaxation(motion, Stop(1e-30, quiet_energy=1e-9))
-    changed = 0
+    run, small = Relaxation(motion, Stop(1e-30, acceleration=1e-3)), 0
     while not run.ended:
         motion.advance(100)
-        before, touching, slid = run.network, motion.touching(), motion.slides()
         run.look()
-        if before is None or (before != touching).any() or slid:
-            changed = motion.steps
-    assert changed > 0 and motion.kinetic_energy() < 1e-9
-    assert (motion.steps - changed) * motion.time_step >= problem.swing_time
+        small = small + 1 if motion.mean_acceleration() < 1e-3 else 0
+    assert small * 100 * motion.time_step >= 0.5 * problem.swing_time
+    assert small == run.unrest.maxlen > OPTIONS.readings
 
 
-@pytest.mark.parametrize(("friction", "slides"), [(0.01, True), (0.9, False)])
-def test_a_disk_that_slides_is_seen_and_nothing_changes_by_it(friction, slides):
-    """And not one that rolls."""
-    problem, state = free_disks(
-        [[500.0, 1.0 - 1 / 6000]], velocity=[(0.01, 0.0)], contact__friction=0.5, wall__friction=friction
-    )
-    motion = Dynamics(problem, replace(state, angular_velocity=np.array([-0.01 if friction == 0.9 else 0.0])))
-    motion.advance(50)
-    kept = {name: getattr(motion, name).copy() for name in ("q", "v", "history", "spring", "wall_spring")}
-    assert motion.slides() is slides
-    for name, value in kept.items():
-        assert np.array_equal(getattr(motion, name), value), name
+def test_a_packing_is_not_at_rest_while_one_of_its_disks_falls():
+    """One of many changes their mean but little, and while it touches the floor it is not in flight."""
+    stack = [[1.0 + 2.0 * k, 1.0 - 1 / 6000] for k in range(40)]
+    problem, state = free_disks([*stack, [90.0, 1.5]], contact__friction=0.2)
+    motion = Dynamics(problem, state)
+    motion.set_ramps()
+    assert motion.unrest(motion.contact_count()) == np.inf
+    settled = relax(motion, Stop(1e-30, acceleration=1e-3))
+    assert settled.position[-1, 1] == pytest.approx(1.0 - 1 / 6000, abs=1e-6)
 
 
-@pytest.mark.parametrize(("limit", "slides"), [(0.001, True), (0.5, False)])
-def test_a_disk_that_rolls_against_its_limit_is_seen(limit, slides):
-    problem, state = free_disks(
-        [[500.0, 1.0 - 1 / 6000]], velocity=[(0.01, 0.0)], contact__friction=0.5, wall__friction=0.9,
-        wall__rolling_friction=limit, wall__rolling_stiffness_ratio=0.1,
-    )  # fmt: skip
-    motion = Dynamics(problem, replace(state, angular_velocity=np.array([-0.01])))
-    motion.advance(50)
-    spring = motion.wall_rolls.spring.copy()
-    assert spring.all() and motion.slides() is slides
-    assert np.array_equal(motion.wall_rolls.spring, spring)
-
-
-def test_where_it_does_not_count():
-    """Disordered packings change some contact nearly always; with ``method: dynamics`` the protocol is the paper's."""
-    for stop, quiet in ((1e-15, choice.QUIET * 1e-15), (1e-13, 1e-9), (1e-12, choice.LARGEST_QUIET)):
-        assert rough(protocol__stop_kinetic_energy=stop).plan.quiet_energy == pytest.approx(quiet)
+def test_the_protocol_is_taken_at_its_word():
+    """A stopping energy or rule that is given, ``method: dynamics``, or no static finish."""
+    for usual in ({}, {"packing__polydispersity": 0.1}, {"protocol__time_step": 1e-4}):
+        plan = rough(**usual).plan
+        assert (plan.stop_energy, plan.stop_acceleration, plan.larger_steps) == (1e-13, choice.AT_REST, False)
     for other in (
-        {"packing__polydispersity": 0.1},
+        {"protocol__stop_kinetic_energy": 1e-9},
         {"protocol__method": "dynamics"},
         {"protocol__stop_rule": "envelope"},
         {"protocol__static_finish": False},
-        {"contact__friction": 0.0, "wall__friction": 0.0},
     ):
-        assert rough(**other).plan.quiet_energy == 0.0
+        for order in ({}, {"packing__polydispersity": 0.1}):
+            problem = rough(**other, **order)
+            assert problem.plan.stop_acceleration == 0.0
+            assert problem.plan.stop_energy == problem.scene.protocol.stop_kinetic_energy
+    smooth = {"contact__friction": 0.0, "wall__friction": 0.0}
+    assert rough(**smooth).plan.stop_energy == 1e-6 and rough(**smooth).plan.stop_acceleration == 0.0
+
+
+def test_a_large_packing_goes_on_with_larger_steps(monkeypatch, tmp_path):
+    """In fewer steps, to the same network; the result says both steps, and what error they leave."""
+    usual = rest_state(rough(10, 21))
+    for module in (choice, timestep, results):
+        monkeypatch.setattr(module, "LARGE", 100)
+    problem = rough(10, 21)
+    assert problem.plan.larger_steps and problem.plan.stop_acceleration == choice.NEARLY_AT_REST
+    for given in (
+        {"protocol__time_step": 5e-4},
+        {"protocol__integrator": "leapfrog"},
+        {"protocol__method": "dynamics"},
+    ):
+        assert not rough(10, 21, **given).plan.larger_steps
+    result = gr.solve(problem.scene.updated({"loads": []}), progress=False)
+    reached = result.rest.reached
+    assert reached.first_time_step == 5e-4 < reached.time_step <= 0.9 * stability_limit(problem, "leapfrog")
+    assert reached.first_steps * 5e-4 >= max(4.0 * timestep.breathing_time(problem), problem.swing_time)
+    assert reached.first_steps < reached.steps < 0.7 * usual.reached.steps
+    assert np.array_equal(result.rest.pairs.touching, usual.pairs.touching)
+    assert apart(result.rest, usual) < 5e-3
+    said = f"0.0005 for {reached.first_steps} steps, then leapfrog with {reached.time_step:.4g} for "
+    assert said in repr(result) and "leaves an error of about" in repr(result)
+    result.save(tmp_path / "slab.nc")
+    again = gr.open_result(tmp_path / "slab.nc")
+    assert again.rest.reached == reached and repr(again) == repr(result)
+    assert said in " ".join(shown(tmp_path / "slab.nc").split())
+
+
+def test_a_fall_that_takes_minutes_is_said_before():
+    """Of the slabs of the benchmark the steps are known."""
+    for layers, disks_per_row, steps in ((30, 121, 31_114), (60, 241, 110_000)):
+        assert expected_fall(rough(layers, disks_per_row, wall__friction=0.0))[0] == pytest.approx(steps, rel=0.3)
+    assert long_fall(rough()) == ""
+    assert "min (preparation.gravity: frictionless" in long_fall(rough(160, 641))
+
+
+def test_a_try_that_goes_round_in_a_circle_with_whole_steps_backtracks(monkeypatch):
+    """A fall of a slab of 205 disks half-way: without, thirty iterations lead nowhere."""
+    problem = Problem.from_scene(scene(10, 21, contact__friction=0.2))
+    motion = Dynamics(problem, problem.bare_state())
+    motion.set_ramps()
+    motion.advance(6500)
+    start = problem.with_static_forces(_in_step(motion.state(), "beeman"))
+    system, known = started(problem, start)
+    external = external_force(problem, 0.0)
+    assert not newton(system, known, external)[1].converged
+    found = newton(system, known, external, maximum_iterations=STATICS.tries, backtracking=True)[1]
+    assert found.converged and found.iterations > STATICS.whole_steps
+    assert _statics(problem, motion.state(), "beeman").certificate.stable
+    monkeypatch.setattr(type(problem.packing), "ordered", False)
+    refuses(EquilibriumError, f"within {STATICS.tries} Newton iterations", _statics, problem, motion.state(), "beeman")

@@ -18,7 +18,7 @@ test_times_are_numbers_in_order = refusals(
     (lambda: gr.motion(BALL, {0.0, 1.0}), r"^times = \{0.0, 1.0\}: must be a list"),
     (
         lambda: gr.motion(BALL, [1e9]),
-        r"^times: 1e\+09 is 2e\+12 steps of 0.0005, must be at most protocol.maximum_steps = 5000000",
+        r"^times: 1e\+09 is 1.48e\+13 steps of 6.75963e-05, must be at most protocol.maximum_steps = 5000000",
     ),
 )
 
@@ -61,6 +61,17 @@ def test_a_scene_without_a_motion_is_written_as_ever():
     assert BALL.updated(still).motion.spin == (0.0,)
     assert "motion" not in gr.Scene().to_dict()
     assert gr.Scene.from_text(BALL.to_yaml()) == BALL and BALL.to_dict()["motion"] == {"vx": 0.5}
+
+
+def test_keys_that_a_motion_does_not_heed_are_warned_of():
+    ignored = {"preparation.gravity": "slow", "protocol.stop_kinetic_energy": 1e-9, "protocol.static_finish": False}
+    with pytest.warns(UserWarning) as said:
+        gr.motion(BALL.updated(ignored), [0.0], progress=False)
+    assert [str(one.message) for one in said] == [
+        "preparation.gravity = 'slow' has no effect (a motion begins where the disks are)",
+        "protocol.stop_kinetic_energy = 1e-09 has no effect (a motion ends at the last time)",
+        "protocol.static_finish = false has no effect (a motion ends at the last time)",
+    ]
 
 
 def test_columns_of_a_table_are_taken_where_the_scene_asks_for_them(tmp_path):

@@ -60,3 +60,13 @@ def test_a_stored_result_has_the_packing_and_goes_on(tmp_path):
 )
 def test_mistakes_name_the_key_the_value_and_what_is_allowed(changes, message):
     assert refuses(gr.SceneError, None, gr.Scene.from_arrays, **{**PYRAMID, **changes}).startswith(message)
+
+
+@pytest.mark.parametrize("light", [0, 2, 5])
+def test_the_lightest_disk_that_is_allowed_is_stable_in_a_frictionless_stack(light):
+    stack = {"x": [1.0] * 6, "z": [1.0 + 2.0 * k for k in range(6)], "radius": 1.0, "width": 2.0, "scene": QUIET}
+    mass = [1e-6 if k == light else 1.0 for k in range(6)]
+    assert gr.solve(gr.Scene.from_arrays(**stack, mass=mass), progress=False).certificate.stable
+    mass[light] = 1e-8
+    said = "must be at least 1e-06, a millionth of the largest"
+    refuses(gr.SceneError, said, gr.Scene.from_arrays, **stack, mass=mass)

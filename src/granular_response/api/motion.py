@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -12,6 +13,7 @@ import xarray as xr
 from ..scene import Scene, SceneError
 from ..scene.errors import show
 from ..scene.laboratory import FORCE, LENGTH, MASS, TIME
+from ..solvers.idle import idle_in_motion
 from ..solvers.motion import trajectory
 from ..solvers.solution import Progress
 from ..state import State
@@ -35,7 +37,9 @@ def motion(
 
     Disks begin where the packing has them, with the velocities and spins of ``scene.motion``, and move under gravity,
     their contacts and the loads, which grow to their values over ``protocol.ramp_time``. ``Scene()`` has a load:
-    ``loads=[]`` is a scene without one. The time step is ``protocol.time_step``; other times change no trajectory.
+    ``loads=[]`` is a scene without one. The time step is ``protocol.time_step``, without one a 600th of the shortest
+    collision (a 100th without friction and dashpots) or less: restitution is then right to 1e-3 of the speed. Other
+    times change no bit of a trajectory. Preparation and ``stop_`` keys have no effect, and a warning says so.
 
     Parameters
     ----------
@@ -50,12 +54,14 @@ def motion(
     -------
     With the dimension ``time``: ``position``, ``velocity`` (time, disk, axis), ``angle``, ``angular_velocity`` (time,
     disk); ``kinetic_energy``, ``rotational_energy``, ``potential_energy`` (in gravity, above the floor) and
-    ``elastic_energy`` of all disks, and their sum ``energy``, which dashpots and sliding lower and loads change;
+    ``elastic_energy`` of all disks, and their sum ``energy``, which dashpots and sliding lower and loads change (of a
+    tangential force at Coulomb's limit the part counts that the spring has, without the dashpot's);
     ``momentum`` (time, axis), ``angular_momentum`` (time) about the lower left corner of the box, ``contacts`` that are
     closed. With ``radius`` and ``mass``. All in reduced units.
 
     Raises granular_response.SceneError for times out of order, a motion of another number of disks, a scene for
-    ``path`` or ``minimise``; granular_response.SolveError for a motion that blows up.
+    ``path`` or ``minimise``; granular_response.SolveError for a motion that blows up, or in which bodies overlap by a
+    radius.
 
     Examples
     --------
@@ -74,6 +80,8 @@ def motion(
             if not isinstance(load.disk, int):
                 said = f"loads[{k}].disk = {show(load.disk)}: must be the number of a disk, since start is under load"
                 raise SceneError(f"{said}; result.loaded_disks has it")
+    for remark in idle_in_motion(asked):
+        warnings.warn(remark, stacklevel=2)
     with shown(progress) as report, logged(report):
         found = trajectory(asked, times, start=start, progress=report)
     packing, states = found.problem.packing, found.states

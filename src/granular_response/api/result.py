@@ -25,8 +25,10 @@ from ..scene.arrays import shortened
 from ..scene.errors import show
 from ..scene.given import finite_numbers
 from ..scene.laboratory import FORCE, LENGTH
+from ..solvers.choice import LARGE
 from ..solvers.small_loads import influence
 from ..solvers.solution import Progress, Solution, continue_solution, solve_scene
+from ..solvers.timestep import time_steps_taken
 from ..state import Certificate, State
 from ..store import export as exporting
 from ..store import files
@@ -448,6 +450,9 @@ class Result:
             moved = self._solution.problem.packing.moved(self.rest.position)
         else:
             moved = self._data["distance_from_given"].values[0] if "distance_from_given" in self._data else None
+        if len(self.rest.position) > LARGE and self.rest.reached.time_step is not None:
+            of = self._solution and time_steps_taken(self._solution.problem, self.rest)
+            rows.append(("time step", of or self._data.attrs["time_step"]))
         if moved is not None:
             disk = int(np.argmax(moved))
             text = f"median {np.median(moved):.2g}, largest {moved[disk]:.2g} mean radii (disk {disk})"

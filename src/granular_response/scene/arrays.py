@@ -18,8 +18,9 @@ from .packing import Packing, exact_mean
 
 #: By which lengths of a file may be off, relatively: some formats have single precision.
 ROUNDING = 1e-6
-#: Least mass and radius of a disk as parts of the largest: what a smaller one does is lost in the rounding of others.
-LEAST_MASS, LEAST_RADIUS = 1e-12, 1e-6
+#: Least mass and radius of a disk as parts of the largest, for disks of one material the same: the rounding of others
+#: hides what a lighter one does. A frictionless stack with a disk of 1e-8 counts as unstable, one of 1e-7 does not.
+LEAST_MASS, LEAST_RADIUS = 1e-6, 1e-3
 
 
 def packed(table: Table, left: float, floor: float, width: float, periodic: bool) -> Packing:
@@ -52,11 +53,11 @@ def packed(table: Table, left: float, floor: float, width: float, periodic: bool
     for name, values, good, rule in (
         ("x", table.x, periodic | ((x > 0.0) & (x < width)), between),
         ("radius", radius, radius <= wide, f"must be at most {half:g}, half the width of the box"),
-        ("radius", radius, radius >= large, f"must be at least {large:g}, a millionth of the largest"),
+        ("radius", radius, radius >= large, f"must be at least {large:g}, a thousandth of the largest"),
         ("z", table.z, z > 0.0, f"must be above the floor {floor:g}, which packing.origin says"),
         ("z", table.z, z <= far, f"must be at most {floor + far:g}, 1e9 mean radii"),
         ("mass", mass, mass > 0.0, "must be greater than 0"),
-        ("mass", mass, mass >= heavy, f"must be at least {heavy:g}, 1e-12 of the largest"),
+        ("mass", mass, mass >= heavy, f"must be at least {heavy:g}, a millionth of the largest"),
     ):
         _check(name, values, good, rule)
     order = np.lexsort((z, x))

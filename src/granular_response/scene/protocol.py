@@ -95,11 +95,16 @@ class Protocol(Description):
     )
     time_step: TimeStep | None = Field(
         default=None,
-        description="auto: 0.6 of the stability limit. null: the paper's 5e-4 if that is stable, otherwise auto.",
+        description="auto: 0.6 of the stability limit. null: the paper's 5e-4 if that is stable, otherwise auto; in "
+        "packings of more than 2,000 disks a fall under gravity goes on with leapfrog and up to three times the step "
+        "after four periods of its vertical oscillation; a motion resolves its collisions.",
     )
     ramp_time: NonNegative = Field(default=20.0, description="Time over which the loads grow linearly to their values.")
     stop_kinetic_energy: Positive = Field(
-        default=1e-13, description="Kinetic energy per disk below which a packing counts as settled (E_stop)."
+        default=1e-13,
+        description="Kinetic energy per disk below which a packing counts as settled (E_stop). With this default, the "
+        "default stop_rule and friction, a fall ends earlier if statics follows: at a mean acceleration of 0.001 g for "
+        "half a period of the slowest oscillation (0.01 g in ordered packings with larger steps).",
     )
     stop_rule: Literal["instantaneous", "envelope"] = Field(
         default="instantaneous",

@@ -6,10 +6,10 @@ with displacements and angles q, masses and moments of inertia M, and contact fo
 which the tangential springs s remember the slip (P. A. Cundall and O. D. L. Strack, Geotechnique 29, 47, 1979).
 
 A :class:`Dynamics` advances one packing by an explicit integrator (``kernels.integrators``); a :class:`Relaxation`
-starts ramps of gravity or load and looks at it until its kinetic energy is below the limit of Sec. III.C; :func:`relax`
-does both. What the other criteria named there ask for is measured on the state that is reached. Disks that touch
-nothing but the floor bear no load and may roll for ever; their rolling is left out of the kinetic energy that decides.
-A packing of which a part is in flight is not at rest, however slow it is.
+starts ramps of gravity or load and looks at it until it is at rest; :func:`relax` does both. Two criteria of Sec. III.C
+end it: the kinetic energy, or the mean acceleration of the disks that bear others, which does not depend on the size of
+the packing. Disks that touch nothing but the floor may roll for ever; their rolling is left out of the kinetic energy
+that decides, and does not accelerate them. A packing of which a part is in flight is not at rest, however slow it is.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ import math
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,11 +58,12 @@ class RelaxationOptions:
     envelope_time: float = 20.0
     #: Kinetic energy per disk that is rounding: what is left of it need not fall any more.
     motionless: float = 1e-24
-    #: Kinetic energy, over the one of a quiet end, that it may have had within the period before: a single reading may
-    #: be low because the slowest motion is about to turn.
-    watched: float = 10.0
-    #: Part of Coulomb's limit from which on a contact slides: one that has just slid is at the limit but for rounding.
-    sliding: float = 1.0 - 1e-9
+    #: Kinetic energy of a disk that still rolls, over the mean of those that bear others, where accelerations decide.
+    rolls: float = 10.0
+    #: Least number of readings of the acceleration, over half a swing: in a small packing that is too short for more.
+    readings: int = 10
+    #: Acceleration of a disk with fewer than two contacts from which on it falls, or rolls down another one (g).
+    falling: float = 0.1
 
 
 OPTIONS = RelaxationOptions()
@@ -81,9 +81,8 @@ class Stop:
     the first reading below it, ``envelope`` when the largest of the last ``RelaxationOptions.envelope_time`` is.
     ``least_time`` since the ramps began: what starts without motion and out of balance has no kinetic energy yet.
     ``fallen`` : part of its largest value since then to which the kinetic energy must have fallen.
-    ``quiet_energy`` : a relaxation also ends at the first reading below it before which no contact with friction has
-    opened, closed, slid or rolled at its limit during a whole period of the slowest motion (``Problem.swing_time``).
-    What is left is an elastic vibration: nothing remembers it.
+    ``acceleration`` : a relaxation also ends when :meth:`Dynamics.unrest` has been below it for half a period of the
+    slowest motion (``Problem.swing_time``), in units of g; 0: not by it.
     """
 
     kinetic_energy: float = 1e-13
@@ -91,15 +90,16 @@ class Stop:
     maximum_steps: int = 5_000_000
     least_time: float = 0.0
     fallen: float = 1.0
-    quiet_energy: float = 0.0
+    acceleration: float = 0.0
 
-
-def _slippery(contacts: Any, law: str) -> Any:
-    """Contacts of one kind, if there are any, whose friction by their ``law`` is a little less."""
-    if contacts is None:
-        return None
-    known = getattr(contacts, law)
-    return contacts._replace(**{law: known._replace(friction=OPTIONS.sliding * known.friction)})
+    @classmethod
+    def of(cls, problem: Problem) -> Stop:
+        """When a scene's dynamics ends, by its plan and its protocol."""
+        plan, protocol = problem.plan, problem.scene.protocol
+        return cls(
+            plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time,
+            acceleration=plan.stop_acceleration,
+        )  # fmt: skip
 
 
 class Dynamics:
@@ -111,13 +111,17 @@ class Dynamics:
     state : where to start: positions, angles, velocities and springs are taken over.
     integrator : a name in ``kernels.integrators.INTEGRATORS``.
     time_step : in units of sqrt(R/g).
+    uncut : whether the motion has the same bits wherever :meth:`advance` cuts it; candidates are listed elsewhere then.
     """
 
-    def __init__(self, problem: Problem, state: State, integrator: str = "beeman", time_step: float = 5e-4):
+    def __init__(
+        self, problem: Problem, state: State, integrator: str = "beeman", time_step: float = 5e-4, *, uncut=False
+    ) -> None:
         self.problem = problem
         self.integrator = INTEGRATORS[integrator]
         self.time_step = float(time_step)
-        self.steps = 0
+        self.uncut = uncut
+        self.steps = self.began = 0
         self.time = 0.0
         self.rebuilds = 0
         self.gravity: Ramp = (1.0, 1.0, 0.0)
@@ -155,8 +159,6 @@ class Dynamics:
             self.pair_rolls = Rolls(arm, springs, problem.pair_rolling, couple=aligned_zeros(problem.n))
         if problem.wall_rolling is not None:
             self.wall_rolls = Rolls(problem.wall_arms(c.wall_disk), wall_roll, problem.wall_rolling)
-        #: which listed contacts (pairs, then walls) have friction, and so remember
-        self.rubs = np.repeat([problem.pair_friction, problem.wall_friction], [len(c.first), len(c.wall)])
         self.wall_normal = wall_normals(c.wall)
         self.model = Model(
             problem.n, problem.weight, self._inverse_mass, problem.packing.radius, self.rim,
@@ -167,10 +169,6 @@ class Dynamics:
             ),
             Walls(c.wall_disk, self.wall_normal, c.wall_gap, c.wall_shape, self.wall_spring, problem.wall_law),
             problem.rule, self.pair_rolls, self.wall_rolls,
-        )  # fmt: skip
-        self.slippery = self.model._replace(
-            pairs=_slippery(self.model.pairs, "law"), walls=_slippery(self.model.walls, "law"),
-            pair_rolls=_slippery(self.pair_rolls, "rolling"), wall_rolls=_slippery(self.wall_rolls, "rolling"),
         )  # fmt: skip
 
     def _fill_history(self) -> None:
@@ -186,7 +184,7 @@ class Dynamics:
 
     def set_ramps(self, gravity: Ramp = (1.0, 1.0, 0.0), load: Ramp = (0.0, 0.0, 0.0)) -> None:
         """Start new linear ramps ``(from, to, duration)`` now; the clock restarts at zero."""
-        self.gravity, self.load, self.time = gravity, load, 0.0
+        self.gravity, self.load, self.time, self.began = gravity, load, 0.0, self.steps
         start, end, duration = load
         self._move_held((end - start) / duration if duration > 0.0 else 0.0)
         self._fill_history()
@@ -214,13 +212,14 @@ class Dynamics:
         left = steps
         listed = False
         while left:
-            schedule = Schedule(self.time, *map(float, self.gravity), *map(float, self.load))
+            start, taken = (0.0, self.steps - self.began) if self.uncut else (self.time, 0)
+            schedule = Schedule(start, *map(float, self.gravity), *map(float, self.load))
             done = advance(
                 self.integrator.scheme, left, self.time_step, schedule, self.candidates.limit,
-                self.q, self.v, self.rows, self.model,
+                self.q, self.v, self.rows, self.model, taken,
             )  # fmt: skip
             self.steps += done
-            self.time += done * self.time_step
+            self.time = start + (taken + done) * self.time_step
             left -= done
             if left:
                 self._relist(self._stride() if done == 0 and listed else 0.0)
@@ -306,17 +305,6 @@ class Dynamics:
         )  # fmt: skip
         return closed
 
-    def slides(self) -> bool:
-        """Whether a contact was at a limit of friction in the last step: the limit a little lower, it is cut again."""
-        rolling = [rolls.spring for rolls in (self.pair_rolls, self.wall_rolls) if rolls is not None]
-        springs = [spring for spring in (self.spring, self.wall_spring, *rolling) if spring is not None]
-        kept = [(spring, spring.copy()) for spring in springs]
-        accelerations(self.q, self.rows.seen, self.rows.force[: self.q.size], 1.0, 0.0, 0.0, self.slippery)
-        slid = any((spring != before).any() for spring, before in kept)
-        for spring, before in kept:
-            spring[:] = before
-        return slid
-
     def contact_count(self, touching: NDArray[np.bool_] | None = None) -> NDArray[np.int64]:
         """(n,) number of closed contacts of each disk; ``touching`` if it is known."""
         c = self.candidates
@@ -376,10 +364,23 @@ class Dynamics:
 
     def mean_acceleration(self) -> float:
         """Mean magnitude of the acceleration of disks with two contacts or more, in units of g."""
-        n = self.problem.n
         bearing = self.contact_count() >= 2
-        a = self.history[0][: 2 * n].reshape(2, n)[:, bearing]
-        return float(np.hypot(a[0], a[1]).mean()) if bearing.any() else 0.0
+        return float(self._accelerations()[bearing].mean()) if bearing.any() else 0.0
+
+    def unrest(self, count: NDArray[np.int64]) -> float:
+        """The same, infinite while other disks fall; of all disks where none has two contacts.
+
+        ``count`` (n,) : closed contacts of each disk.
+        """
+        size, bearing = self._accelerations(), count >= 2
+        if float(size[~bearing].max(initial=0.0)) > OPTIONS.falling:
+            return math.inf
+        return float(size[bearing].mean() if bearing.any() else size.mean())
+
+    def _accelerations(self) -> FloatArray:
+        """(n,) their magnitudes, in units of g."""
+        n = self.problem.n
+        return np.hypot(self.history[0][:n], self.history[0][n : 2 * n])
 
 
 class Relaxation:
@@ -411,15 +412,17 @@ class Relaxation:
         self.ramp_time = max(gravity[2], load[2])
         checks = max(1, round(OPTIONS.envelope_time / (OPTIONS.check_every * dynamics.time_step)))
         self.envelope: deque[float] = deque(maxlen=checks if stop.rule == "envelope" else 1)
+        half = math.ceil(0.5 * dynamics.problem.swing_time / (OPTIONS.check_every * dynamics.time_step))
+        self.unrest: deque[float] = deque(maxlen=max(half, OPTIONS.readings))
         self.network: NDArray[np.bool_] | None = None
-        self.fixed = self.quiet = 0
+        self.fixed = 0
         self.largest = 0.0
         self.settled = self.rolling = False
         self.scale = 1e6 * (1.0 + abs(load[1]) * float(np.abs(dynamics.problem.load).sum()))
 
     @property
     def ended(self) -> bool:
-        """Whether the kinetic energy is below its limit, or ``maximum_steps`` have been taken."""
+        """Whether the packing is at rest, or ``maximum_steps`` have been taken."""
         return self.settled or self.dynamics.steps - self.started >= self.stop.maximum_steps
 
     def look(self) -> None:
@@ -443,34 +446,31 @@ class Relaxation:
         if dynamics.load[1] and (lifted := dynamics.lifted_disk()) is not None:
             raise DynamicsError(f"a load lifts disk {lifted} off the packing for good; nothing can hold it")
         slow = energy < OPTIONS.slow_rolling * stop.kinetic_energy
-        watched = slow or energy < OPTIONS.watched * stop.quiet_energy
+        watched = slow or stop.acceleration > 0.0
         look_at_rolling = (dynamics.steps // OPTIONS.check_every) % OPTIONS.rolling_checks == 0
         if not (watched or look_at_rolling or self.rolling):  # far from rest, whatever touches
             self.envelope.append(energy)
             self.settled, self.network = False, None
             return
         touching = dynamics.touching()
+        count = dynamics.contact_count(touching)
         if look_at_rolling or (energy > min(stop.kinetic_energy, fallen) and (slow or self.rolling)):
-            rollers, of_rolling = dynamics.rolling(touching, dynamics.contact_count(touching))
+            rollers, of_rolling = dynamics.rolling(touching, count)
             if look_at_rolling:
                 self.rolling = 0 < rollers <= OPTIONS.most_rollers * dynamics.problem.n
             if slow or self.rolling:
                 energy -= of_rolling
         self.envelope.append(energy)
         if watched:
-            changed = np.ones_like(touching)
-            if self.network is not None and self.network.shape == touching.shape:
-                changed = touching ^ self.network
-            self.fixed = 0 if changed.any() else self.fixed + OPTIONS.check_every
-            if stop.quiet_energy:
-                moves = changed[dynamics.rubs].any() or dynamics.slides()
-                self.quiet = 0 if moves else self.quiet + OPTIONS.check_every
+            changed = self.network is None or not np.array_equal(touching, self.network)
+            self.fixed = 0 if changed else self.fixed + OPTIONS.check_every
             self.network = touching
         ends = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
-        if energy < stop.quiet_energy:
-            ends = ends or self.quiet * dynamics.time_step >= dynamics.problem.swing_time
-        ends = ends and energy <= fallen and dynamics.time >= stop.least_time
-        self.settled = ends and not dynamics.in_flight(touching)
+        ends = ends and energy <= fallen
+        if stop.acceleration > 0.0:
+            self.unrest.append(dynamics.unrest(count))
+            ends = ends or (len(self.unrest) == self.unrest.maxlen and max(self.unrest) < stop.acceleration)
+        self.settled = ends and dynamics.time >= stop.least_time and not dynamics.in_flight(touching)
 
     def state(self) -> State:
         """The state reached, with all that :class:`Reached` says of dynamics."""
@@ -479,7 +479,8 @@ class Relaxation:
         loose, problem = dynamics.contact_count() < 2, dynamics.problem
         # what rolls on the floor alone never stops by itself: its energy is left out of the criterion of rest
         energy = problem.weight * (state.velocity**2).sum(axis=1) + problem.packing.inertia * state.angular_velocity**2
-        rolling = int((loose & (0.5 * energy > self.stop.kinetic_energy)).sum()) if self.settled else 0
+        still = OPTIONS.rolls * dynamics.kinetic_energy(bearing_only=True) if self.stop.acceleration else 0.0
+        rolling = int((loose & (0.5 * energy > max(self.stop.kinetic_energy, still))).sum()) if self.settled else 0
         reached = replace(
             state.reached,
             kinetic_energy=dynamics.kinetic_energy(),

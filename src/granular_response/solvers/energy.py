@@ -61,6 +61,11 @@ class MinimiseOptions:
 
 OPTIONS = MinimiseOptions()
 
+REARRANGES = (
+    "disks leave their neighbours on the way to a minimum of the energy: take protocol.method: dynamics, or a larger "
+    "contact.normal_stiffness, in proportion to the height of the packing"
+)
+
 
 def energy(system: StaticSystem, trial: Trial, external: FloatArray) -> float:
     """Elastic energy of the contacts minus the work of the external forces."""
@@ -125,7 +130,7 @@ class _Descent:
         settled = self._settled()
         look = settled or self.iterations % OPTIONS.look_every == OPTIONS.look_every - 1
         if look and self.system.meets_unlisted(self.q):
-            raise Rearranged("the packing rearranges on its way to a minimum of the energy; use method dynamics")
+            raise Rearranged(REARRANGES)
         if not settled:
             return False
         spectrum = Spectrum(self.system, self.trial)

@@ -1,8 +1,8 @@
 """Trajectories: the motion of disks from any start, at given times.
 
 The equations are those of :mod:`.dynamics`, with dashpots, under gravity and the loads, from t = 0 on. The integrator
-takes whole steps of one length, whatever is asked for. A time between two of them is reached by one shorter step of a
-motion of its own, so times that are looked at change nothing of what follows.
+takes whole steps of one length, whatever is asked for, which by default resolve a collision. A time between two of them
+is reached by one shorter step of a motion of its own, so times that are looked at change no bit of what follows.
 """
 
 from __future__ import annotations
@@ -19,15 +19,18 @@ from ..scene.errors import show
 from ..scene.given import finite_numbers
 from ..state import FloatArray, State
 from .dynamics import Dynamics, DynamicsError, Ramp
+from .equilibrium import too_deep
 from .problem import Problem
 from .size import check_memory
-from .timestep import resolve_time_step
+from .timestep import motion_step
 from .work import stored
 
 #: Part of a time step within which a time is that of a whole step.
 SAME = 1e-9
 #: Overlap (mean radii) by which a start may differ from that of the radii of the packing.
 SAME_RADII = 1e-6
+#: Most time steps between two looks at whether bodies pass through each other.
+MOST_UNSEEN = 1000
 _MOTION = ("position", "velocity", "angular_velocity")
 
 
@@ -38,6 +41,7 @@ class Trajectory:
     problem: Problem
     times: FloatArray
     states: tuple[State, ...]
+    stored: FloatArray  #: (t,) energy of springs and weights in mg R
     time_step: float
 
     def sums(self) -> dict[str, FloatArray]:
@@ -53,7 +57,7 @@ class Trajectory:
             "kinetic_energy": 0.5 * np.sum(v**2, axis=2) @ packing.mass,
             "rotational_energy": 0.5 * spin**2 @ packing.inertia,
             "potential_energy": 0.0 * height if self.problem.scene.motion.weightless else height,
-            "elastic_energy": np.array([stored(self.problem, s) for s in self.states]) - height,
+            "elastic_energy": self.stored - height,
         }
         turning = (x[..., 0] * v[..., 1] - x[..., 1] * v[..., 0]) @ packing.mass + spin @ packing.inertia
         momentum = np.einsum("tna,n->ta", v, packing.mass)
@@ -103,29 +107,51 @@ def trajectory(
         raise SceneError("start: a state under load, must be one without where a load displaces a disk, from there")
     load: Ramp = (state.load_factor, 1.0, protocol.ramp_time) if scene.loads else (0.0, 0.0, 0.0)
     g = 0.0 if scene.motion.weightless else 1.0
-    step = resolve_time_step(problem)
+    step = motion_step(problem, _largest_energy(problem, state))
     if wanted[-1] > step * protocol.maximum_steps:
         raise SceneError(
             f"times: {wanted[-1]:g} is {wanted[-1] / step:.3g} steps of {step:g}, must be at most "
             f"protocol.maximum_steps = {protocol.maximum_steps}"
         )
-    dynamics = Dynamics(problem, state, protocol.integrator, step)
+    dynamics = Dynamics(problem, state, protocol.integrator, step, uncut=True)
     dynamics.set_ramps((g, g, 0.0), load)
     states = []
     for time in wanted:
-        steps = math.floor(time / step + SAME) - dynamics.steps
-        if steps:
-            dynamics.advance(steps)
+        _advance(dynamics, math.floor(time / step + SAME))
         rest = time - dynamics.steps * step
         states.append(_reached(dynamics, rest if rest > SAME * step else 0.0))
         if progress is not None:
             progress(float(time), float(wanted[-1]), "motion")
-    return Trajectory(problem, wanted, tuple(states), step)
+    energy = np.array([energy for _, energy in states])
+    return Trajectory(problem, wanted, tuple(one for one, _ in states), energy, step)
 
 
-def _reached(dynamics: Dynamics, rest: float) -> State:
-    """The state at the end of one more step of length ``rest``, which the motion itself does not take."""
-    state = dynamics.state()
+def _largest_energy(problem: Problem, state: State) -> float:
+    """Estimate of the largest energy with which a disk hits another one or a wall, in mg R: from start and fall."""
+    energy = 0.5 * np.sum(state.velocity**2, axis=1)
+    if not problem.scene.motion.weightless:
+        energy = energy + state.position[:, 1]
+    return float((problem.packing.mass * energy).max())
+
+
+def _advance(dynamics: Dynamics, until: int) -> None:
+    """Advance to a number of steps; raises DynamicsError where bodies pass through each other."""
+    n, radius = dynamics.problem.n, float(dynamics.problem.packing.radius.min())
+    while dynamics.steps < until:
+        speed = float(np.hypot(dynamics.v[:n], dynamics.v[n : 2 * n]).max())
+        steps = min(MOST_UNSEEN, max(1, int(0.5 * radius / max(speed * dynamics.time_step, 1e-300))))
+        dynamics.advance(min(steps, until - dynamics.steps))
+        if deep := too_deep(dynamics.problem, dynamics.state()):
+            raise DynamicsError(
+                f"{deep} at time {dynamics.time:.4g}, as much as a radius, and may pass through each other: take "
+                "smaller velocities or a larger contact.normal_stiffness"
+            )
+
+
+def _reached(dynamics: Dynamics, rest: float) -> tuple[State, float]:
+    """The state at the end of one more step of length ``rest``, which the motion itself does not take, and the energy
+    that is stored there."""
+    state, at = dynamics.state(), dynamics
     if rest:
         one = Dynamics(dynamics.problem, state, dynamics.problem.scene.protocol.integrator, rest)
         start, end, duration = dynamics.load
@@ -135,10 +161,10 @@ def _reached(dynamics: Dynamics, rest: float) -> State:
         )
         one.set_ramps(dynamics.gravity, (now, then, rest))
         one.advance(1)
-        state = replace(one.state(), load_factor=then)
+        state, at = replace(one.state(), load_factor=then), one
     if not (np.isfinite(state.position).all() and np.isfinite(state.velocity).all()):
         raise DynamicsError(dynamics._blow_up())
-    return state
+    return state, stored(at.problem, state, at.rows.seen)
 
 
 def checked_times(times: Any) -> FloatArray:

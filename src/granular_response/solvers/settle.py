@@ -6,19 +6,20 @@ the dynamics is for; the two ways below are all that differ.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from ..errors import EquilibriumError, SolveError
 from ..kernels.integrators import INTEGRATORS
-from ..state import FloatArray, State
+from ..state import FloatArray, Reached, State
 from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
-from .equilibrium import finish
+from .equilibrium import OPTIONS, finish
 from .problem import Problem
 from .stability import Spectrum
 from .system import StaticSystem
-from .timestep import resolve_time_step
+from .timestep import Pace, later_pace, resolve_time_step
 
 #: Displacement along an unstable direction, of the disk that it moves most (mean radii).
 NUDGE = 1e-6
@@ -36,6 +37,7 @@ class HandOver:
     wait: float = 20.0  #: least time of dynamics between tries
     fallen: float = 1.0  #: part of its largest value since the last try to which the kinetic energy falls
     nearly: float = 1e3  #: kinetic energy over its limit up to which a state whose steps ran out is tried all the same
+    nearly_still: float = 30.0  #: or the acceleration, which goes as the root of the energy
     nudged: bool = False  #: from the third try on, dynamics starts from an unstable equilibrium, displaced a little
 
 
@@ -56,6 +58,7 @@ def settle(
     what: str,
     gravity: Ramp = (1.0, 1.0, 0.0),
     load: Ramp = (0.0, 0.0, 0.0),
+    fall: bool = False,
     accept: Callable[[State], bool | None] = lambda state: state.certificate.stable,
     progress: Callable[[Dynamics, float], None] | None = None,
 ) -> State:
@@ -68,6 +71,7 @@ def settle(
     how, stop : the hand-over, and when it is first tried.
     what : that the packing comes to rest under, for messages.
     gravity, load : linear ramps ``(from, to, duration)``.
+    fall : whether this is the fall under gravity, which in large packings goes on with larger steps.
     accept : whether an equilibrium will do; by default, when it is stable.
     progress : called with the dynamics and the kinetic energy per disk; may end the motion by raising.
 
@@ -78,39 +82,51 @@ def settle(
     DynamicsError
         When the motion blows up, or a load carries a disk off.
     """
-    integrator, time_step = problem.scene.protocol.integrator, resolve_time_step(problem)
-    dynamics = Dynamics(problem, start, integrator, time_step)
+    pace = Pace(problem.scene.protocol.integrator, resolve_time_step(problem), 0.0)
+    dynamics = Dynamics(problem, start, *pace[:2])
     held = (load[1], load[1], 0.0)
 
     def left() -> Stop:
         """The stop with what is left of the steps."""
         return replace(stop, maximum_steps=max(stop.maximum_steps - spent - dynamics.steps, 0))
 
-    spent = 0  #: steps of motions that have been started again
-    settled = relax(dynamics, replace(stop, fallen=how.fallen), gravity=gravity, load=load, progress=progress)
+    spent, first = 0, Reached()  #: steps of motions that have been started again, and the record of their first pace
+    stop = replace(stop, fallen=how.fallen)
+    later = later_pace(problem) if fall else None
+    if later is None:
+        settled = relax(dynamics, stop, gravity=gravity, load=load, progress=progress)
+    else:
+        steps = min(math.ceil((gravity[2] + later.after) / pace.time_step), stop.maximum_steps)
+        settled = relax(dynamics, replace(stop, maximum_steps=steps), gravity=gravity, progress=progress)
+        if not settled.reached.settled and steps < stop.maximum_steps:
+            first, spent = Reached(first_steps=steps, first_time_step=pace.time_step), steps
+            settled, pace = _in_step(settled, pace.integrator), later
+            dynamics = Dynamics(problem, settled, *pace[:2])
+            settled = relax(dynamics, left(), progress=progress)
     why = ""
     for attempt in range(1, how.tries + 1):
         kinetic = settled.reached.kinetic_energy or 0.0
+        moving = kinetic > how.nearly * stop.kinetic_energy
+        moving = moving and not (settled.reached.mean_acceleration or math.inf) < how.nearly_still * stop.acceleration
         # steps that run out within a ramp leave another load than the one that is asked for
-        if not settled.reached.settled and (
-            kinetic > how.nearly * stop.kinetic_energy or settled.load_factor != load[1]
-        ):
+        if not settled.reached.settled and (moving or settled.load_factor != load[1]):
             break
         try:
-            found = _statics(problem, settled)
+            found = _statics(problem, settled, pace.integrator)
             if accept(found):
-                return found
+                steps = spent + dynamics.steps
+                return replace(found, reached=replace(first.after(found.reached), steps=steps))
             why = ": the equilibrium found is unstable"
             if how.nudged and attempt > 2:
                 system = StaticSystem(problem, found)
                 displaced = nudged(problem, found, Spectrum(system, system.at(found)).direction)
                 spent += dynamics.steps
-                dynamics = Dynamics(problem, displaced, integrator, time_step)
+                dynamics = Dynamics(problem, displaced, *pace[:2])
         except EquilibriumError as error:
             why = f": {error}"
         if not settled.reached.settled or attempt == how.tries or left().maximum_steps == 0:
             break
-        settled = relax(dynamics, replace(left(), fallen=how.fallen, least_time=how.wait), load=held)
+        settled = relax(dynamics, replace(left(), least_time=how.wait), load=held)
         settled = replace(settled, reached=replace(settled.reached, more_relaxations=attempt))
     if settled.reached.settled and why and left().maximum_steps > 0:
         raise NotSettled(f"the packing is nearly at rest under {what}, but finds no stable equilibrium{why}")
@@ -126,13 +142,18 @@ def not_settled(problem: Problem, state: State, what: str) -> str:
     )
 
 
-def _statics(problem: Problem, settled: State) -> State:
+def _in_step(settled: State, integrator: str) -> State:
+    """A state in motion with its disks where its springs, which are ahead of them, are already."""
+    time = INTEGRATORS[integrator].lead * (settled.reached.time_step or 0.0)
+    position, angle = settled.position + time * settled.velocity, settled.angle + time * settled.angular_velocity
+    return replace(settled, position=position, angle=angle)
+
+
+def _statics(problem: Problem, settled: State, integrator: str) -> State:
     """The equilibrium beside a nearly settled state: without friction the minimum of the energy."""
     if problem.rotations:
-        # springs are ahead of displacements: where these will be when springs are there
-        time = INTEGRATORS[problem.scene.protocol.integrator].lead * (settled.reached.time_step or 0.0)
-        position, angle = settled.position + time * settled.velocity, settled.angle + time * settled.angular_velocity
-        return finish(problem, problem.with_static_forces(replace(settled, position=position, angle=angle)))
+        start = problem.with_static_forces(_in_step(settled, integrator))
+        return finish(problem, start, maximum_iterations=OPTIONS.tries)
     found = minimise(problem, problem.relisted(settled), load_factor=settled.load_factor)
     return replace(found, reached=found.reached.after(settled.reached))
 

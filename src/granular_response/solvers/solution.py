@@ -15,17 +15,18 @@ from ..scene import Scene, SceneError
 from ..scene.errors import show
 from ..scene.given import finite_numbers
 from ..state import FloatArray, State
-from .choice import Choice, idle_settings
+from .choice import Choice
 from .dynamics import Dynamics, Stop, relax
 from .energy import minimise
 from .equilibrium import certify, check_overlaps, finish, reaction
+from .idle import idle_settings
 from .path import follow
 from .path.events import lost, side
 from .problem import Problem
 from .settle import PROTOCOL, NotSettled, not_settled, settle
 from .size import check_memory
 from .taps import tapped
-from .timestep import resolve_time_step
+from .timestep import long_fall, resolve_time_step
 
 #: Load that the contacts of one disk bear at most without an overlap of a radius, over the stiffness of one.
 MOST_BORNE = 4.0
@@ -369,21 +370,21 @@ def _by_dynamics(problem: Problem, start: State, factor: float, progress: Progre
 def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | None, **ramps: Any) -> State:
     """Dynamics to rest as the protocol says, and the static finish; ``ramps`` of gravity and load."""
     protocol = problem.scene.protocol
-    plan, steps = problem.plan, protocol.maximum_steps
-    stop = Stop(plan.stop_energy, protocol.stop_rule, steps, problem.crossing_time, quiet_energy=plan.quiet_energy)
+    stop, fall = Stop.of(problem), stage == "gravity"
     report = None
     if progress is not None:
-        highest = [stop.kinetic_energy * 10.0, 0.0]
+        limit, what = stop.acceleration or stop.kinetic_energy, stage + (long_fall(problem) if fall else "")
+        highest = [limit * 10.0, 0.0]
 
-        def report(_: Dynamics, energy: float) -> None:
-            highest[0] = max(highest[0], energy)
-            span = np.log(highest[0] / stop.kinetic_energy)
-            done = np.log(highest[0] / max(energy, stop.kinetic_energy)) / span
-            highest[1] = max(highest[1], float(done)) if highest[0] > energy else highest[1]
-            progress(highest[1], 1.0, stage)
+        def report(dynamics: Dynamics, energy: float) -> None:
+            left = dynamics.mean_acceleration() if stop.acceleration else energy
+            highest[0] = max(highest[0], left)
+            done = np.log(highest[0] / max(left, limit)) / np.log(highest[0] / limit)
+            highest[1] = max(highest[1], float(done)) if highest[0] > left else highest[1]
+            progress(highest[1], 1.0, what)
 
     if problem.plan.static:
-        return settle(problem, start, PROTOCOL, stop, what=stage, progress=report, **ramps)
+        return settle(problem, start, PROTOCOL, stop, what=stage, fall=fall, progress=report, **ramps)
     dynamics = Dynamics(problem, start, protocol.integrator, resolve_time_step(problem))
     settled = relax(dynamics, stop, progress=report, **ramps)
     if protocol.static_finish and not settled.reached.settled:

@@ -6,7 +6,7 @@ from ..state import State
 from .dynamics import Dynamics, Stop
 from .problem import Problem
 from .settle import PROTOCOL, settle
-from .timestep import resolve_time_step
+from .timestep import motion_step, resolve_time_step
 
 
 def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration: float) -> State:
@@ -16,10 +16,12 @@ def tapped(problem: Problem, rest: State, taps: int, amplitude: float, duration:
     ``duration`` in sqrt(R/g) that is rounded to four times whole steps. Raises what :func:`.settle.settle` raises.
     """
     protocol = problem.scene.protocol
-    stop = Stop(problem.plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
+    stop = Stop.of(problem)
     most, least = 1.0 + amplitude, 1.0 - amplitude
     for _ in range(taps):
-        dynamics = Dynamics(problem, rest, protocol.integrator, resolve_time_step(problem))
+        thrown = 0.25 * amplitude * duration  # speed with which disks may leave each other beyond 1 g
+        step = motion_step(problem, 0.5 * thrown**2) if amplitude > 1.0 else resolve_time_step(problem)
+        dynamics = Dynamics(problem, rest, protocol.integrator, step)
         steps = round(0.25 * duration / dynamics.time_step)
         quarter = steps * dynamics.time_step
         dynamics.set_ramps(gravity=(1.0, most, quarter))

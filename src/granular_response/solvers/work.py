@@ -9,25 +9,64 @@ tangential forces and the part of their slip that their springs have not taken u
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from ..contact import CUT
 from ..kernels import statics
 from ..state import Contacts, FloatArray, State, wall_normals
 from .equilibrium import reaction
 from .problem import Problem
 
+#: Part of its limit by which a force may be below it and count as cut: a shorter last step leaves it up to 1 % below.
+CUT_LATELY = 0.05
 
-def stored(problem: Problem, state: State) -> float:
-    """Energy of all springs, normal and tangential, and of the weights."""
+
+def stored(problem: Problem, state: State, seen: FloatArray | None = None) -> float:
+    """Energy of all springs, normal and tangential, and of the weights.
+
+    ``seen`` (dof,) : in motion, the velocities of the last evaluation of forces. A force that was cut to its limit
+    there has a spring that makes up for the dashpot; of such a spring the part counts whose force is within the limit.
+    """
     total = float(problem.weight @ state.position[:, 1])
-    for contacts, law, shape, rolling in problem.kinds(state):
+    rates: Any = ((0.0, 0.0, 0.0),) * 2 if seen is None else _rates(problem, state, seen)
+    cut = seen is not None and problem.rule == CUT
+    for (contacts, law, shape, rolling), (apart, slip, turn) in zip(problem.kinds(state), rates, strict=True):
         total += statics.elastic_energy(contacts.overlap, shape, law)
+        normal = np.abs(np.maximum(contacts.normal_force - law.normal_damping * apart, law.least_force))
         if law.friction > 0.0:
-            total += 0.5 * law.tangential_stiffness * float(contacts.spring @ contacts.spring)
+            spring, limit = contacts.spring, law.friction * normal
+            if cut:
+                spring = _within(spring, slip, limit, law.tangential_stiffness, law.tangential_damping)
+            total += 0.5 * law.tangential_stiffness * float(spring @ spring)
         if rolling is not None:
-            total += 0.5 * rolling.stiffness * float(contacts.rolling_spring @ contacts.rolling_spring)
+            spring, limit = contacts.rolling_spring, rolling.friction * normal
+            if seen is not None:
+                spring = _within(spring, turn, limit, rolling.stiffness, rolling.damping)
+            total += 0.5 * rolling.stiffness * float(spring @ spring)
     return total
+
+
+def _within(spring, slip, limit, stiffness: float, damping: float) -> FloatArray:
+    """(m,) springs, without those of contacts cut to their ``limit`` that only make up for what their dashpot pulls."""
+    pull = stiffness * spring + damping * slip
+    return np.where((np.abs(pull) >= (1.0 - CUT_LATELY) * limit) & (spring * pull < 0.0), 0.0, spring)
+
+
+def _rates(problem: Problem, state: State, v: FloatArray) -> tuple[tuple[FloatArray, FloatArray, FloatArray], ...]:
+    """Rates at which contacts between disks, and at walls, part, slip and turn, each (m,), at velocities ``v``."""
+    n, radius, i, j, k = problem.n, problem.packing.radius, state.pairs.first, state.pairs.second, state.walls.first
+    u, w = v[:n], v[n : 2 * n]
+    spin = v[2 * n :] if problem.rotations else np.zeros(n)
+    found = []
+    for normal, du, dw, rims, turn in (
+        (state.pair_normal().T, u[i] - u[j], w[i] - w[j], radius[i] * spin[i] + radius[j] * spin[j], spin[i] - spin[j]),
+        (wall_normals(state.walls.second).T, u[k], w[k], radius[k] * spin[k], spin[k]),
+    ):
+        found.append((du * normal[0] + dw * normal[1], dw * normal[0] - du * normal[1] - rims, turn))
+    arms = problem.pair_arms(i, j), problem.wall_arms(k)
+    return tuple((apart, slip, arm * turn) for (apart, slip, turn), arm in zip(found, arms, strict=True))
 
 
 def work(problem: Problem, before: State, after: State) -> float:

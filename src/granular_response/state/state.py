@@ -87,6 +87,8 @@ class Reached:
     settled: bool | None = None  #: whether dynamics came to rest; False when its steps ran out
     steps: int | None = None  #: time steps of the dynamics since it began
     time_step: float | None = None  #: of the dynamics
+    first_steps: int | None = None  #: of ``steps`` those of the first part of a long fall, which has a shorter step
+    first_time_step: float | None = None  #: of that part
     time: float | None = None  #: since the last ramp began
     rebuilds: int | None = None  #: times that candidate contacts were listed again
     kinetic_energy: float | None = None

@@ -26,7 +26,7 @@ from ..scene.laboratory import FORCE, LENGTH
 from ..scene.material import KNOWN_LAWS
 from ..solvers.problem import Problem
 from ..solvers.solution import Solution
-from ..solvers.timestep import time_step_reason
+from ..solvers.timestep import time_steps_taken
 from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Box, Certificate, Contacts, Event, Reached, State
 from ..state.box import WALL_MEANINGS, FloatArray
 from ..state.state import MEANINGS
@@ -314,7 +314,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "sides": "periodic" if packing.box.periodic else "walls",
         "method": json.dumps({stage: getattr(one, "method", "none") for stage, one in choices.items()}),
         "method_reason": json.dumps({stage: getattr(one, "reason", "no loads") for stage, one in choices.items()}),
-        **({"time_step": time_step_reason(problem)} if moved else {}),
+        **({"time_step": time_steps_taken(problem, solution.rest)} if moved else {}),
         "stable": _verdict([s.certificate.stable for s in states]),
         "settled": _verdict([s.reached.settled is not False for s in states]),
         "units": UNITS,

@@ -154,12 +154,13 @@ def end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt):
 
 
 @kernel(nogil=True)
-def advance(integrator, steps, dt, schedule, limit, q, v, memory, model):
+def advance(integrator, steps, dt, schedule, limit, q, v, memory, model, taken=0):
     """Take up to ``steps`` steps of ``dt``; returns how many were taken.
 
     Fewer when a disk has moved so far that the candidate contacts must be listed again: ``limit`` is the displacement
     that ends the validity of the list (``inf``: never checked). ``schedule`` : ``model.Schedule``; ``q``, ``v`` :
-    displacements and velocities; ``memory`` : :class:`Memory`; ``model`` : ``model.Model``.
+    displacements and velocities; ``memory`` : :class:`Memory`; ``model`` : ``model.Model``. ``taken`` : steps since
+    ``schedule.time``: with it disks are looked at before the same steps wherever a motion is cut.
     """
     a, b, c, force, seen = memory
     n = model.n
@@ -167,14 +168,15 @@ def advance(integrator, steps, dt, schedule, limit, q, v, memory, model):
     begun = False
     for step in range(steps):
         if not begun:
-            if limit < np.inf and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
+            look = (taken + step) % LOOK_EVERY == 0 and limit < np.inf
+            if look and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
                 return step
             _begin(integrator, q, v, a, b, c, seen, dt)
-        now = schedule.time + (step + 1) * dt
+        now = schedule.time + (taken + step + 1) * dt
         gravity = ramp(now, schedule.gravity_from, schedule.gravity_to, schedule.gravity_time)
         load = ramp(now, schedule.load_from, schedule.load_to, schedule.load_time)
         forces(q, seen, force, gravity, load, dt, model)
-        begun = goes_on(step + 1, steps, limit)
+        begun = goes_on(taken + step + 1, taken + steps, limit)
         if begun:
             end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
         else:

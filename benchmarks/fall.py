@@ -1,0 +1,108 @@
+"""The default fall under gravity against the paper's time step to its end: time, steps, memory and forces.
+
+`python benchmarks/fall.py OUTPUT.json [--only WORDS]`. The reference has the paper's step all the way and ends at a
+kinetic energy of 1e-15 mg R per disk. Differences of the two equilibria are the largest of a force on the floor and of
+a tangential force, in mg, and the number of contacts that are closed in one of them only. Each scene runs in a process
+of its own, whose peak memory is that of the default fall. Rows that are not asked for are kept.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import multiprocessing
+import resource
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from timing import processor, write
+
+from granular_response.scene import Scene
+from granular_response.scene.protocol import PAPERS_TIME_STEP
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
+from granular_response.state import FLOOR, State
+
+PAPERS = {"protocol.time_step": PAPERS_TIME_STEP, "protocol.stop_kinetic_energy": 1e-15}
+ROLLING = {"contact.rolling_friction": 0.1, "contact.rolling_stiffness_ratio": 0.5}
+MOST = 20_000  #: disks, beyond which no reference is made: it takes hours
+
+
+def slab(layers: int, disks_per_row: int, friction: float = 0.2, **changes: Any) -> dict[str, Any]:
+    """Keys of a scene with a slab."""
+    packing = {"packing.layers": layers, "packing.disks_per_row": disks_per_row}
+    return {**packing, "contact.friction": friction, **{key.replace("__", "."): one for key, one in changes.items()}}
+
+
+SCENES: dict[str, dict[str, Any]] = {
+    "slab, 15 layers": slab(15, 61),
+    "slab, 30 layers": slab(30, 121),
+    "slab, 60 layers": slab(60, 241),
+    "slab, 160 layers": slab(160, 641),
+    "friction 0.5, 30 layers": slab(30, 121, 0.5),
+    "friction 1, 30 layers": slab(30, 121, 1.0),
+    "rough walls, 30 layers": slab(30, 121, wall__friction=0.2),
+    "3/2 law, 30 layers": slab(30, 121, contact__law="hertz"),
+    "rolling resistance, 30 layers": slab(30, 121, **ROLLING),
+    "periodic, 30 layers": slab(30, 120, packing__sides="periodic"),
+    "deep, 30 layers of 61": slab(30, 61),
+    "deep, 60 layers of 61": slab(60, 61),
+    "wide, 10 layers of 121": slab(10, 121),
+    "pile, 20 layers": {"packing": {"kind": "pile", "layers": 20}, "contact.friction": 0.5},
+    "disorder 0.1, 15 layers": slab(15, 61, packing__polydispersity=0.1),
+}
+
+
+def fallen(described: Scene) -> tuple[State, Problem, float]:
+    """The initial equilibrium, and the processor time that it took."""
+    problem = Problem.from_scene(described)
+    start = time.process_time()
+    return rest_state(problem), problem, time.process_time() - start
+
+
+def measure(words: str) -> dict[str, Any]:
+    """The row of one scene."""
+    described = Scene().updated({"loads": [], **SCENES[words]})
+    for integrator in ("beeman", "leapfrog"):  # compiles
+        rest_state(Problem.from_scene(described.updated({"packing.layers": 4, "protocol.integrator": integrator})))
+    found, problem, seconds = fallen(described)
+    reached = found.reached
+    row = {
+        "scene": words, "disks": problem.n, "seconds": seconds, "steps": reached.steps,
+        "first_steps": reached.first_steps or reached.steps, "time_step": reached.time_step,
+        "peak_gibibytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20, "measured_on": processor(),
+    }  # fmt: skip
+    if problem.n > MOST:
+        return row
+    end, _, papers = fallen(described.updated(PAPERS))
+    if end.pairs.same_candidates(found.pairs) and end.walls.same_candidates(found.walls):
+        floor = (found.walls.normal_force - end.walls.normal_force)[found.walls.second == FLOOR]
+        tangential = found.pairs.tangential_force - end.pairs.tangential_force
+        differ = int((found.pairs.touching != end.pairs.touching).sum())
+        row |= {"floor_error": np.abs(floor).max(), "contacts_that_differ": differ}
+        row |= {"tangential_error": np.abs(tangential).max()}
+    return row | {"papers_seconds": papers, "papers_steps": end.reached.steps}
+
+
+def main(path: str, only: list[str]) -> None:
+    rows = json.loads(Path(path).read_text(encoding="utf-8"))["scenes"] if Path(path).exists() else []
+    kept = {row["scene"]: row for row in rows}
+    for words in only or SCENES:
+        with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as process:
+            kept[words] = process.submit(measure, words).result()
+        print(kept[words], flush=True)
+        found = [kept[name] for name in SCENES if name in kept]
+        paper = [row for row in found if row["scene"].startswith("slab") and row["disks"] < MOST]
+        slope = np.polyfit(*np.log([[row["disks"], row["seconds"]] for row in paper]).T, 1)[0] if paper[1:] else None
+        write(path, {"exponent_of_seconds": slope, "scenes": found})
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("output")
+    parser.add_argument("--only", nargs="*", default=[], choices=[*SCENES], metavar="WORDS")
+    given = parser.parse_args()
+    main(given.output, given.only)
