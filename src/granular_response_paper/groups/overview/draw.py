@@ -7,11 +7,10 @@ import xarray as xr
 from matplotlib.animation import FuncAnimation
 from matplotlib.figure import Figure
 
-from granular_response.observe.peaks import is_double_peaked
 from granular_response.plot import style
 from granular_response.plot.animation import FULL, Frames, animate
-from granular_response.plot.chains import draw_chains, draw_key, draw_response
-from granular_response.plot.pictures import Shown
+from granular_response.plot.chains import draw_chains, draw_key, draw_peaks, draw_response
+from granular_response.plot.shown import Shown
 from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import note, packing, polarised
 
@@ -72,15 +71,14 @@ def _overview(slabs: Datasets) -> Figure:
             draw_chains(above, Shown.of(slab, 1 if row == 0 else -1), largest=FULL * force, half_width=half)
             draw_response(below, x, curves[k, row], elastic, half_width=half, limits=limits)
             below.tick_params(labelleft=k == 0, labelbottom=row == 1)
-            peaks = "2 peaks" if is_double_peaked(x, curves[k, row]) else "1 peak"
-            below.text(0.03, 0.95, peaks, transform=below.transAxes, va="top", weight="bold", color=style.INCREASED)
+            draw_peaks(below, x, curves[k, row])
             if k == 0:
                 name = style.equals(style.F_EXT, force, style.WEIGHT)
                 above.text(0.0, 0.98, name, transform=above.transAxes, va="top")
                 below.set_ylabel(style.RESPONSE.replace(" ", "\n", 1))
         panels[0, k].set_title(title, pad=2.0)
         panels[3, k].set_xlabel(style.POSITION)
-    draw_key(panels[3, -1], "small loads")
+    draw_key(panels[3, -1], "small load")
     return figure
 
 
