@@ -16,7 +16,7 @@ from granular_response_paper.registry import GroupError
 def test_parameters_end_the_caption_in_the_papers_symbols():
     scene = Scene().updated({"contact.friction": 0.2, "contact.stiffness_ratio": 0.8, "packing.polydispersity": 0.01})
     given = of_scene(scene, force=[4.0, 10.0, 20.0], width=6.0, realizations=15)
-    assert Caption("Response.", "A curve.", given).whole == (
+    assert Caption("Response.", "A curve.", parameters=given).whole == (
         "Response. F_ext = 4, 10 and 20 m̄g, µ = 0.2, µ_wall = 0, k_T/k_N = 0.8, k_N = 3000 m̄g/R̄, δ = 0.01, "
         "15 realizations, w = 6 R̄, 15 layers of alternately 61 and 60 disks."
     )
@@ -33,12 +33,12 @@ def test_parameters_end_the_caption_in_the_papers_symbols():
     ],
 )
 def test_a_scene_is_said_in_the_words_of_its_kind(given, said):
-    assert said in Caption("", "", given).whole
+    assert said in Caption("", "", parameters=given).whole
 
 
 test_what_a_caption_lacks_is_named = refusals(
     ValueError,
-    (lambda: Caption("", "", {"frction": 0.2}), "parameters: unknown frction, must be among force"),
+    (lambda: Caption("", "", parameters={"frction": 0.2}), "parameters: unknown frction, must be among force"),
     (
         lambda: captions.document({"fig06_one": Caption("a", "b")}, {"fig06_one": [], "other": []}),
         "no caption for other",

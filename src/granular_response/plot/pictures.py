@@ -212,8 +212,8 @@ def contacts(
     check_positive(half_width=half_width)
     lines = _aliased(lines, LineCollection, color)
     colours = lines.pop("color", None) or {}
-    if not isinstance(colours, Mapping) or not set(colours) <= set(network.CONTACT_LINES):
-        kinds = ", ".join(network.CONTACT_LINES)
+    if not isinstance(colours, Mapping) or not set(colours) <= set(network.KINDS):
+        kinds = ", ".join(network.KINDS)
         raise PictureError(f"color = {reprlib.repr(colours)}: must be colours by kind, which are {kinds}")
     before, now = shown.values("contact_status", 0), shown.values("contact_status")
     with style.with_users():

@@ -50,8 +50,10 @@ LINE_STYLES: tuple[Any, ...] = (
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
 #: What colours mean in every picture of a packing, of the library, the paper and its page alike: contacts that a load
-#: opened or closed, contacts that slide, contact forces that it made larger or smaller, the load itself, disks.
+#: opened (also apart from the region below it) or closed, contacts that slide, contact forces that it made larger or
+#: smaller, the load itself, disks.
 OPENED, CLOSED, SLIDING = VERMILION, GREEN, BLUE
+OPENED_ELSEWHERE = "#F3B58C"
 INCREASED, DECREASED = "#12233F", "#8FA3BF"
 LOAD, DISKS = "#9B2D7B", "#EFEDE8"
 #: Those of the page's explorer by name: on white, and on a dark screen.
@@ -97,7 +99,7 @@ RESPONSE_AT_CENTRE = f"{RESPONSE} at $x=0$"
 FLOOR_FORCE = rf"floor force$\,/\,{WEIGHT}$"
 INCREMENTAL_FLOOR_FORCE = f"incremental {FLOOR_FORCE}"
 #: Where the response is smoothed, it is a stress.
-FLOOR_STRESS = rf"floor stress $\sigma_{{zz}}{RADIUS}/{F_EXT}$"
+FLOOR_STRESS = rf"smoothed floor response $\sigma_{{zz}}{RADIUS}/{F_EXT}$"
 PRESSURE = rf"floor pressure $p\,h/{F_EXT}$"
 STRESS = rf"$\sigma_{{zz}}{RADIUS}/{F_EXT}$"
 STRESS_OF_GRAVITY = rf"$\sigma_{{zz}}{RADIUS}/{WEIGHT}$"
