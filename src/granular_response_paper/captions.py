@@ -72,8 +72,8 @@ SAID: Mapping[str, str] = {
 class Caption:
     """What stands below a picture, and what stands for it where it cannot be seen.
 
-    ``title`` names the picture for people. ``parameters`` are keys of :data:`SAID` with a value or several; they end the
-    caption as a sentence. Raises ValueError for another key.
+    ``title`` names the picture for people. ``parameters`` are keys of :data:`SAID` with a value or several; they end
+    the caption as a sentence. Raises ValueError for another key.
     """
 
     text: str

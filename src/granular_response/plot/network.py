@@ -118,8 +118,8 @@ def draw_contact_changes(
     """What a load changes in the contact network (Figs. 4, 8, 9); the masks are over candidate pairs, (m,).
 
     ``opened`` touched before and does not now (thick; pale outside of a ``region``), ``closed`` the reverse,
-    ``sliding`` touches and slides now, ``unchanged`` touches before and after without sliding (thin black). Kinds that do not
-    occur are left out of the returned collections, which are labelled for a legend.
+    ``sliding`` touches and slides now, ``unchanged`` touches before and after without sliding (thin black). Kinds that
+    do not occur are left out of the returned collections, which are labelled for a legend.
     """
     i, j = np.asarray(first, dtype=int), np.asarray(second, dtype=int)
     drawn = {}

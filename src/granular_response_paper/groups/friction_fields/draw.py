@@ -152,7 +152,8 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
         if lines := [level for level in levels if off.min() < level < off.max()]:
             axes.contour(x, z, off, lines, colors=style.MUTED, linewidths=0.5)
     drawn = [*panels[:, 0], *panels[1:, 1]]
-    titles(drawn, ["harmonic lattice", *names, *(f"{style.equals(style.FRICTION, mu)} minus (a)" for mu in data["friction"].values)])
+    differences = [f"{style.equals(style.FRICTION, mu)} minus (a)" for mu in data["friction"].values]
+    titles(drawn, ["harmonic lattice", *names, *differences])
     for axes in drawn:
         network.draw_load(axes, (0.0, float(z.max())), length=3.0)
         axes.set(xlim=(-half, half), ylim=(0.0, z.max()))

@@ -42,7 +42,7 @@ def _named(text: str) -> str:
     """A variant with the units of its numbers, powers of ten as such."""
     time, energy = f"\\,{style.TIME_UNIT}$", f"\\,{style.ENERGY_UNIT}$"
     text = re.sub(r"gravity grows over (\S+) in place of at once", lambda m: f"gravity ramped over ${m[1]}{time}", text)
-    text = re.sub(r"load ramp of (\S+) in place of (\S+)", lambda m: f"load ramped over ${m[1]}{time}, not ${m[2]}{time}", text)
+    text = re.sub(r"load ramp of (\S+) in place of \S+", lambda m: f"load ramped over ${m[1]}{time}", text)
     return re.sub(r"1e(-?\d+) per disk", lambda m: f"$10^{{{m[1]}}}{energy} per disk", text)
 
 

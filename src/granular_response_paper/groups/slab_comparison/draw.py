@@ -62,7 +62,7 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
 
 
 def _name(case: tuple) -> str:
-    friction, floor, gravity, shape = case
+    friction, floor, gravity, _ = case
     return f"µ = {friction:g}, {floor} floor" + (", gravity ramped" if gravity == "slow" else "")
 
 

@@ -80,7 +80,7 @@ def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset, equal_rows: xr.D
     panel.set_yticks(range(len(rows)), list(rows), fontsize=7.5)
     panel.set(xlabel=style.FORCE, ylim=(len(rows) - 0.4, -0.9))
     panel.tick_params(axis="y", which="both", length=0.0)
-    style.paper_value(panel, PAPER, f"paper: {PAPER:g}", at=0.99, side="behind")
+    style.paper_value(panel, PAPER, f"paper: {PAPER:g}", at=0.34, side="behind")
     for name, look in (("symmetric", {"color": style.MUTED, "markerfacecolor": "white"}),
                        ("asymmetric", {"color": style.VERMILION})):  # fmt: skip
         panel.plot([], [], "o", label=name, markersize=5.0, **look)
@@ -106,13 +106,14 @@ def _finding(datasets: Datasets) -> str:
         force, lost = one["force"].values, one["asymmetry"].values > ASYMMETRIC
         if lost.any():
             kept = force[force < force[lost].min()]
-            ends = bracket(float(kept.max()), float(force[lost].min())) if kept.size else f"{force[lost].min():g} {WEIGHT}"
+            first = float(force[lost].min())
+            ends = bracket(float(kept.max()), first) if kept.size else f"{first:g} {WEIGHT}"
             said.append(f"at {ends} with a ramp of {ramp:g} sqrt(R/g)")
         else:
             said.append(f"not up to {force.max():g} {WEIGHT} with a ramp of {ramp:g} sqrt(R/g)")
     sides = datasets["copies"]["asymmetry_sign"].values[datasets["copies"]["asymmetry"].values > ASYMMETRIC]
-    lean = f" Of {datasets['copies'].sizes['copy']} copies {int((sides < 0).sum())} lean to the left and "
-    lean += f"{int((sides > 0).sum())} to the right."
+    count = datasets["copies"].sizes["copy"]
+    lean = f" Of {count} copies, to the left: {int((sides < 0).sum())}, to the right: {int((sides > 0).sum())}."
     return f"The response loses its symmetry {' and '.join(said)}." + (lean if sides.size else "")
 
 

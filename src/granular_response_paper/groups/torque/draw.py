@@ -41,8 +41,8 @@ def _finding(data: xr.Dataset, angle: float) -> str:
         within = np.abs(vector[near] @ along) > np.cos(np.radians(ALONG)) * size
         parts.append(100.0 * float((size * within).sum() / size.sum()) if size.any() else np.nan)
     return (
-        f"Without torque {parts[0]:.0f} % of the forces within {NEAR:g} {RADIUS} of the disk are within {ALONG:g}° of the "
-        f"applied one, with the largest torque {parts[1]:.0f} %."
+        f"Without torque {parts[0]:.0f} % of the forces within {NEAR:g} {RADIUS} of the disk are within {ALONG:g}° "
+        f"of the applied one, with the largest torque {parts[1]:.0f} %."
     )
 
 
