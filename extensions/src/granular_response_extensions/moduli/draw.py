@@ -122,7 +122,8 @@ def _more_findings(datasets: Datasets) -> dict[str, str]:
     return {
         "moduli_response": (
             "The response is off the elastic slab with the measured moduli by "
-            f"{100.0 * min(off)[0]:.2g} % of the peak at least and by {100.0 * max(off)[0]:.2g} % at most (δ = {delta:g}, µ = {mu:g})."
+            f"{100.0 * min(off)[0]:.2g} % of the peak at least and by {100.0 * max(off)[0]:.2g} % at most "
+            f"(δ = {delta:g}, µ = {mu:g})."
         ),
         "moduli_loaded": f"Part of the map in which r is negative: {', '.join(negative)}.",
     }

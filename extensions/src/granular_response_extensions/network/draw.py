@@ -72,7 +72,7 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     z = rest["coordination_number"].mean("realization")
     least, most = float(z.isel(friction=-1).min()), float(z.isel(friction=-1).max())
     finding = (
-        f"Above the mean the density of normal forces falls on average like exp({slope:.2g} f); the coordination number "
-        f"is {least:.2f} to {most:.2f} at the largest friction."
+        f"Above the mean the density of normal forces falls on average like exp({slope:.2g} f); the coordination "
+        f"number is {least:.2f} to {most:.2f} at the largest friction."
     )
     return of_group("network", {"network_statistics": said}, {"network_statistics": finding})
