@@ -78,8 +78,8 @@ class Caption:
 
     text: str
     alternative: str
-    title: str = ""
     parameters: Mapping[str, Value] = field(default_factory=dict)
+    title: str = ""
 
     def __post_init__(self) -> None:
         if unknown := set(self.parameters) - set(SAID):
@@ -129,7 +129,7 @@ def of_group(
     def caption(stem: str, of: Mapping[str, Value]) -> Caption:
         finding, text, alternative = found.get(stem, ""), filled(stem, "text"), filled(stem, "alternative")
         title = str(templates[stem].get("title", ""))
-        return Caption(f"{finding} {text}".strip(), f"{alternative} {finding}".strip(), title, of)
+        return Caption(f"{finding} {text}".strip(), f"{alternative} {finding}".strip(), of, title)
 
     return {stem: caption(stem, of) for stem, of in parameters.items()}
 

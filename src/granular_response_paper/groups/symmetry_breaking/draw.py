@@ -114,7 +114,7 @@ def _finding(datasets: Datasets) -> str:
     sides = datasets["copies"]["asymmetry_sign"].values[datasets["copies"]["asymmetry"].values > ASYMMETRIC]
     count = datasets["copies"].sizes["copy"]
     lean = f" Of {count} copies, to the left: {int((sides < 0).sum())}, to the right: {int((sides > 0).sum())}."
-    return f"The response loses its symmetry {' and '.join(said)}." + (lean if sides.size else "")
+    return f"Loss of symmetry of the response: {', '.join(said)}." + (lean if sides.size else "")
 
 
 def _network(panel: Axes, rest: xr.Dataset, loaded: xr.Dataset) -> dict[str, Any]:
