@@ -1,9 +1,10 @@
 """Captions of the pictures, complete as the paper's are, made from the parameters that their dataset was made with.
 
 A group's ``draw.py`` has ``captions(datasets, parameters) -> dict[str, Caption]``: one for each picture by file stem,
-from the datasets that it is drawn from and the validated parameters that their file stores. Their texts stand beside
-it as templates, in ``captions.yaml``, which :func:`of_group` fills in. The draw stage writes the captions as
-``captions.json`` beside the pictures (:func:`document`); the page reads that file.
+from the datasets that it is drawn from and the validated parameters that their file stores. Their texts stand beside it
+as templates, in ``captions.yaml``, which :func:`of_group` fills in. Templates say what is drawn and are true of any
+data. What the data show is a sentence that ``draw.py`` makes of them, a finding; the caption begins with it. The draw
+stage writes the captions as ``captions.json`` beside the pictures (:func:`document`); the page reads that file.
 
 Texts are plain, as ``report.typeset`` sets them: ``F_ext``, ``k_T/k_N``, ``1e-13``, ``sqrt(R/g)``. They cite the panels
 by the letters that :func:`letters` gives: those of a figure of several pictures run on.
@@ -45,11 +46,10 @@ FIRST_LETTERS: Mapping[str, str] = {
     "fig05b_stiffness": "e",
     "fig05c_depth": "h",
     "fig16s_symmetry_breaking": "c",
-    "fig17_pile_profiles": "g",
     "fig24b_superposition_error": "e",
 }
 
-Value = float | int | str | Sequence[float]
+Value = float | int | str | Sequence[float] | Sequence[str]
 
 #: What a caption says of each parameter, in this order; {} is the value or the list of them.
 SAID: Mapping[str, str] = {
@@ -72,13 +72,14 @@ SAID: Mapping[str, str] = {
 class Caption:
     """What stands below a picture, and what stands for it where it cannot be seen.
 
-    ``parameters`` are keys of :data:`SAID` with a value or several; they end the caption as a sentence. Raises
-    ValueError for another key.
+    ``title`` names the picture for people. ``parameters`` are keys of :data:`SAID` with a value or several; they end
+    the caption as a sentence. Raises ValueError for another key.
     """
 
     text: str
     alternative: str
     parameters: Mapping[str, Value] = field(default_factory=dict)
+    title: str = ""
 
     def __post_init__(self) -> None:
         if unknown := set(self.parameters) - set(SAID):
@@ -107,18 +108,30 @@ def _templates(group: str) -> dict[str, Any]:
     return dict(yaml.read((group_path(group) / TEMPLATES).read_text("utf-8")))
 
 
-def of_group(group: str, parameters: Mapping[str, Mapping[str, Value]], **fields: Any) -> dict[str, Caption]:
+def of_group(
+    group: str,
+    parameters: Mapping[str, Mapping[str, Value]],
+    findings: Mapping[str, str] | None = None,
+    **fields: Any,
+) -> dict[str, Caption]:
     """The captions of those pictures of a group that have ``parameters``, by file stem, from the group's templates.
 
+    ``findings`` are sentences on what the data of a picture show: they begin its caption and end its alternative text.
     Fields of a template are ``fields``, and the parameters of its picture. Raises KeyError for a picture without a
     template, or a field that is not given.
     """
+    found = findings or {}
     templates = _templates(group)
 
     def filled(stem: str, name: str) -> str:
         return _Fields().vformat(templates[stem][name], (), {**parameters[stem], **fields})
 
-    return {stem: Caption(filled(stem, "text"), filled(stem, "alternative"), of) for stem, of in parameters.items()}
+    def caption(stem: str, of: Mapping[str, Value]) -> Caption:
+        finding, text, alternative = found.get(stem, ""), filled(stem, "text"), filled(stem, "alternative")
+        title = str(templates[stem].get("title", ""))
+        return Caption(f"{finding} {text}".strip(), f"{alternative} {finding}".strip(), of, title)
+
+    return {stem: caption(stem, of) for stem, of in parameters.items()}
 
 
 def question(group: str) -> str:
@@ -169,7 +182,7 @@ def values(given: Value) -> str:
     many = [given] if isinstance(given, float | int) else list(given)
     if not many:
         return "none"
-    texts = [_number(value) for value in many]
+    texts = [value if isinstance(value, str) else _number(value) for value in many]
     if len(texts) > 8:
         return f"{texts[0]} to {texts[-1]} ({len(texts)} values)"
     return " and ".join([", ".join(texts[:-1]), texts[-1]]) if len(texts) > 1 else texts[0]
@@ -184,6 +197,12 @@ def letters(stem: str) -> Iterator[str]:
     """The letters of the panels of a picture, in reading order."""
     first = FIRST_LETTERS.get(stem, "a")
     return (chr(code) for code in range(ord(first), ord("z") + 1))
+
+
+def bracket(low: float, high: float, unit: str = WEIGHT) -> str:
+    """A bracket in words: one value where both ends agree to three digits."""
+    ends = f"{low:.3g}", f"{high:.3g}"
+    return f"{ends[0]} {unit}" if ends[0] == ends[1] else f"{ends[0]} to {ends[1]} {unit}"
 
 
 def lettered(panels: Iterable[str]) -> str:
@@ -205,8 +224,8 @@ def number(stem: str) -> int | None:
 def document(
     captions: Mapping[str, Caption], panels: Mapping[str, Sequence[str]], question: str = ""
 ) -> dict[str, dict[str, Any]]:
-    """What ``captions.json`` holds: by file stem the paper's figure, the question that it answers, the letters drawn,
-    the texts, the parameters.
+    """What ``captions.json`` holds: by file stem the paper's figure, a title, the question that it answers, the letters
+    drawn, the texts, the parameters.
 
     ``panels`` are the letters of each picture. Raises ValueError for a picture without a caption.
     """
@@ -215,6 +234,7 @@ def document(
     return {
         stem: {
             "figure": number(stem),
+            "title": captions[stem].title,
             "question": question,
             "panels": list(panels[stem]),
             "caption": captions[stem].whole,

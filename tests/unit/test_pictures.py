@@ -1,13 +1,18 @@
 """Pictures of own results, through the public namespace: what is drawn is what the states say."""
 
+import base64
 import io
+import os
+import subprocess
+import sys
 
 import matplotlib
 import matplotlib.image
 import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection, LineCollection
-from matplotlib.colors import to_rgba
+from matplotlib.colors import to_hex, to_rgba
+from matplotlib.figure import Figure
 from refusals import refuses
 
 import granular_response as gr
@@ -111,7 +116,7 @@ def test_every_picture_of_a_packing_shows_floor_walls_and_loads(result, name):
     ends = [c.get_segments() for c in ax.collections if isinstance(c, LineCollection) and len(c.get_segments()) == 3]
     assert any(np.allclose(np.array(box)[0], [[shift, 0.0], [30.0 + shift, 0.0]]) for box in ends)
     at_rest = getattr(gr.plot, name)(result, ax=style.figure()[1][0, 0], state=0)
-    assert not at_rest.texts
+    assert not [text for text in at_rest.texts if text.arrow_patch is not None]
 
 
 def test_stored_and_solved_results_look_the_same(result, tmp_path):
@@ -176,13 +181,23 @@ def test_why_there_is_no_response_is_said(loadless, turned, ax):
 
 def test_bad_input_is_named(result, ax):
     for message, call in {
-        "state = 3: must be from -3 to 2": lambda: gr.plot.forces(result, ax=ax, state=3),
         "scale = 'log': must be one of linear, sqrt, percentile": lambda: gr.plot.forces(result, ax=ax, scale="log"),
         "component = 'yy'": lambda: gr.plot.stress(result, ax=ax, component="yy"),
         "vmax = 0": lambda: gr.plot.forces(result, ax=ax, vmax=0),
         "holds no states": lambda: gr.plot.forces(result.to_dataset()[["radius"]], ax=ax),
+        "color = 'no colour': must be a colour, or 2, one for each load": lambda: gr.plot.response(
+            result, ax=ax, color="no colour"
+        ),
+        "must be a colour, or 2, one for": lambda: gr.plot.response(result, ax=ax, color=["red", "blue", "green"]),
+        "cmap = 'rainbow2': must be a colour map": lambda: gr.plot.response(result, ax=ax, cmap="rainbow2"),
+        "'lw' and 'linewidth', which are aliases": lambda: gr.plot.response(result, ax=ax, lw=1.0, linewidth=2.0),
+        "must be a colour, or two": lambda: gr.plot.forces(result, ax=ax, color=["red"]),
+        "must be colours by kind, which are unchanged, sliding": lambda: gr.plot.contacts(result, ax=ax, color="red"),
     }.items():
         refuses(pictures.PictureError, message, call)
+    # as of the tables of a result
+    refuses(IndexError, "state = 3: must be from -3 to 2", gr.plot.forces, result, ax=ax, state=3)
+    refuses(TypeError, "state = 1.5: must be an integer", gr.plot.forces, result, ax=ax, state=1.5)
     refuses(TypeError, "must be a Result or its dataset, not str", gr.plot.forces, "result.nc", ax=ax)
 
 
@@ -207,3 +222,109 @@ def test_pairs_across_periodic_sides_are_two_half_lines(ax):
     np.testing.assert_allclose(ends[[1, 3], 1], [[2.0, 1.0], [2.0, 1.0]])
     point = network.pair_points(position, 1.0, [0], [1], box=Box(10.0, periodic=True))
     np.testing.assert_allclose(point, [[0.0, 1.0]])
+
+
+def colours(axes) -> list[str]:
+    """Of the curves of a response."""
+    return [to_hex(line.get_color()) for line in axes.get_lines() if len(line.get_xdata()) == 15]
+
+
+def test_curves_have_the_colours_that_are_asked_for_and_so_has_their_legend(result, ax):
+    gr.plot.response(result, ax=ax, color=["tab:red", "k"], lw=3.0, ls=":")
+    assert colours(ax) == [to_hex("tab:red"), to_hex("k")]
+    assert [to_hex(line.get_color()) for line in ax.get_legend().get_lines()] == colours(ax)
+    assert {line.get_linewidth() for line in ax.get_lines() if len(line.get_xdata()) == 15} == {3.0}
+    other = style.figure()[1][0, 0]
+    assert colours(gr.plot.response(result, ax=other, c="blue")) == [to_hex("blue")] * 2
+    other = style.figure()[1][0, 0]
+    ends = [to_hex(one) for one in matplotlib.colormaps["plasma"]([0.0, 1.0])]
+    assert colours(gr.plot.response(result, ax=other, cmap="plasma")) == ends
+    other = style.figure()[1][0, 0]
+    with matplotlib.rc_context({"axes.prop_cycle": matplotlib.cycler(color=["#123456", "#654321"])}):
+        assert colours(gr.plot.response(result, ax=other)) == ["#123456", "#654321"]
+
+
+def test_fonts_and_sizes_are_the_users_also_of_legends_and_pages(result):
+    def sizes(figure) -> dict[str, set]:
+        axes = figure.axes[0]
+        texts = [axes.xaxis.label, axes.title, *axes.get_xticklabels(), *axes.get_legend().get_texts()]
+        return {"size": {text.get_fontsize() for text in texts}, "font": {text.get_fontname() for text in texts}}
+
+    plain = gr.plot.page(result, ["response"], figure=Figure())
+    assert sizes(plain)["font"] == {"STIXGeneral"} and max(sizes(plain)["size"]) == 9.0
+    users = {"font.size": 14.0, "font.family": "DejaVu Sans Mono", "legend.fontsize": 14.0, "axes.titlesize": 14.0}
+    with matplotlib.rc_context({**users, "lines.linewidth": 4.0}):
+        drawn = gr.plot.page(result, ["response"], figure=Figure())
+        assert {line.get_linewidth() for line in drawn.axes[0].get_legend().get_lines()} == {4.0}
+        with style.context():  # figures of the paper
+            fixed = gr.plot.page(result, ["response"], figure=Figure())
+    assert sizes(drawn) == {"size": {14.0}, "font": {"DejaVu Sans Mono"}}
+    assert sizes(fixed) == sizes(plain)
+
+
+def test_a_colour_of_forces_has_one_meaning(result, ax):
+    gr.plot.forces(result, ax=ax, color="tab:blue")
+    names = {line.get_label(): to_rgba(line.get_color()) for line in ax.get_legend().get_lines()}
+    assert names["force increased"] == to_rgba("tab:blue") != names["force decreased"]
+    for name in ("force increased", "force decreased"):
+        assert len(lines(ax, names[name]).get_segments()) > 0
+    other = style.figure()[1][0, 0]
+    gr.plot.contacts(result, ax=other, color={"opened": "magenta"})
+    assert len([c for c in other.collections if np.allclose(c.get_edgecolor()[0], to_rgba("magenta"))]) == 1
+
+
+def test_the_panels_of_a_page_show_one_range_of_x_at_one_place(result):
+    wide = gr.solve({"packing": {"kind": "slab", "layers": 5, "disks_per_row": 41}})
+    for one in (wide, result):
+        figure = gr.plot.page(one, figure=Figure())
+        figure.draw_without_rendering()
+        panels = figure.axes[:4]
+        boxes = [axes.get_window_extent() for axes in panels]
+        assert {(round(box.x0, 6), round(box.x1, 6)) for box in boxes} == {(boxes[0].x0.round(6), boxes[0].x1.round(6))}
+        at_load = [
+            axes.transData.transform((0.0 if k in (0, 3) else one.origin, 0.0))[0] for k, axes in enumerate(panels)
+        ]
+        np.testing.assert_allclose(at_load, at_load[0], atol=1e-6)
+    left, right = gr.plot.page(wide, figure=Figure()).axes[0].get_xlim()
+    assert right - left == pytest.approx(2.0 * pictures.NEAR * pictures.Shown.of(wide).top)
+
+
+def test_a_stress_without_tension_has_a_scale_from_zero(result, ax):
+    gr.plot.stress(result, ax=ax, state=0)
+    mesh = ax.collections[0]
+    assert (mesh.norm.vmin, mesh.get_cmap().name) == (0.0, style.SEQUENTIAL)
+    assert mesh.get_array().min() >= 0.0
+    other = style.figure()[1][0, 0]
+    gr.plot.stress(result, ax=other, component="xz")
+    assert other.collections[0].get_cmap().name == style.SIGNED
+    assert any("dotted: " in text.get_text() for text in other.texts)
+
+
+def test_a_result_shows_itself_in_a_notebook(result, loadless, monkeypatch):
+    """Notebooks take the text of HTML before the picture, so the picture is in it; it is drawn once."""
+    drawn = []
+    real = pictures.page
+    monkeypatch.setattr(pictures, "page", lambda *given, **options: drawn.append(given[1]) or real(*given, **options))
+    for one, what in ((gr.Result(dataset=result.to_dataset()), "response"),
+                      (gr.Result(dataset=loadless.to_dataset()), "floor")):  # fmt: skip
+        png = one._repr_png_()
+        assert png.startswith(b"\x89PNG") and one._repr_png_() is png
+        text = one._repr_html_()
+        assert base64.b64encode(png).decode() in text and "<table>" in text
+        assert drawn.pop() == [what, "forces"] and not drawn
+    monkeypatch.setattr(pictures, "MOST_DISKS", 10)
+    assert gr.Result(dataset=result.to_dataset())._repr_png_() and drawn == [["response"]]
+
+
+@pytest.mark.parametrize("backend", ["no-such-backend", "module://no.such.module"])
+def test_the_backend_of_a_notebook_does_not_reach_a_command(backend, result, tmp_path):
+    """A notebook sets MPLBACKEND for all that it starts, also where its backend is not installed."""
+    result.save(tmp_path / "result.nc")
+    command = [sys.executable, "-m", "granular_response", "plot", "result.nc", "-o", "page.pdf", "--animate", "a.gif"]
+    environment = {**os.environ, "MPLBACKEND": backend}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr, done.stdout.split()) == (0, "", ["page.pdf", "a.gif"])
+    assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
+    command = [sys.executable, "-m", "granular_response_paper", "draw", "theory", "--data", "no.nc"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and "no.nc" in done.stderr and "backend" not in done.stderr

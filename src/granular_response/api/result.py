@@ -8,6 +8,7 @@ from __future__ import annotations
 import html
 import os
 import warnings
+from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -16,6 +17,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..errors import GranularError
 from ..observe.broke_in import broke_in
 from ..observe.floor import origin_of, smoothed_response
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
@@ -29,7 +31,7 @@ from ..solvers.choice import LARGE
 from ..solvers.small_loads import influence
 from ..solvers.solution import Progress, Solution, continue_solution, solve_scene
 from ..solvers.timestep import time_steps_taken
-from ..state import Certificate, State
+from ..state import Certificate, State, state_index
 from ..store import export as exporting
 from ..store import files
 from ..store.checked import read_result
@@ -333,12 +335,7 @@ class Result:
         return xr.DataArray(found, coordinates, ("floor_disk", "disk", "component"), "influence", labels)
 
     def _index(self, state: int) -> int:
-        if isinstance(state, bool) or not isinstance(state, (int, np.integer)):
-            raise TypeError(f"state = {state!r}: must be an integer, 0 for the initial equilibrium")
-        count = len(self.loaded) + 1
-        if not -count <= state < count:
-            raise IndexError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
-        return int(state) % count
+        return state_index(state, len(self.loaded) + 1)
 
     @property
     def origin(self) -> float:
@@ -465,11 +462,26 @@ class Result:
     def __repr__(self) -> str:
         return "\n".join([f"Result: {self._size()}", *(f"  {name}: {text}" for name, text in self._rows())])
 
+    @cached_property
+    def _picture(self) -> bytes | None:
+        """The response, or the forces on the floor, above the forces in the packing, as PNG; None where none is."""
+        from ..plot import pictures  # only a notebook asks for it
+
+        try:
+            return pictures.thumbnail(self)
+        except GranularError:
+            return None
+
+    def _repr_png_(self) -> bytes | None:
+        return self._picture
+
     def _repr_html_(self) -> str:
         rows = "".join(f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in self._rows())
         scene = html.escape(scene_text.write(shortened(self.scene.to_dict())))
+        picture = self._picture  # notebooks show this text in place of the picture, so it is in it
+        image = f'<img src="data:image/png;base64,{b64encode(picture).decode()}" alt="response">' if picture else ""
         return (
-            f"<b>Result</b>: {self._size()}<table>{rows}</table>"
+            f"<b>Result</b>: {self._size()}{image}<table>{rows}</table>"
             f"<details><summary>scene</summary><pre>{scene}</pre></details>"
         )
 

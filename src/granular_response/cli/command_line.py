@@ -25,6 +25,10 @@ from ..sweeps.errors import SweepError
 
 floating_point.pin()
 
+# Commands draw into files. A notebook sets this variable for all that it starts; matplotlib, where the notebook's
+# backend is not installed, would not even be imported.
+os.environ["MPLBACKEND"] = "agg"
+
 #: Exit code of a program that a signal of the terminal ends.
 _INTERRUPTED = 130
 

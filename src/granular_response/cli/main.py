@@ -240,7 +240,8 @@ def plot(
     ] = -1,
     scale: Annotated[str, typer.Option(help="Scale of the forces: linear, sqrt or percentile.")] = "sqrt",
     animate: Annotated[
-        Path | None, typer.Option(help="Animation to make: .gif, .webp or .html, a frame for each load.")
+        Path | None,
+        typer.Option(help="Animation to make: .gif, .webp, .html, or .mp4 with ffmpeg, a frame for each load."),
     ] = None,
 ) -> None:
     """Draw a result: response, force chains, contacts and stress on one page, or an animation of its loads."""

@@ -54,23 +54,16 @@ def open_region(
     differ in height by less than a quarter of the row spacing. The region reaches the floor with a contact of which
     both disks touch the floor in ``state``: on the lattice, a horizontal one of the bottom row.
     """
-    inside = np.zeros(opened.shape, dtype=bool)
-    candidate = np.flatnonzero(opened)
     centre = contact_centre(state)
     if state.box.periodic:  # the shortest way from the origin
         centre = origin + state.box.separation(centre, origin)
-    may_begin = opened & (np.linalg.norm(centre - origin, axis=1) <= start_distance * lattice_constant)
-    begin = np.flatnonzero(may_begin if start is None else may_begin & start)
-    if begin.size == 0:
+    inside = connected(
+        centre, opened, origin, state.box, start=start, lattice_constant=lattice_constant, reach=reach,
+        start_distance=start_distance,
+    )  # fmt: skip
+    region = np.flatnonzero(inside)
+    if region.size == 0:
         return OpenRegion(contacts=inside, depth=0.0, width=0.0, reaches_floor=False)
-
-    label = _components(centre[candidate], reach * lattice_constant, state.box)
-    distance = np.linalg.norm(centre[begin] - origin, axis=1)
-    nearest = begin[distance <= distance.min() + 0.01 * lattice_constant]
-    begun = np.zeros(label.max() + 1, bool)
-    begun[label[np.searchsorted(candidate, nearest)]] = True
-    region = candidate[begun[label]]
-    inside[region] = True
 
     on_floor = np.zeros(state.position.shape[0], dtype=bool)
     on_floor[state.walls.first[(state.walls.second == FLOOR) & state.walls.touching]] = True
@@ -85,6 +78,33 @@ def open_region(
         width=_largest_row(*ends, np.sqrt(3.0) / 8.0 * lattice_constant),
         reaches_floor=bool(np.any(on_floor[first] & on_floor[second])),
     )
+
+
+def connected(
+    centre: FloatArray,
+    opened: BoolArray,
+    origin: FloatArray,
+    box: Box,
+    *,
+    start: BoolArray | None = None,
+    lattice_constant: float = 2.0,
+    reach: float = 1.2,
+    start_distance: float = 5.0,
+) -> BoolArray:
+    """Which of the ``opened`` contacts (m,) with ``centre`` (m, 2) belong to the region; see :func:`open_region`."""
+    inside = np.zeros(opened.shape, dtype=bool)
+    candidate = np.flatnonzero(opened)
+    may_begin = opened & (np.linalg.norm(centre - origin, axis=1) <= start_distance * lattice_constant)
+    begin = np.flatnonzero(may_begin if start is None else may_begin & start)
+    if begin.size == 0:
+        return inside
+    label = _components(centre[candidate], reach * lattice_constant, box)
+    distance = np.linalg.norm(centre[begin] - origin, axis=1)
+    nearest = begin[distance <= distance.min() + 0.01 * lattice_constant]
+    begun = np.zeros(label.max() + 1, bool)
+    begun[label[np.searchsorted(candidate, nearest)]] = True
+    inside[candidate[begun[label]]] = True
+    return inside
 
 
 def _components(points: FloatArray, reach: float, box: Box) -> NDArray[np.int32]:

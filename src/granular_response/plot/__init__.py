@@ -9,7 +9,7 @@ the ones given as ``ax``, and return the axes, as does ``photoelastic``; ``page`
 from .animation import animate
 from .motion import motion
 from .photoelastic import photoelastic
-from .pictures import PictureError as PictureError
 from .pictures import contacts, floor, forces, packing, page, response, stress
+from .shown import PictureError as PictureError
 
 __all__ = ["animate", "contacts", "floor", "forces", "motion", "packing", "page", "photoelastic", "response", "stress"]

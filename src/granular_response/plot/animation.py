@@ -11,24 +11,27 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 from PIL import Image
 
 from ..state import FloatArray
 from ..store import atomic
 from . import chains, style
-from .chains import draw_chains, draw_key, draw_response
-from .pictures import HasDataset, PictureError, Shown, _new_figure, check_positive, written
+from .chains import draw_chains, draw_key, draw_peaks, draw_response
+from .shown import HasDataset, PictureError, Shown, check_positive, new_figure, written
 
 Results = HasDataset | xr.Dataset | Mapping[str, HasDataset | xr.Dataset]
 
-#: Endings of files, and how Pillow is to write them.
+#: Endings of files, and how Pillow is to write them; ffmpeg writes .mp4.
 FORMATS: Mapping[str, Mapping[str, Any]] = {
     ".gif": {"optimize": False},
     ".webp": {"quality": 80, "method": 4},
     ".html": {},
+    ".mp4": {},
 }
+#: Seconds that the last frame of a file stays at least.
+HELD = 1.5
 #: Colours of a GIF, and the least difference of two of them, of 255.
 COLOURS, APART = 32, 12
 #: A contact force of this part of the load has full width.
@@ -50,19 +53,20 @@ def animate(
     """Animation of a growing load: force chains and opened contacts above the floor response, a frame for each load.
 
     Forces are divided by the applied force, on one scale in all frames, so that only nonlinear changes are seen. Grey:
-    response to the first load. Each frame is one of the ``load_factors`` given to ``solve``.
+    response to the first load. Beside each floor response stands whether it has one peak or two. Each frame is one of
+    the ``load_factors`` given to ``solve``.
 
     Parameters
     ----------
     results : one, or several by their titles, which are shown side by side: with the same forces, in the same order.
-    output : file to write, atomically: .gif, .webp or .html.
+    output : file to write, atomically: .gif, .webp, .html, or .mp4 where the program ffmpeg is installed.
     half_width : draw what is within this distance of the loaded disk, in mean radii; by default all.
-    fps : frames per second; in a .gif or .webp the last one stays for at least a second and a half.
+    fps : frames per second; in a file the last one stays for at least a second and a half (not in .html).
     dpi, width : pixels per inch, and inches from side to side.
     figure : drawn into, or a new one of pyplot's.
 
     Raises PictureError for results without a response or whose forces differ, another ending, a number that is not
-    positive, and a file that cannot be written.
+    positive, .mp4 without ffmpeg, and a file that cannot be written.
 
     Examples
     --------
@@ -82,6 +86,9 @@ def check_target(output: str | os.PathLike[str] | None) -> None:
         return
     if (ending := Path(output).suffix) not in FORMATS:
         raise PictureError(f"{output}: format {ending!r} is unknown, must be {', '.join(FORMATS)}")
+    if ending == ".mp4" and not FFMpegWriter.isAvailable():
+        others = ", ".join(one for one in FORMATS if one != ending)
+        raise PictureError(f"{output}: the program ffmpeg, which writes .mp4, is not installed; {others} need none")
     with written(output):
         atomic.make_folder(output)
         atomic.check_writable(output)
@@ -106,7 +113,8 @@ def rendered(animation: FuncAnimation, ending: str = ".gif", *, fps: float = 6.0
             return animation.to_jshtml(fps=max(1, round(fps))).encode()
         with tempfile.TemporaryDirectory() as folder:
             target = Path(folder) / f"animation{ending}"
-            animation.save(target, writer=_Writer(fps, ending), dpi=dpi)
+            writer: AbstractMovieWriter = _Film(fps) if ending == ".mp4" else _Writer(fps, ending)
+            animation.save(target, writer=writer, dpi=dpi)
             return target.read_bytes()
 
 
@@ -161,10 +169,11 @@ class Frames:
                 below.clear()
                 x, responses = shown.data["x"].values, self.responses[k]
                 draw_response(below, x, responses[frame], responses[0], half_width=self.half, limits=self.limits)
+                draw_peaks(below, x, responses[frame])
                 below.set_xlabel(style.POSITION)
                 below.tick_params(labelleft=k == 0)
             self.panels[1, 0].set_ylabel(style.RESPONSE)
-            draw_key(self.panels[1, -1], "first load")
+            draw_key(self.panels[1, -1], "small load")
             self.panels[0, 0].text(0.0, 1.0, style.equals(style.F_EXT, round(force, 3), style.WEIGHT),
                                    transform=self.panels[0, 0].transAxes, va="bottom")  # fmt: skip
         return []
@@ -177,7 +186,7 @@ def _panels(columns: Sequence[Shown], half: float, width: float, figure: Figure 
     high = wide * (max(map(chains.height, columns)) + 0.5) / (2.0 * half)
     bottom = _BELOW + _RESPONSE + 0.5 * _GAP
     height = bottom + high + _ABOVE
-    figure = _new_figure(height) if figure is None else figure
+    figure = new_figure(height) if figure is None else figure
     figure.set_layout_engine("none")
     figure.set_size_inches(width, height)
     panels = np.empty((2, count), dtype=object)
@@ -186,6 +195,14 @@ def _panels(columns: Sequence[Shown], half: float, width: float, figure: Figure 
         panels[0, k] = figure.add_axes((left, bottom / height, wide / width, high / height))
         panels[1, k] = figure.add_axes((left, _BELOW / height, wide / width, _RESPONSE / height))
     return figure, panels
+
+
+class _Film(FFMpegWriter):
+    """For any player: colours of half the resolution, and so an even number of pixels to each side."""
+
+    def __init__(self, fps: Any) -> None:
+        filters = f"pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white,tpad=stop_mode=clone:stop_duration={HELD}"
+        super().__init__(fps=fps, codec="libx264", extra_args=["-vf", filters, "-pix_fmt", "yuv420p"])
 
 
 class _Writer(PillowWriter):
@@ -206,7 +223,7 @@ class _Writer(PillowWriter):
         if self.ending == ".gif":
             palette = _palette(frames[-1])
             frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
-        durations = [*[self.step] * (len(frames) - 1), max(self.step, 1500)]
+        durations = [*[self.step] * (len(frames) - 1), max(self.step, round(1000 * HELD))]
         options = {"append_images": frames[1:], "duration": durations, "loop": 0, **FORMATS[self.ending]}
         frames[0].save(self.outfile, save_all=True, **options)
 

@@ -9,9 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.ticker import MaxNLocator
 
+from ..observe.peaks import is_double_peaked
 from ..state import OPEN, FloatArray
 from . import network, style
-from .pictures import Shown
+from .shown import Shown
 
 #: Points: the widest line, and what a line is left out below.
 WIDEST, THINNEST = 3.0, 0.3
@@ -80,6 +81,12 @@ def draw_response(
     axes.xaxis.set_major_locator(MaxNLocator(5, prune="both"))
     axes.tick_params(top=False, right=False)
     axes.spines[["top", "right"]].set_visible(False)
+
+
+def draw_peaks(axes: Axes, x: FloatArray, response: FloatArray) -> None:
+    """Whether a response has one peak or two (:mod:`granular_response.observe.peaks`), in its upper left corner."""
+    text = "2 peaks" if is_double_peaked(x, response) else "1 peak"
+    axes.text(0.03, 0.95, text, transform=axes.transAxes, va="top", weight="bold", color=style.INCREASED)
 
 
 def draw_key(axes: Axes, reference: str) -> None:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from ..state import Box
 from . import network, style
 from .animation import animated, check_target
-from .pictures import PictureError, _new_figure, check_positive
+from .shown import PictureError, check_positive, new_figure
 
 #: Inches for the line of text above the picture; height over width up to which that is as wide as a page.
 _ABOVE, _TALLEST = 0.3, 1.2
@@ -33,7 +33,7 @@ def motion(
     Parameters
     ----------
     moved : the dataset of ``gr.motion``, or some of its times (``moved.isel(time=slice(0, 50))``).
-    output : file to write, atomically: .gif, .webp or .html.
+    output : file to write, as of :func:`animate`.
     fps, dpi, width : frames per second; pixels per inch, and inches from side to side.
     figure : drawn into, or a new one of pyplot's.
 
@@ -59,7 +59,7 @@ def motion(
         position[..., 0] %= box.width
     fastest, top = float(speed.max()) or 1.0, float((position[..., 1] + radius).max())
     with style.context():
-        figure = _new_figure(1.0) if figure is None else figure
+        figure = new_figure(1.0) if figure is None else figure
         figure.set_layout_engine("none")
         wide = min(width, width * _TALLEST * (box.width + 2.0) / (top + 1.0))
         high = wide * (top + 1.0) / (box.width + 2.0)

@@ -17,6 +17,7 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike
 
+from ..observe.teardrop import connected
 from ..state import FLOOR, OPEN, SLIDING, Box, FloatArray
 from . import style
 
@@ -93,7 +94,12 @@ CONTACT_LINES: dict[str, dict[str, Any]] = {
     "sliding": {"color": style.SLIDING, "linewidth": 2.0, "zorder": 3},
     "closed": {"color": style.CLOSED, "linewidth": 2.4, "zorder": 4},
     "opened": {"color": style.OPENED, "linewidth": 3.8, "zorder": 5},
+    "opened elsewhere": {"color": style.OPENED_ELSEWHERE, "linewidth": 3.8, "zorder": 4.5},
 }
+
+
+#: Those of contacts that are told apart by their status alone.
+KINDS = ("unchanged", "sliding", "closed", "opened")
 
 
 def draw_contact_changes(
@@ -105,33 +111,38 @@ def draw_contact_changes(
     touching_before: ArrayLike,
     touching: ArrayLike,
     sliding: ArrayLike,
+    region: ArrayLike = True,
     box: Box | None = None,
     **lines: Any,
 ) -> dict[str, LineCollection]:
     """What a load changes in the contact network (Figs. 4, 8, 9); the masks are over candidate pairs, (m,).
 
-    ``opened`` touched before and does not now (thick), ``closed`` the reverse, ``sliding`` touches and
-    slides now, ``unchanged`` touches before and after without sliding (thin black). Kinds that do not
-    occur are left out of the returned collections, which are labelled for a legend.
+    ``opened`` touched before and does not now (thick; pale outside of a ``region``), ``closed`` the reverse,
+    ``sliding`` touches and slides now, ``unchanged`` touches before and after without sliding (thin black). Kinds that
+    do not occur are left out of the returned collections, which are labelled for a legend.
     """
     i, j = np.asarray(first, dtype=int), np.asarray(second, dtype=int)
     drawn = {}
-    for name, mask in _changes(touching_before, touching, sliding).items():
+    for name, mask in _changes(touching_before, touching, sliding, region).items():
         if mask.any():
             look = {**CONTACT_LINES[name], "label": name, **lines}
             drawn[name] = draw_contacts(axes, position, i[mask], j[mask], box=box, **look)
     return drawn
 
 
-def _changes(before: ArrayLike, now: ArrayLike, sliding: ArrayLike = False) -> dict[str, np.ndarray]:
+def _changes(
+    before: ArrayLike, now: ArrayLike, sliding: ArrayLike = False, region: ArrayLike = True
+) -> dict[str, np.ndarray]:
     """(m,) masks of what became of contacts."""
+    inside = np.asarray(region, dtype=bool)
     touched, touches = np.asarray(before, dtype=bool), np.asarray(now, dtype=bool)
     slides = np.asarray(sliding, dtype=bool) & touches
     return {
         "unchanged": touched & touches & ~slides,
         "sliding": touched & slides,
         "closed": ~touched & touches,
-        "opened": touched & ~touches,
+        "opened": touched & ~touches & inside,
+        "opened elsewhere": touched & ~touches & ~inside,
     }
 
 
@@ -141,7 +152,8 @@ def draw_state_changes(
     """Figs. 4, 8, 9 and 16: the central third of a slab, what a load changes in its contacts, the load and the floor.
 
     ``rest`` and ``loaded`` are states of a study's dataset, ``sliding`` (m,) marks contacts, by default by their
-    status. Contacts with the floor are lines down to it. Returns what :func:`draw_contact_changes` does.
+    status. Opened contacts that are not connected with those below the load are pale. Contacts with the floor are lines
+    down to it. Returns what :func:`draw_contact_changes` does.
     """
     sliding = loaded["contact_status"].values == SLIDING if sliding is None else sliding
     position, disk = loaded["position"].values, int(rest["loaded_disk"])
@@ -151,15 +163,19 @@ def draw_state_changes(
     left, right = x - width / 6.0, x + width / 6.0
     # lines that cross the edges of the picture are cut there
     inside = np.abs(position[:, 0] - x) <= width / 6.0 + 2.0
+    before, now = rest["contact_status"].values != OPEN, loaded["contact_status"].values != OPEN
+    start = rest["position"].values
+    region = connected(0.5 * (start[first] + start[second]), before & ~now, start[disk], Box(width))
     shown = inside[first] & inside[second]
     drawn = draw_contact_changes(
         axes,
         position,
         first[shown],
         second[shown],
-        touching_before=rest["contact_status"].values[shown] != OPEN,
-        touching=loaded["contact_status"].values[shown] != OPEN,
+        touching_before=before[shown],
+        touching=now[shown],
         sliding=np.asarray(sliding)[shown],
+        region=region[shown],
     )
     on_floor = rest["wall_index"].values == FLOOR
     centre = position[rest["wall_disk"].values[on_floor]]

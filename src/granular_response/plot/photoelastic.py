@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from ..observe.disk_stress import disk_stress, principal_difference
 from ..state import FloatArray, wall_normals
 from . import style
-from .pictures import HasDataset, Shown, _aspect, _axes, _loads, check_positive
+from .shown import HasDataset, Shown, aspect_of, check_positive, draw_loads, new_axes
 
 #: Each pixel is the mean of this many by as many points: near a contact fringes are narrower than a pixel.
 POINTS = 2
@@ -46,7 +46,8 @@ def photoelastic(
     pixels : of the picture, from side to side.
     image : goes to ``Axes.imshow``.
 
-    Raises PictureError for a state that there is not, unless ``fringe``, ``half_width`` and ``pixels`` are positive.
+    Raises IndexError for a state that does not exist; PictureError unless ``fringe``, ``half_width`` and ``pixels`` are
+    positive.
 
     Examples
     --------
@@ -63,12 +64,12 @@ def photoelastic(
     fringe = fringe or 4.0 * largest / np.pi / ORDERS or 1.0
     size = (right - left) / int(pixels)
     light = _light(shown, added, fringe, left, size, (int(np.ceil(shown.top / size)), int(pixels)))
-    with style.context():
-        axes = _axes(ax, _aspect(shown) if half_width is None else 1.25 * shown.top / (right - left))
+    with style.with_users():
+        axes = new_axes(ax, aspect_of(shown) if half_width is None else 1.25 * shown.top / (right - left))
         extent = (left, left + size * light.shape[1], 0.0, size * light.shape[0])
         axes.imshow(light, **{"cmap": "gray", "vmin": 0.0, "vmax": 1.0, "origin": "lower", "extent": extent, **image})
         style.no_axes(axes)
-        _loads(axes, shown)
+        draw_loads(axes, shown)
         axes.set(xlim=(left, right), ylim=(0.0, max(axes.dataLim.ymax, shown.top) + 0.5))
     return axes
 

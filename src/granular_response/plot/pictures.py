@@ -1,198 +1,87 @@
 """Pictures of a result: its response, forces on the floor and in the packing, contacts, stress, and the packing itself.
 
 Each takes a ``Result`` or the dataset of one (``Result.to_dataset``, or a stored file as xarray opens it). ``state`` is
-0 for the initial equilibrium, then one for each load factor, -1 the last. Without ``ax`` a picture has a
-figure of its own, made by pyplot.
+0 for the initial equilibrium, then one for each load factor, -1 the last; IndexError for one that does not exist.
+Without ``ax`` a picture has a figure of its own, made by pyplot. Fonts, sizes, line widths and the cycle of colours of
+curves are those that the user has set in ``matplotlib.rcParams``.
 """
 
 from __future__ import annotations
 
-import contextlib
 import os
 import reprlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.cbook import normalize_kwargs
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Colormap, is_color_like, to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
-from ..errors import GranularError
-from ..observe import positive
-from ..observe.floor import origin_of
 from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
-from ..state import OPEN, SLIDING, Box, FloatArray, foot_points, wall_normals
+from ..state import OPEN, SLIDING, FloatArray, foot_points, wall_normals
 from ..store import atomic
 from . import network, style
 from .field import draw_field, root_norm
+from .photoelastic import photoelastic
+from .shown import HasDataset, PictureError, Shown, aspect_of, check_positive, draw_loads, new_axes, new_figure, written
 
 Scale = Literal["linear", "sqrt", "percentile"]
 
-
+#: A stress whose smallest value is not below this part of its largest is compression everywhere, and drawn so.
+ONE_SIGN = -0.02
 #: Most curves that a legend names: of more, some from the first to the last.
 MOST_NAMED = 8
 
 
-class PictureError(GranularError, ValueError):
-    """A picture that cannot be drawn as asked. The message is one line."""
-
-
-def check_positive(**given: float | None) -> None:
-    """PictureError, with its name, for the first of ``given`` that is no number greater than 0; None is left out."""
-    try:
-        positive.check_positive(**{name: value for name, value in given.items() if value is not None})
-    except ValueError as error:
-        raise PictureError(str(error)) from None
-
-
-@contextlib.contextmanager
-def written(output: str | os.PathLike[str]) -> Iterator[None]:
-    """A file that cannot be written within it is a PictureError."""
-    try:
-        yield
-    except OSError as error:
-        raise PictureError(f"{output}: cannot be written: {error.strerror or error}") from error
-
-
-class HasDataset(Protocol):
-    """A result."""
-
-    def to_dataset(self) -> xr.Dataset: ...
-
-
-@dataclass(frozen=True)
-class Shown:
-    """One state of a result as pictures take it: plain arrays, contacts on the list that all states share."""
-
-    data: xr.Dataset
-    index: int
-
-    @classmethod
-    def of(cls, result: HasDataset | xr.Dataset, state: int = -1) -> Shown:
-        """Raises TypeError for what is no result, PictureError for a dataset or a state that is not there."""
-        if not isinstance(result, xr.Dataset):
-            if not hasattr(result, "to_dataset"):
-                kind = type(result).__name__
-                raise TypeError(f"result: must be a Result or its dataset, not {kind} (open_result reads a file)")
-            result = result.to_dataset()
-        if not {"position", "contact_force", "wall_force", "state_load_factor"} <= set(result.variables):
-            raise PictureError("result: the dataset holds no states of a packing (open_result reads a file)")
-        if isinstance(state, bool) or not isinstance(state, (int, np.integer)):
-            raise PictureError(f"state = {state!r}: must be an integer, 0 for the initial equilibrium")
-        count = result.sizes["state"]
-        if not -count <= state < count:
-            raise PictureError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
-        return cls(result, int(state) % count)
-
-    def values(self, name: str, index: int | None = None) -> np.ndarray:
-        """A variable in this state, or in another one."""
-        variable = self.data[name]
-        if "state" in variable.dims:
-            variable = variable.isel(state=self.index if index is None else index)
-        return variable.values
-
-    @property
-    def position(self) -> FloatArray:
-        return self.values("position")
-
-    @property
-    def radius(self) -> FloatArray:
-        return self.values("radius")
-
-    @property
-    def box(self) -> Box:
-        return Box.of(self.data.attrs)
-
-    @property
-    def top(self) -> float:
-        """Highest point of a disk."""
-        return float((self.position[:, 1] + self.radius).max())
-
-    @property
-    def origin(self) -> float:
-        """Where ``x`` of the response is 0."""
-        return origin_of(self.values("position", 0), self.values("floor_disk"), self.values("x"), self.box)
-
-    @property
-    def pairs(self) -> tuple[np.ndarray, np.ndarray]:
-        return self.values("contact_disk"), self.values("contact_partner")
-
-    def across(self, half_width: float | None) -> tuple[float, float]:
-        """From where to where a picture goes: ``half_width`` to both sides of the loaded disks, the packing at most.
-
-        Of a periodic packing all is shown, as what is near a load may be at both ends of it.
-        """
-        ends = -1.5, self.box.width + 1.5
-        if half_width is None or not self.loads or self.box.periodic:
-            return ends
-        x = self.position[[disk for disk, *_ in self.loads], 0]
-        return max(ends[0], float(x.min()) - half_width), min(ends[1], float(x.max()) + half_width)
-
-    def forces(self, added: bool) -> tuple[FloatArray, FloatArray]:
-        """Of contacts of disks and at walls, whole or ``added``: the incremental forces."""
-        pair, wall = (
-            self.values(name) - (self.values(name, 0) if added else 0.0) for name in ("contact_force", "wall_force")
-        )
-        return pair, wall
-
-    @property
-    def lack(self) -> str:
-        """Why there is no response, which is divided by the force of the loads; empty where there is one."""
-        if np.isfinite(self.data["floor_response"].values).any():
-            return ""
-        if not self.data.sizes["load_point"]:
-            return "no loads"
-        if self.data.sizes["state"] == 1:
-            return "no state under load"
-        if "reaction" not in self.data and not self.data["applied_load"].values[:, :2].any():
-            return "no load has a force"
-        return "the loads apply no force in any state"
-
-    @cached_property
-    def loads(self) -> list[tuple[int, FloatArray, float]]:
-        """Disk, force and torque of each load in this state."""
-        if not self.index:
-            return []
-        applied = float(self.values("state_load_factor")) * self.values("applied_load")
-        if "reaction" in self.data:
-            reaction = self.data["reaction"]
-            applied[:, :2] += (reaction.isel(load=self.index - 1) if "load" in reaction.dims else reaction).values
-        return [
-            (int(disk), load[:2], float(load[2]))
-            for disk, load in zip(self.values("loaded_disk"), applied, strict=True)
-            if load.any()
-        ]
-
-
-def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line: Any) -> Axes:
+def response(
+    result: HasDataset | xr.Dataset,
+    *,
+    ax: Axes | None = None,
+    color: Any = None,
+    cmap: str | Colormap | None = None,
+    **line: Any,
+) -> Axes:
     """The floor response against the position relative to the loaded disk, a curve for each load (Fig. 7).
 
-    ``line`` goes to ``Axes.plot``. Raises PictureError for a result without forces to respond to; see :func:`floor`.
+    Parameters
+    ----------
+    color : of all curves, or a list with a colour for each; by default those of ``cmap``, of the user's
+        ``axes.prop_cycle``, or a ramp from dark to light.
+    cmap : colour map of matplotlib, from the first curve to the last.
+    line : goes to ``Axes.plot``, also as matplotlib shortens its names (``lw``, ``ls``, ``c``).
+
+    Raises PictureError for a result without forces to respond to, see :func:`floor`, and for colours that are not one
+    or one for each curve.
 
     Examples
     --------
-    >>> gr.plot.response(result).figure.savefig("response.png")
+    >>> gr.plot.response(result, cmap="plasma", lw=1.5).figure.savefig("response.png")
     """
     shown = Shown.of(result)
     if shown.lack:
         raise PictureError(f"result: {shown.lack}, so there is no response; floor draws the forces on the floor")
-    with style.context():
-        axes = _axes(ax, 0.36)
+    with style.with_users():
+        axes = new_axes(ax, 0.36)
         curves = np.atleast_2d(shown.data["floor_response"].values)
-        forces, colours = np.atleast_1d(shown.data["total_force"].values), style.ordered_colours(len(curves))
+        line = _aliased(line, Line2D, color)
+        colours = _colours(len(curves), line.pop("color", None), cmap)
+        forces = np.atleast_1d(shown.data["total_force"].values)
         branches = shown.data["branch"].values if "branch" in shown.data.variables else ["loading"] * len(curves)
         one_branch = all(branch == "loading" for branch in branches)
         named = set(np.linspace(0, len(curves) - 1, min(len(curves), MOST_NAMED)).round().astype(int).tolist())
         for k, (curve, force, branch) in enumerate(zip(curves, forces, branches, strict=True)):
             if not np.isnan(curve).all():  # unloaded: floor draws what is left
                 label = (f"{force:g}" if one_branch else f"{force:g} ({branch})") if k in named else None
-                look = {**style.marked_line(k, colour=colours[k]), "markersize": 2.6, "label": label, **line}
+                look = {**_marked(k, colours[k]), "label": label, **line}
                 axes.plot(shown.data["x"].values, curve, **look)
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
         axes.set(xlabel=style.POSITION, ylabel=style.RESPONSE)
@@ -221,9 +110,9 @@ def floor(
     added = shown.index > 0 if added is None else added
     rest = shown.data["floor_force_rest"].values
     force = np.atleast_2d(shown.data["floor_force"].values)[shown.index - 1] if shown.index else rest
-    with style.context():
-        axes = _axes(ax, 0.36)
-        look = {**style.marked_line(0, colour=style.ordered_colours(1)[0]), "markersize": 2.6, **line}
+    with style.with_users():
+        axes = new_axes(ax, 0.36)
+        look = {**_marked(0, style.ordered_colours(1)[0]), **_aliased(line, Line2D)}
         axes.plot(shown.data["x"].values, force - rest if added else force, **look)
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
         axes.set(xlabel=style.POSITION, ylabel=style.INCREMENTAL_FLOOR_FORCE if added else style.FLOOR_FORCE)
@@ -240,6 +129,7 @@ def forces(
     scale: Scale = "sqrt",
     vmax: float | None = None,
     half_width: float | None = None,
+    color: Any = None,
     **lines: Any,
 ) -> Axes:
     """Force chains: each contact force is a line along it, as long and as wide as it is large (Figs. 2, 13).
@@ -253,7 +143,9 @@ def forces(
     vmax : magnitude that has full length, in mean disk weights; by default that of the largest force. Give several
         pictures the same one to compare them (not for percentiles).
     half_width : draw what is within this distance of the loaded disks, in mean radii; by default all.
-    lines : go to ``LineCollection``, such as ``color="tab:blue"`` or ``alpha``.
+    color : of forces that the load increases, of which those that it decreases have a pale tint; or two, for these
+        and those.
+    lines : go to ``LineCollection``, such as ``alpha``.
 
     Examples
     --------
@@ -264,6 +156,8 @@ def forces(
     if scale not in network.SCALES:
         raise PictureError(f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}")
     check_positive(vmax=vmax, half_width=half_width)
+    lines = _aliased(lines, LineCollection, color)
+    colours = _two_colours(lines.pop("color", None))
     pair, wall = shown.forces(added)
     normal = shown.box.separation(*(shown.position[disks] for disks in shown.pairs))
     inward = wall_normals(shown.values("wall_index"))
@@ -274,8 +168,8 @@ def forces(
     force, direction = np.concatenate([pair, wall]), np.concatenate([normal, inward])
     reference = float(np.linalg.norm(force, axis=1).max(initial=0.0)) if vmax is None else vmax
     drawn = network.rescaled(force, scale, largest=reference)
-    with style.context():
-        axes = _axes(ax, _aspect(shown, half_width))
+    with style.with_users():
+        axes = new_axes(ax, aspect_of(shown, half_width))
         _packing(axes, shown, half_width, edgecolor="none", facecolor=style.DISKS)
         # by percentile, half of all forces are large: shorter and thinner lines keep them apart
         crowded = 0.5 if scale == "percentile" else 1.0
@@ -284,15 +178,14 @@ def forces(
         widest = crowded * float(np.clip(72.0 * inches / np.ptp(axes.get_xlim()), 0.8, 5.0))
         look = {"length_per_force": 4.0 * crowded, "width_per_force": widest, "smallest": 0.02, **lines}
         kinds = network.draw_forces(axes, point, drawn, direction, **look)
-        handles = [
-            Line2D([], [], color=lines.get("color", network.FORCE_LINES[name]["color"]), linewidth=1.6, label=name)
-            for name in (kinds if added else ())
-        ]
+        for name, kind in kinds.items():
+            kind.set_color(colours[name])
+        handles = [Line2D([], [], color=colours[name], linewidth=1.6, label=name) for name in (kinds if added else ())]
         if reference > 0.0 and scale != "percentile":
             for size in (reference, 0.1 * reference):
                 part = float(network.SCALES[scale](np.array([size / reference]))[0])
                 name = f"${size:.2g}\\,\\bar m g$"
-                handles.append(Line2D([], [], color=style.INCREASED, linewidth=widest * part, label=name))
+                handles.append(Line2D([], [], color=colours["force increased"], linewidth=widest * part, label=name))
         _legend(axes, handles, shown, half_width)
     return axes
 
@@ -303,11 +196,13 @@ def contacts(
     ax: Axes | None = None,
     state: int = -1,
     half_width: float | None = None,
+    color: Mapping[str, Any] | None = None,
     **lines: Any,
 ) -> Axes:
     """What a load changes in the contact network: opened, closed and sliding contacts (Figs. 4, 8, 9).
 
-    ``half_width`` is that of :func:`forces`; ``lines`` go to ``LineCollection``.
+    ``half_width`` is that of :func:`forces`; ``color`` has colours by kind (unchanged, sliding, closed, opened), such
+    as ``{"opened": "tab:red"}``; ``lines`` go to ``LineCollection``. Raises PictureError for a colour of another kind.
 
     Examples
     --------
@@ -315,9 +210,14 @@ def contacts(
     """
     shown = Shown.of(result, state)
     check_positive(half_width=half_width)
+    lines = _aliased(lines, LineCollection, color)
+    colours = lines.pop("color", None) or {}
+    if not isinstance(colours, Mapping) or not set(colours) <= set(network.KINDS):
+        kinds = ", ".join(network.KINDS)
+        raise PictureError(f"color = {reprlib.repr(colours)}: must be colours by kind, which are {kinds}")
     before, now = shown.values("contact_status", 0), shown.values("contact_status")
-    with style.context():
-        axes = _axes(ax, _aspect(shown, half_width))
+    with style.with_users():
+        axes = new_axes(ax, aspect_of(shown, half_width))
         _packing(axes, shown, half_width)
         drawn = network.draw_contact_changes(
             axes,
@@ -329,6 +229,9 @@ def contacts(
             box=shown.box,
             **lines,
         )
+        for kind, colour in colours.items():
+            if kind in drawn:
+                drawn[kind].set_color(colour)
         _legend(axes, list(drawn.values())[::-1], shown, half_width)
     return axes
 
@@ -343,12 +246,13 @@ def stress(
     width: float = 2.0,
     vmax: float | None = None,
     half_width: float | None = None,
-    cmap: str = style.SIGNED,
+    cmap: str | Colormap | None = None,
     **mesh: Any,
 ) -> Axes:
     """A component of the coarse-grained stress, by default the incremental stress (Fig. 14).
 
-    Compression is blue, its loss red, in steps of the square root. Within ``width`` of the floor and of side walls
+    In steps of the square root. Where all is compression (no value below :data:`ONE_SIGN` of the largest) it is bright
+    where it is large; otherwise compression is blue, its loss red. Within ``width`` of the floor and of side walls
     (dotted) part of the Gaussian lies outside the packing, so the stress falls there.
 
     Parameters
@@ -358,7 +262,7 @@ def stress(
     width : of the Gaussian in mean radii (Sec. V.C).
     vmax : end of the colour scale, in mean disk weights per mean radius; by default the largest magnitude.
     half_width : as of :func:`forces`.
-    cmap : colour map of matplotlib; zero is in its middle.
+    cmap : colour map of matplotlib; its middle is zero, or its beginning where all is compression.
     mesh : goes to ``Axes.pcolormesh``.
 
     Examples
@@ -386,24 +290,38 @@ def stress(
     tensor = coarse_grained_stress(carried, grid_points(x + shown.origin, z), width)
     field = tensor[..., "xz".index(component[0]), "xz".index(component[1])]
     end = float(np.abs(field).max()) if vmax is None else vmax
-    with style.context():
-        axes = _axes(ax, _aspect(shown, half_width))
-        norm = root_norm(end if end > 0.0 else 1.0, signed=True)
-        image = draw_field(axes, x, z, field, norm=norm, cmap=cmap, **mesh)
-        near: dict[str, Any] = {"color": style.MUTED, "linewidth": 0.5, "linestyle": ":"}
+    signed = bool(field.min() < ONE_SIGN * field.max())
+    with style.with_users():
+        axes = new_axes(ax, aspect_of(shown, half_width))
+        norm = root_norm(end if end > 0.0 else 1.0, signed=signed)
+        mesh = {"cmap": cmap or (style.SIGNED if signed else style.SEQUENTIAL), **mesh}
+        image = draw_field(axes, x, z, field if signed else np.maximum(field, 0.0), norm=norm, **mesh)
+        near: dict[str, Any] = {"color": style.MUTED if signed else style.FAINT, "linewidth": 0.7, "linestyle": ":"}
         axes.axhline(width, **near)
         for side in () if shown.box.periodic else (width, shown.box.width - width):
             axes.axvline(side - shown.origin, **near)
         network.draw_box(axes, shown.box, shown.top, shift=left)
-        _loads(axes, shown, origin=shown.origin)
+        draw_loads(axes, shown, origin=shown.origin)
         axes.set(ylim=(-0.03 * shown.top, None), xlabel=style.POSITION, ylabel=style.HEIGHT)
         if not shown.box.periodic:
             left, right = shown.across(half_width)
             axes.set_xlim(left - shown.origin, right - shown.origin)
         axes.tick_params(top=False, right=False)
+        walls = "the floor" if shown.box.periodic else "the floor and the walls"
+        axes.annotate(
+            rf"dotted: ${width:g}\,{style.RADIUS}$ from {walls}",
+            (1.0, 0.0),
+            (0.0, -2.0 * mpl.rcParams["font.size"]),
+            xycoords="axes fraction",
+            textcoords="offset points",
+            ha="right",
+            va="center_baseline",
+            fontsize=mpl.rcParams["legend.fontsize"],
+            color=style.MUTED,
+        )
         bar = axes.figure.colorbar(image, ax=axes, shrink=0.9, aspect=14, pad=0.02)
         bar.set_label(f"{'incremental ' if added else ''}$\\sigma_{{{component}}}\\bar R/\\bar m g$")
-        ticks = [end * part for part in (-1.0, -0.25, 0.0, 0.25, 1.0)]
+        ticks = [end * part for part in ((-1.0, -0.25, 0.0, 0.25, 1.0) if signed else (0.0, 0.0625, 0.25, 1.0))]
         bar.set_ticks(ticks, labels=[f"${tick:.2g}$" for tick in ticks])
         bar.ax.minorticks_off()
     return axes
@@ -430,8 +348,8 @@ def packing(
     """
     shown = Shown.of(result, state)
     touching = shown.values("contact_status") != OPEN
-    with style.context():
-        axes = _axes(ax, _aspect(shown))
+    with style.with_users():
+        axes = new_axes(ax, aspect_of(shown))
         if values is None:
             _packing(axes, shown, **{"edgecolor": style.MUTED, "facecolor": "#EDF2F6", **patches})
             network.draw_rotations(
@@ -453,10 +371,50 @@ def packing(
     return axes
 
 
-def _photoelastic(result: HasDataset | xr.Dataset, **options: Any) -> Axes:
-    from .photoelastic import photoelastic  # which is drawn with what is here
+def _aliased(given: Mapping[str, Any], artist: type[Artist], color: Any = None) -> dict[str, Any]:
+    """Keywords under their whole names, with ``color``; PictureError for one that is given twice."""
+    try:
+        return normalize_kwargs({**given, **({} if color is None else {"color": color})}, artist)
+    except TypeError as error:
+        raise PictureError(f"{error}") from None
 
-    return photoelastic(result, **options)
+
+def _marked(index: int, colour: Any) -> dict[str, Any]:
+    """A curve with markers: those of the user's settings where he has set sizes."""
+    look = {**style.marked_line(index, colour=colour), "markersize": 2.6}
+    users = {"linewidth": mpl.rcParams["lines.linewidth"], "markersize": mpl.rcParams["lines.markersize"]}
+    return look | {name: one for name, one in users.items() if one != style.RC[f"lines.{name}"]}
+
+
+def _colours(count: int, color: Any, cmap: str | Colormap | None) -> list[Any]:
+    """A colour for each of some curves."""
+    if color is not None:
+        if is_color_like(color):
+            return [color] * count
+        many = [] if isinstance(color, str) else list(color)
+        if len(many) != count or not all(map(is_color_like, many)):
+            raise PictureError(f"color = {reprlib.repr(color)}: must be a colour, or {count}, one for each load")
+        return many
+    if cmap is not None:
+        try:
+            return [to_hex(one) for one in mpl.colormaps.get_cmap(cmap)(np.linspace(0.0, 1.0, count))]
+        except (TypeError, ValueError):
+            raise PictureError(f"cmap = {cmap!r}: must be a colour map of matplotlib, such as 'viridis'") from None
+    users = style.users_cycle()
+    return [users[k % len(users)] for k in range(count)] if users else style.ordered_colours(count)
+
+
+def _two_colours(color: Any) -> dict[str, Any]:
+    """Those of increased and of decreased forces."""
+    if color is None:
+        return {name: look["color"] for name, look in network.FORCE_LINES.items()}
+    if is_color_like(color):
+        pale = tuple(1.0 - 0.45 * (1.0 - part) for part in to_rgb(color))
+        return dict(zip(network.FORCE_LINES, (color, pale), strict=True))
+    many = [] if isinstance(color, str) else list(color)
+    if len(many) != len(network.FORCE_LINES) or not all(map(is_color_like, many)):
+        raise PictureError(f"color = {reprlib.repr(color)}: must be a colour, or two (increased, decreased)")
+    return dict(zip(network.FORCE_LINES, many, strict=True))
 
 
 #: The pictures of a page, by name.
@@ -467,7 +425,7 @@ PICTURES: Mapping[str, Callable[..., Axes]] = {
     "contacts": contacts,
     "stress": stress,
     "packing": packing,
-    "photoelastic": _photoelastic,
+    "photoelastic": photoelastic,
 }
 #: Those that are curves over the floor, not maps of the packing.
 _GRAPHS = ("response", "floor")
@@ -487,8 +445,8 @@ def page(
 
     ``what`` are names of the functions of this module or ``photoelastic``, as a list or as text with commas.
 
-    By default ``response``, ``forces``, ``contacts`` and ``stress``, with ``floor`` where there is no response.
-    Forces, contacts and stress of a wide packing are shown within :data:`NEAR` times its height of the loaded disks.
+    By default ``response``, ``forces``, ``contacts`` and ``stress``, with ``floor`` where there is no response. All
+    show the same range of x, of a wide packing that within :data:`NEAR` times its height of the loaded disks.
     ``scale`` is that of :func:`forces`; ``figure`` is drawn into, or a new one of pyplot's.
 
     Raises PictureError for another name, and what the pictures raise.
@@ -507,31 +465,73 @@ def page(
     if what is None:
         what = ("floor" if shown.lack else "response", "forces", "contacts", "stress")
     half_width = NEAR * shown.top
-    with style.context():
-        columns = 1 if len(what) == 1 or _aspect(shown, half_width) < 0.6 else 2
-        rows = -(-len(what) // columns)
-        wide = style.DOUBLE / columns
-        shape = {name: _aspect(shown, half_width if name in _CUT else None) for name in what}
-        heights = [0.36 * wide if name in _GRAPHS else shape[name] * wide + 0.25 for name in what]
-        in_row = [max(heights[k * columns : (k + 1) * columns]) + 0.12 for k in range(rows)]
-        figure = _new_figure(sum(in_row)) if figure is None else figure
-        figure.set_size_inches(style.DOUBLE, sum(in_row))
-        figure.set_layout_engine("compressed")
-        panels = figure.subplots(rows, columns, squeeze=False, height_ratios=in_row)
-        for k, axes in enumerate(panels.ravel()):
-            if k >= len(what):
-                axes.set_axis_off()
-                continue
-            options: dict[str, Any] = {} if what[k] == "response" else {"state": state}
-            options |= {"half_width": half_width} if what[k] in _CUT else {}
-            options |= {"scale": scale} if what[k] == "forces" else {}
-            PICTURES[what[k]](shown.data, ax=axes, **options)
-            if what[k] in _GRAPHS and columns > 1:
-                axes.set_box_aspect(0.75)
-            style.letter(axes, chr(ord("a") + k), place="above", text=_title(what[k], shown))
-        figure.draw_without_rendering()  # maps keep their shape: what they leave of the estimated height is cut off
-        figure.set_size_inches(style.DOUBLE, figure.get_tightbbox().height + 2.0 * style.MARGIN)
+    with style.with_users():
+        figure = new_figure(style.DOUBLE) if figure is None else figure
+        figure.set_layout_engine("none")
+        columns = 1 if len(what) == 1 or aspect_of(shown, half_width) < 0.6 else 2
+        panels = [figure.add_axes((0.1, 0.1, 0.8, 0.8), label=name) for name in what]
+        for k, (name, axes) in enumerate(zip(what, panels, strict=True)):
+            options: dict[str, Any] = {} if name == "response" else {"state": state}
+            options |= {"half_width": half_width} if name in _CUT else {}
+            options |= {"scale": scale} if name == "forces" else {}
+            PICTURES[name](shown.data, ax=axes, **options)
+            style.letter(axes, chr(ord("a") + k), place="above", text=_title(name, shown))
+        _stack(figure, panels, columns, shown, half_width)
     return figure
+
+
+#: Inches of a page around each picture, for texts of 9 points: left, right with and without a colour bar, above, and
+#: below with and without the label of an axis; from a picture to its colour bar, and the width of that.
+_LEFT, _BAR_SIDE, _RIGHT, _ABOVE, _AXIS, _BELOW, _GAP, _BAR = 0.55, 0.85, 0.12, 0.24, 0.4, 0.26, 0.1, 0.1
+
+
+def _stack(figure: Figure, panels: Sequence[Axes], columns: int, shown: Shown, half_width: float) -> None:
+    """Give all panels of a page the same x range, place and width; maps are as high as their scale makes them."""
+    left, right = shown.across(half_width)
+    middle = 0.5 * shown.box.width if shown.box.periodic else shown.origin
+    per_text = mpl.rcParams["font.size"] / style.RC["font.size"]
+    beside, above = _LEFT * per_text, _ABOVE * per_text
+    bars = [next((one.colorbar for one in axes.collections if one.colorbar), None) for axes in panels]
+    behind = (_BAR_SIDE if any(bars) else _RIGHT) * per_text
+    wide = style.DOUBLE / columns - beside - behind
+    heights = []
+    for axes in panels:
+        name = axes.get_label()
+        counted = name in (*_GRAPHS, "stress")  # from the loaded disk, others from the left end of the box
+        axes.set_xlim(*((left - middle, right - middle) if counted else (left, right)))
+        if name in _GRAPHS:
+            _fit(axes)
+        graph = (0.36 if columns == 1 else 0.75) * wide
+        heights.append(graph if name in _GRAPHS else wide * np.ptp(axes.get_ylim()) / (right - left))
+    rows = [slice(k, k + columns) for k in range(0, len(panels), columns)]
+    below = [
+        per_text * max(_AXIS if axes.axison else _BELOW if axes.get_legend() else 0.05 for axes in panels[row])
+        for row in rows
+    ]
+    tall = [max(heights[row]) for row in rows]
+    total = sum(tall) + sum(below) + above * len(rows)
+    figure.set_size_inches(style.DOUBLE, total)
+    top = total
+    for row, height, under in zip(rows, tall, below, strict=True):
+        top -= above
+        for column, (axes, own, bar) in enumerate(zip(panels[row], heights[row], bars[row], strict=True)):
+            start = column * style.DOUBLE / columns + beside
+            place = (start / style.DOUBLE, (top - own) / total, wide / style.DOUBLE, own / total)
+            axes.set_position(place)
+            if bar:
+                bar.ax.set_box_aspect(None)
+                bar.ax.set_position(((start + wide + _GAP) / style.DOUBLE, place[1], _BAR / style.DOUBLE, place[3]))
+        top -= height + under
+
+
+def _fit(axes: Axes) -> None:
+    """Limits of y for what is seen of curves between the limits of x."""
+    left, right = axes.get_xlim()
+    curves = [np.asarray(line.get_xydata()) for line in axes.lines if line.get_transform() == axes.transData]
+    seen = np.concatenate([curve[(left <= curve[:, 0]) & (curve[:, 0] <= right), 1] for curve in curves])
+    if np.isfinite(seen).any():
+        low, high = min(0.0, float(np.nanmin(seen))), max(0.0, float(np.nanmax(seen)))
+        axes.set_ylim(low - 0.04 * (high - low), high + 0.06 * (high - low) or 1.0)
 
 
 def save(
@@ -551,12 +551,27 @@ def save(
     path = Path(output)
     if path.suffix not in (".pdf", ".png", ".svg"):
         raise PictureError(f"{path}: format {path.suffix!r} is unknown, must be .pdf, .png or .svg")
-    drawn = style.render(page(result, what, state=state, scale=scale, figure=Figure()), path.suffix[1:])
+    with style.context():  # a command draws the same on every machine
+        drawn = style.render(page(result, what, state=state, scale=scale, figure=Figure()), path.suffix[1:])
     with written(path):
         atomic.make_folder(path)
         atomic.check_output(path, inputs)
         atomic.write_bytes(path, drawn)
     return path
+
+
+#: Disks of a packing whose forces a thumbnail still draws, in less than a second; dots per inch of it.
+MOST_DISKS, THUMBNAIL_DPI = 5000, 90
+
+
+def thumbnail(result: HasDataset | xr.Dataset) -> bytes:
+    """A :func:`page` as PNG for notebooks: the response or the floor forces, and the forces in a packing that is small.
+
+    Raises as :func:`page`.
+    """
+    shown = Shown.of(result)
+    what = ["floor" if shown.lack else "response", *(["forces"] if len(shown.radius) <= MOST_DISKS else [])]
+    return style.render(page(shown.data, what, figure=Figure()), dpi=THUMBNAIL_DPI)
 
 
 def _title(what: str, shown: Shown) -> str:
@@ -569,65 +584,20 @@ def _title(what: str, shown: Shown) -> str:
     return style.RESPONSE if what == "response" else f"{names.get(what, what)}, {load}"
 
 
-def _axes(ax: Axes | None, aspect: float) -> Axes:
-    """The given axes, or those of a new figure as high as ``aspect`` times its width."""
-    if ax is not None:
-        return ax
-    return _new_figure(max(1.4, aspect * style.DOUBLE + 0.35)).subplots()
-
-
-def _new_figure(height: float) -> Figure:
-    """A figure that notebooks show and ``pyplot.show`` opens, ``height`` inches high."""
-    import matplotlib.pyplot as plt  # here, so that figures without a display never touch it
-
-    return plt.figure(figsize=(style.DOUBLE, height), layout="constrained")
-
-
-def _aspect(shown: Shown, half_width: float | None = None) -> float:
-    """Height over width of a picture of the packing, with room for the arrow of a load."""
-    return float(1.2 * shown.top / np.ptp(shown.across(half_width)))
-
-
 def _packing(axes: Axes, shown: Shown, half_width: float | None = None, **disks: Any) -> Any:
     """Disks, box and loads, without axes."""
     look = {"edgecolor": "#DCDCDC", "linewidth": 0.4, **disks}
     drawn = network.draw_disks(axes, shown.position, shown.radius, zorder=1, **look)
     network.draw_box(axes, shown.box, shown.top)
-    _loads(axes, shown)
+    draw_loads(axes, shown)
     style.no_axes(axes)
     axes.set(xlim=shown.across(half_width), ylim=(-1.2, max(axes.dataLim.ymax, shown.top) + 0.5))
     return drawn
 
 
-def _loads(axes: Axes, shown: Shown, *, origin: float | None = None) -> None:
-    """Loaded disks, and an arrow for each force that ends at the disk it pushes, the largest a fifth of the height.
-
-    ``origin`` : from where the picture counts x, the shortest way.
-    """
-    if not shown.loads:
-        return
-    # loads that look alike are drawn once
-    loads = dict.fromkeys((disk, *force.tolist(), torque) for disk, force, torque in shown.loads)
-    largest = max((float(np.hypot(*force)) for _, *force, _ in loads), default=0.0)
-    disks = list(dict.fromkeys(disk for disk, *_ in loads))
-    centres = shown.position[disks]
-    if origin is not None:
-        centres = shown.box.separation(centres, np.array([origin, 0.0]))
-    network.draw_loaded_disk(axes, centres, shown.radius[disks])
-    places = dict(zip(disks, centres, strict=True))
-    for disk, *components, torque in loads:
-        force, centre, radius = np.array(components), places[disk], float(shown.radius[disk])
-        if size := float(np.hypot(*force)):
-            length = max(3.0, 0.16 * shown.top) * size / largest
-            network.draw_load(axes, centre - radius * force / size, force, length=length)
-        network.draw_torque(axes, centre, torque, radius=1.7 * radius)
-        if torque and not largest:  # no arrow of a force makes room for the arc
-            network.include(axes, centre[None] + (0.0, 2.2 * radius))
-
-
 def _legend(axes: Axes, handles: Sequence[Any], shown: Shown, half_width: float | None) -> None:
     """Below the picture, in two columns where that is narrow."""
     if handles:
-        columns = len(handles) if _aspect(shown, half_width) < 0.6 else 2
+        columns = len(handles) if aspect_of(shown, half_width) < 0.6 else 2
         below: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "borderaxespad": 0.2}
         axes.legend(handles=handles, ncols=columns, columnspacing=1.4, **below)

@@ -46,8 +46,10 @@ LINE_STYLES: tuple[Any, ...] = (
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
 #: What colours mean in every picture of a packing, of the library, the paper and its page alike: contacts that a load
-#: opened or closed, contacts that slide, contact forces that it made larger or smaller, the load itself, disks.
+#: opened (also apart from the region below it) or closed, contacts that slide, contact forces that it made larger or
+#: smaller, the load itself, disks.
 OPENED, CLOSED, SLIDING = VERMILION, GREEN, BLUE
+OPENED_ELSEWHERE = "#F3B58C"
 INCREASED, DECREASED = "#12233F", "#8FA3BF"
 LOAD, DISKS = "#9B2D7B", "#EFEDE8"
 #: Those of the page's explorer by name: on white, and on a dark screen.
@@ -93,7 +95,7 @@ RESPONSE_AT_CENTRE = f"{RESPONSE} at $x=0$"
 FLOOR_FORCE = rf"floor force$\,/\,{WEIGHT}$"
 INCREMENTAL_FLOOR_FORCE = f"incremental {FLOOR_FORCE}"
 #: Where the response is smoothed, it is a stress.
-FLOOR_STRESS = rf"floor stress $\sigma_{{zz}}{RADIUS}/{F_EXT}$"
+FLOOR_STRESS = rf"smoothed floor response $\sigma_{{zz}}{RADIUS}/{F_EXT}$"
 PRESSURE = rf"floor pressure $p\,h/{F_EXT}$"
 STRESS = rf"$\sigma_{{zz}}{RADIUS}/{F_EXT}$"
 STRESS_OF_GRAVITY = rf"$\sigma_{{zz}}{RADIUS}/{WEIGHT}$"
@@ -120,6 +122,20 @@ _NOT_STYLE = ("animation", "backend", "backend_fallback", "docstring", "interact
               "tk", "toolbar", "webagg")  # fmt: skip
 
 
+#: Settings that a user of the library may choose, by how their names begin: fonts, sizes, and how files are saved.
+#: Colours of the ground and of texts are no part of it: pictures of packings are made for white.
+_USERS = ("font.", "mathtext.", "text.usetex", "text.latex", "legend.", "axes.labelsize", "axes.titlesize",
+          "axes.titleweight", "axes.labelweight", "axes.linewidth", "axes.prop_cycle", "xtick.", "ytick.", "figure.dpi",
+          "lines.linewidth", "lines.markersize", "savefig.", "pdf.", "ps.", "svg.")  # fmt: skip
+#: Sizes of texts, which go with the size of the user's font unless he sets them too.
+_TEXT_SIZES = ("axes.labelsize", "axes.titlesize", "legend.fontsize", "legend.title_fontsize", "xtick.labelsize",
+               "ytick.labelsize")  # fmt: skip
+
+
+def _defaults() -> dict[Any, Any]:
+    return {key: one for key, one in mpl.rcParamsDefault.items() if key.partition(".")[0] not in _NOT_STYLE}
+
+
 @contextmanager
 def context() -> Iterator[None]:
     """Where matplotlib's defaults and then :data:`RC` hold, whatever the user's own settings.
@@ -127,8 +143,35 @@ def context() -> Iterator[None]:
     Legends, colour bars and texts take their looks when they are made, so the whole of a drawing function
     belongs inside: as a decorator, or around its call, as for those of the figure groups.
     """
-    defaults = {key: one for key, one in mpl.rcParamsDefault.items() if key.partition(".")[0] not in _NOT_STYLE}
-    settings: dict[Any, Any] = {**defaults, **RC}
+    with _settings({**_defaults(), **RC}):
+        yield
+
+
+@contextmanager
+def with_users() -> Iterator[None]:
+    """As :func:`context`, for pictures of the library: fonts, sizes and line widths that the user has set stay.
+
+    What differs from matplotlib's defaults counts as set, so that within :func:`context` nothing changes.
+    """
+    defaults = _defaults()
+    settings = {**defaults, **RC}
+    users = {key: mpl.rcParams[key] for key in defaults if key.startswith(_USERS)}
+    users = {key: one for key, one in users.items() if one != defaults[key]}
+    if users.get("font.size", RC["font.size"]) != RC["font.size"]:
+        settings |= {key: defaults[key] for key in _TEXT_SIZES}
+    with _settings({**settings, **users}):
+        yield
+
+
+def users_cycle() -> list[Any]:
+    """The colours of the user's ``axes.prop_cycle``; none where it is that of matplotlib or of this package."""
+    cycle = mpl.rcParams["axes.prop_cycle"]
+    known = mpl.rcParamsDefault["axes.prop_cycle"], RC["axes.prop_cycle"]
+    return [] if cycle in known else list(cycle.by_key().get("color", ()))
+
+
+@contextmanager
+def _settings(settings: dict[Any, Any]) -> Iterator[None]:
     # Not by rc_context, which restores all settings. The first figure of a program may load the backend in here, and
     # that of notebooks switches matplotlib to interactive: were this undone, notebooks would show no further figure.
     before: dict[Any, Any] = {key: mpl.rcParams[key] for key in settings}
@@ -181,7 +224,7 @@ def letter(axes: Axes, name: str, *, place: Literal["inside", "above"] = "inside
     ``above`` puts it over the axes, for panels that are full of drawing.
     """
     label = f"({name})" + (f" {text}" if text else "")
-    with context():
+    with with_users():
         if place == "above":
             axes.set_title(label, loc="left", pad=3.0)
         else:

@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator
 from numpy.typing import ArrayLike
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene, values
 from granular_response_paper.panels import different, family, label_ends, titles
 
 from .parameters import Parameters, varied
@@ -45,20 +45,18 @@ APART = {
 
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
-    slabs, paths, powers = datasets["slabs"], datasets["paths"], datasets["powers"]
+    slabs, powers = datasets["slabs"], datasets["powers"]
     return {
         "crossover_scaling": _against_layers(slabs, powers),
-        "crossover_scaling_regions": _regions(slabs, paths, powers),
-        "crossover_scaling_apart": _apart(slabs, powers),
+        "width_stiffness_and_prestress": _apart(slabs, powers),
     }
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
-    slabs, powers = datasets["slabs"], datasets["powers"]
+    powers = datasets["powers"]
     drawn = {
         "crossover_scaling": of_layers(powers),
-        "crossover_scaling_regions": regions_of(powers),
-        "crossover_scaling_apart": np.flatnonzero(powers["varied"].values != "layers").tolist(),
+        "width_stiffness_and_prestress": np.flatnonzero(powers["varied"].values != "layers").tolist(),
     }
     said = {
         stem: of_scene(
@@ -70,10 +68,31 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     return of_group(
         "crossover_scaling",
         said,
+        _findings(powers),
         p=parameters,
-        layers=different(slabs["layers"]),
         survey=" Open symbols: slabs of the survey." if surveyed else "",
     )
+
+
+def _findings(powers: xr.Dataset) -> dict[str, str]:
+    """The exponents of the onset of two peaks, a sentence for each picture."""
+    exponent = powers["exponent"].sel(event="crossover").values[:, 0]
+    layers = [f"{said(exponent[k])} ({_plain(powers, k)})" for k in of_layers(powers) if np.isfinite(exponent[k])]
+    kinds = []
+    for kind, text in zip(APART, ("width", "stiffness", "prestress"), strict=True):
+        chosen = [k for k in np.flatnonzero(powers["varied"].values == kind).tolist() if np.isfinite(exponent[k])]
+        if chosen:
+            each = (f"{said(exponent[k])} (µ = {powers['friction'].values[k]:g})" for k in chosen)
+            kinds.append(f"{text}: {', '.join(each)}")
+    return {
+        "crossover_scaling": f"The onset force of two peaks grows with the layers to the power of {values(layers)}.",
+        "width_stiffness_and_prestress": f"Exponents of the onset force of two peaks, by {'; '.join(kinds)}.",
+    }
+
+
+def _plain(powers: xr.Dataset, series: int) -> str:
+    """As :func:`name`, for captions."""
+    return name(powers, series).replace("$", "").replace("\\mu", "µ").replace("\\propto", "∝")
 
 
 def of_layers(powers: xr.Dataset) -> list[int]:
@@ -134,7 +153,7 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
         axes.minorticks_off()
         axes.yaxis.set(major_formatter="{x:g}", **_ticks(axes))
         axes.set_xlim(right=1.5 * float(slabs["layers"].max()))
-        label_ends(axes, [end for end in exponents if np.isfinite(end[2])], gap=8.0, bbox=WHITE)
+        label_ends(axes, [end for end in exponents if np.isfinite(end[2])], gap=10.0, bbox=WHITE)
     key = panels[1, 1]
     key.set_axis_off()
     for look, series in zip(_symbols(powers), of_layers(powers), strict=True):
@@ -162,64 +181,27 @@ def apart(layers: ArrayLike) -> list[int]:
     return chosen
 
 
-def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure:
-    """Depth of the region of open contacts over that of the slab, against the scaled force, for each friction."""
-    chosen = regions_of(powers)
-    figure, panels = style.figure(1, max(1, len(chosen)), height=2.7, sharey=True)
-    titles(panels[0], [name(powers, series) for series in chosen])
-    for axes, series in zip(panels[0], chosen, strict=False):
-        rows = _slabs_of(slabs, powers, series)
-        weight = float(powers["friction"][series]) > 0.0
-        for k, look in family(rows, of="length"):
-            layers, confinement = float(slabs["layers"][k]), float(slabs["confinement"][k])
-            force = paths["force"].values[k] / (layers**2 if weight else layers * confinement)
-            depth = paths["depth"].values[k] / (ROW * (layers - 1.0))
-            axes.plot(force, depth, label=f"{layers:.0f}", **look | {"markersize": 3.2})
-        unit = rf"$N^2\,{style.WEIGHT}$" if weight else "$NP$"
-        axes.set(xlabel=rf"${style.F_EXT}\,/\,$({unit})", ylim=(-0.03, 1.35), xscale="log")
-        axes.xaxis.set_minor_formatter("")
-        axes.legend(title="layers", loc="upper left", ncols=3, columnspacing=1.0)
-    panels[0, 0].set_ylabel("depth of the open region / slab")
-    return figure
-
-
-def regions_of(powers: xr.Dataset) -> list[int]:
-    """The series whose regions are drawn: the first without friction, and the least and the most friction.
-
-    With friction only those whose confinement grows with the weight: others need not fall on one another.
-    """
-    layers = of_layers(powers)
-    friction, confined = powers["friction"].values, powers["confined"].values
-    without = [k for k in layers if friction[k] == 0.0][:1]
-    weight = [k for k in layers if friction[k] > 0.0 and str(confined[k]) == "as weight"]
-    rough = sorted(weight, key=lambda k: float(friction[k]))
-    return list(dict.fromkeys([*without, *rough[:1], *rough[-1:]]))
-
-
 def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     """Crossover over its value at the smallest entry, against width, stiffness and confinement."""
     differs = powers["varied"].values
     kinds = [kind for kind in APART if (differs == kind).any()]
-    figure, panels = style.figure(1, max(1, len(kinds)), height=2.7)
+    figure, panels = style.figure(1, max(1, len(kinds)), height=3.0)
     titles(panels[0, : len(kinds)])
     for axes, kind in zip(panels[0], kinds, strict=False):
         for series, look in family(np.flatnonzero(differs == kind).tolist(), of="friction"):
             one = slabs.isel(slab=_slabs_of(slabs, powers, series))
             middle, half = _brackets(one, "crossover")
-            power, least, largest = powers["exponent"].isel(series=series).sel(event="crossover").values
+            power = float(powers["exponent"].isel(series=series).sel(event="crossover")[0])
             friction, layers = float(powers["friction"][series]), int(one["layers"][0])
-            label = f"$\\mu = {friction:g}$, $N = {layers}$:\n{said(power)} ({said(least)} to {said(largest)})"
+            label = f"$\\mu = {friction:g}$, $N = {layers}$: {said(power)}"
             axes.errorbar(varied(one, kind), middle, half, capsize=2, label=label, **look | {"markersize": 4.5})
         style.logarithmic(axes)
         axes.set(xlabel=APART[kind])
         axes.yaxis.set(**_ticks(axes))
-        low, high = axes.get_ylim()
-        if low > 0.0:
-            axes.set_ylim(low / 1.3, high * max((high / low) ** 0.5, 2.0))
         for axis in (axes.xaxis, axes.yaxis):
             axis.set(major_formatter="{x:g}", minor_formatter="")
         if kind == "disks_per_layer":  # within a decade
             axes.set_xticks([2, 3, 4, 6], labels=["2", "3", "4", "6"])
-        axes.legend(loc="upper left", fontsize=7)
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), fontsize=7, title="exponent", title_fontsize=7)
     panels[0, 0].set_ylabel(f"onset of two peaks, {style.FORCE}")
     return figure

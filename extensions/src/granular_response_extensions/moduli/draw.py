@@ -1,4 +1,4 @@
-"""Moduli of packings against their coordination, measured and predicted responses, and maps of r under load."""
+"""Shear moduli of packings against their coordination, measured and predicted responses, and maps of r under load."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from granular_response.plot import network, style
 from granular_response.theory.moduli import bulk_and_shear
 from granular_response_extensions.panels import materials
 from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
-from granular_response_paper.panels import banded, outer, titles, zero
+from granular_response_paper.panels import banded, label_ends, outer, titles, zero
 
 from .parameters import Parameters
 
@@ -50,6 +50,7 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     return of_group(
         "moduli",
         {"moduli_packings": said, "moduli_response": said, "moduli_loaded": loaded},
+        {"moduli_packings": _finding(datasets["packings"]), **_more_findings(datasets)},
         p=parameters,
         most=most,
         survey=f" Of these, {' and '.join(stored)} come from the survey." if stored else "",
@@ -63,37 +64,76 @@ def _mean_and_spread(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _moduli(data: xr.Dataset) -> Figure:
-    """(a) bulk and (b) shear modulus against coordination, affine and relaxed; (c) horizontal over vertical."""
-    figure, (panels,) = style.figure(1, 3, height=3.2)
-    a, b, c, d = (data["moduli"].sel(modulus=name) for name in "abcd")
-    bulk, shear = bulk_and_shear(a, b, c, d)
-    shown = {
-        r"bulk modulus $(a + b + 2c)\,/\,4k_N$": bulk,
-        r"shear modulus $(a + b - 2c + 2d)\,/\,8k_N$": shear,
-        r"$a\,/\,b$, horizontal over vertical": a / b,
-    }
-    # a colour for each material: those of one polydispersity lie close together
-    cases = [
-        (name, look | {"color": style.line(case)["color"], "markersize": 4.5})
-        for case, (name, look) in enumerate(materials(data["polydispersity"], data["friction"]))
-    ]
-    for axes, (label, modulus) in zip(panels, shown.items(), strict=True):
-        for case, (_, look) in enumerate(cases):
-            across, beside = _mean_and_spread(data["coordination"].isel(case=case))
-            look = look | {"markeredgewidth": 0.8, "capsize": 2, "linewidth": 0.7}
-            for following, filled in (("affine", False), ("free", True)):
-                mean, spread = _mean_and_spread(modulus.isel(case=case).sel(following=following))
-                face = look["color"] if filled else "white"
-                axes.errorbar(across, mean, spread, beside, markerfacecolor=face, markeredgecolor=look["color"], **look)
-        axes.set(xlabel="coordination number $z$", ylabel=label, ylim=(0.0, None))
-    panels[2].axhline(1.0, color=style.FAINT, linewidth=0.6, zorder=0)
-    titles(panels)
-    keys = [Line2D([], [], **look | {"linestyle": "none"}) for _, look in cases]
-    plain: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": style.BLACK, "markersize": 4.5}
-    keys += [Line2D([], [], markerfacecolor="white", **plain), Line2D([], [], **plain)]
-    names = [*(name for name, _ in cases), *FOLLOWING.values()]
-    figure.legend(keys, names, loc="outside lower center", ncols=4)
+    """The shear modulus of the largest packings of each material against coordination, affine joined to relaxed."""
+    figure, ((axes,),) = style.figure(height=3.2)
+    ends = []
+    for case, (name, look) in enumerate(materials(data["polydispersity"], data["friction"])):
+        shear, z = _shear(data, case)
+        colour = style.line(case)["color"]
+        affine, relaxed = (_mean_and_spread(shear.sel(following=following)) for following in FOLLOWING)
+        across, beside = _mean_and_spread(z)
+        axes.plot([across] * 2, [affine[0], relaxed[0]], color=colour, linewidth=1.0, linestyle="-", zorder=1)
+        for (mean, spread), face in ((affine, "white"), (relaxed, colour)):
+            axes.errorbar(across, mean, spread, beside, marker=look["marker"], color=colour, markerfacecolor=face,
+                          markersize=5.5, markeredgewidth=0.9, capsize=2, linewidth=0.8)  # fmt: skip
+        ends.append((name, float(across), float(relaxed[0]), colour))
+    axes.set(xlabel="coordination number $z$", ylabel=r"shear modulus$\,/\,k_N$", ylim=(0.0, None))
+    left, right = axes.get_xlim()
+    axes.set_xlim(left, right + 0.25 * (right - left))
+    label_ends(axes, ends)
+    plain: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": style.BLACK, "markersize": 5.5}
+    keys = [Line2D([], [], markerfacecolor="white", **plain), Line2D([], [], **plain)]
+    axes.legend(keys, list(FOLLOWING.values()), loc="upper left")
     return figure
+
+
+def _shear(data: xr.Dataset, case: int) -> tuple[xr.DataArray, xr.DataArray]:
+    """Shear modulus of the nearest isotropic solid over k_N, and coordination, of the largest packings of a case."""
+    one = data.isel(case=case, size=int(np.nanargmax(data["layers"].values[case])))
+    return bulk_and_shear(*(one["moduli"].sel(modulus=name) for name in "abcd"))[1], one["coordination"]
+
+
+def _finding(data: xr.Dataset) -> str:
+    """By how much packings are softer in shear than the affine assumption says, at least and at most."""
+    parts = []
+    for case in range(data.sizes["case"]):
+        shear, _ = _shear(data, case)
+        relaxed, affine = (float(shear.sel(following=name).mean("realization")) for name in ("free", "affine"))
+        parts.append(100.0 * (1.0 - relaxed / affine))
+    ends = f"{min(parts):.0f} to {max(parts):.0f} %"
+    return f"Relaxed packings are softer in shear than the affine assumption says, by {ends}."
+
+
+def _more_findings(datasets: Datasets) -> dict[str, str]:
+    """How far the response is off the slab with the measured moduli, and whether r is negative below the load."""
+    data, slabs, off = datasets["packings"], datasets["slabs"], []
+    for case in range(data.sizes["case"]):
+        one = data.isel(case=case, size=int(np.nanargmax(data["layers"].values[case])), smoothing=0)
+        mean = one["response"].mean("realization").values
+        predicted = one["predicted"].sel(solid="free").mean("realization").values
+        off.append((float(np.nanmax(np.abs(mean - predicted)) / np.nanmax(mean)), case))
+    worst = max(off)[1]
+    delta, mu = (float(data[name][worst]) for name in ("polydispersity", "friction"))
+    negative = []
+    for k in range(slabs.sizes["slab"]):
+        one = _step(slabs, k)
+        part = float(np.nanmean(one["criterion"].values < 0.0))
+        negative.append(f"{100.0 * part:.2g} % at µ = {float(one['friction']):g}")
+    return {
+        "moduli_response": (
+            "The response is off the elastic slab with the measured moduli by "
+            f"{100.0 * min(off)[0]:.2g} % of the peak at least and by {100.0 * max(off)[0]:.2g} % at most "
+            f"(δ = {delta:g}, µ = {mu:g})."
+        ),
+        "moduli_loaded": f"Part of the map in which r is negative: {', '.join(negative)}.",
+    }
+
+
+def _step(slabs: xr.Dataset, k: int) -> xr.Dataset:
+    """A slab at the force to be shown: the first at it or above, or the last one."""
+    slab = slabs.isel(slab=k, step=np.isfinite(slabs["force"].values[k]))
+    above = np.flatnonzero(slab["force"].values >= float(slab["shown"]))
+    return slab.isel(step=above[0] if above.size else -1)
 
 
 def _responses(data: xr.Dataset) -> Figure:
@@ -121,18 +161,17 @@ def _responses(data: xr.Dataset) -> Figure:
 
 
 def _maps(slabs: xr.Dataset) -> Figure:
-    """r and sliding contacts of each slab at the force to be shown: the first at it or above, or the last one."""
+    """r and sliding contacts of each slab at the force to be shown."""
     figure, (panels,) = style.figure(1, slabs.sizes["slab"], height=2.2, sharey=True)
     texts = []
     for k, axes in enumerate(panels):
-        slab = slabs.isel(slab=k, step=np.isfinite(slabs["force"].values[k]))
-        above = np.flatnonzero(slab["force"].values >= float(slab["shown"]))
-        one = slab.isel(step=above[0] if above.size else -1)
+        one = _step(slabs, k)
         filled = _map(axes, one)
         friction = style.equals(style.FRICTION, float(one["friction"]))
         texts.append(f"{friction}, {style.equals(style.F_EXT, float(one['force']), style.WEIGHT)}")
     panels[0].set_ylabel(style.HEIGHT)
-    figure.colorbar(filled, ax=panels, label="$r$", ticks=(-0.5, 0, 0.5, 1), pad=0.01, shrink=0.7, aspect=12)
+    label = "$r$; below 0:\ntwo peaks expected"
+    figure.colorbar(filled, ax=panels, label=label, ticks=(-0.5, 0, 0.5, 1), pad=0.01, shrink=0.7, aspect=12)
     titles(panels, texts)
     return figure
 

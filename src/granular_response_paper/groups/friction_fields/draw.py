@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from scipy.special import erfc
 
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box, FloatArray
-from granular_response_paper.captions import Caption, Datasets, lettered, of_group, of_scene
-from granular_response_paper.panels import Contacts, family, force_key, forces, titles
+from granular_response_paper.captions import RADIUS, Caption, Datasets, lettered, of_group, of_scene, values
+from granular_response_paper.panels import Contacts, family, force_key, forces, note, titles
 
 from .parameters import Parameters
 
@@ -20,6 +21,10 @@ MAP_HALF_WIDTH, PROFILE_HALF_WIDTH = 30.0, 20.0
 #: Lengths of the largest forces of Fig. 13 in mean radii, above and below, and what has it below: force times depth per
 #: load.
 LONGEST, LONGEST_DEEP, DEEP = 6.0, 4.0, 2.0
+#: Height of the largest force of the profiles, per least distance of two depths.
+HIGHEST = 2.2
+#: Mean radii from the load within which the directions of forces are averaged.
+NEAR_LOAD = 15.0
 #: Contours of the stress maps, per largest stress.
 LEVELS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7)
 #: Contours of the differences, of both signs, per largest difference.
@@ -47,12 +52,48 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
             "fig14_vertical_stress": {**given, "width": width},
             "fig15_force_profiles": of_scene(scene, force=parameters.profiles.force, frictions=profiles),
         },
+        _findings(datasets),
         chains=lettered(each),
-        maps=lettered([*each, "the isotropic "]),
+        maps=lettered(["the isotropic harmonic lattice", *each]),
+        minus=", ".join(f"({letter})" for letter in "efgh"[: len(each)]),
         levels=LEVELS,
         depths=[round(depth, 1) for depth in below],
         profiles=lettered(f"µ = µ_wall = {mu:g}" for mu in profiles),
     )
+
+
+def _findings(datasets: Datasets) -> dict[str, str]:
+    """What the data show, a sentence for each picture."""
+    data, stress, profiles = datasets["forces"], datasets["stress"], datasets["profiles"]
+    turned = []
+    for index, position in enumerate(data["position"].values):
+        vector, point = data["contact_added_force"].values[index], Contacts.of(data, position).point
+        size = np.linalg.norm(vector, axis=1)
+        centre = position[int(data["loaded_disk"])]
+        near = np.linalg.norm(point[: len(size)] - centre, axis=1) < NEAR_LOAD
+        angle = np.degrees(np.arctan2(np.abs(vector[near, 0]), np.abs(vector[near, 1])))
+        turned.append(float(np.average(angle, weights=size[near])) if size[near].any() else np.nan)
+    off = np.abs(stress["stress_zz"].values - stress["stress_zz_lattice"].values).max(axis=(-2, -1))
+    off = off / float(stress["stress_zz_lattice"].max())
+    frictions = [f"µ = {mu:g}" for mu in stress["friction"].values]
+    widest = []
+    for column in range(profiles.sizes["friction"]):
+        deepest = int(np.argmax(profiles["depth"].values))
+        x, size = (profiles[name].values[column, deepest] for name in ("contact_x", "magnitude"))
+        known = np.isfinite(x) & np.isfinite(size)
+        widest.append(abs(float(x[known][np.argmax(size[known])])) if known.any() else np.nan)
+    at = [f"µ = {mu:g}" for mu in profiles["friction"].values]
+    return {
+        "fig13_force_chains": "The mean direction of the forces near the load is "
+        + values([f"{angle:.0f}°" for angle in turned])
+        + f" off the vertical, at {values(frictions)}.",
+        "fig14_vertical_stress": "The largest difference from the isotropic lattice is "
+        + values([f"{100.0 * part:.2g} %" for part in off])
+        + f" of its largest stress, at {values(frictions)}.",
+        "fig15_force_profiles": "At the largest depth the largest force is "
+        + values([f"{place:.0f} {RADIUS}" for place in widest])
+        + f" from the middle, at {values(at)}.",
+    }
 
 
 def _force_chains(data: xr.Dataset) -> Figure:
@@ -75,6 +116,10 @@ def _force_chains(data: xr.Dataset) -> Figure:
         ):
             network.draw_disks(axes, position[inside], radius[inside], facecolor=style.DISKS, edgecolor="none")
             forces(axes, contacts, vector, largest, shown=near, longest=longest)
+            slab = Rectangle((0.0, 0.0), width, 2.0 * z, transform=axes.transData)
+            for lines in axes.collections:
+                lines.set_clip_path(slab)  # below, forces times depth would stick out of the floor
+                lines.set_in_layout(False)
             force_key(axes, (2.0 * width / 3.0 - 8.0, z + 3.0), key, largest, unit, longest=longest)
             network.draw_loaded_disk(axes, (x, z), float(radius[disk]))
             network.draw_load(axes, (x, z + 1.0))
@@ -92,31 +137,31 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
     lattice = to_floor(data["stress_zz_lattice"].values, z, float(data["stress_width"]))
     fields = to_floor(data["stress_zz"].values, z, float(data["stress_width"]))
     names = list(map(_friction, data["friction"].values))
-    rows, last = len(names) + 1, "abcdefgh"[len(names)]
-    figure, panels = style.figure(rows, 2, height=1.62 * rows + 0.3, sharex=True, sharey=True)
+    rows = len(names) + 1
+    figure, panels = style.figure(rows, 2, height=1.5 * rows + 0.3, sharex=True, sharey=True)
     half = min(MAP_HALF_WIDTH, float(x.max()))
     largest = float(max(fields.max(), lattice.max()))
     furthest = float(np.abs(fields - lattice)[..., np.abs(x) <= half].max())
     norm, signed = root_norm(largest), root_norm(furthest, signed=True)
-    for axes, field in zip(panels[:, 0], [*fields, lattice], strict=True):
+    for axes, field in zip(panels[:, 0], [lattice, *fields], strict=True):
         image = draw_field(axes, x, z, np.clip(field, 0.0, None), norm=norm, levels=largest * np.array(LEVELS))
     levels = sorted(sign * level * furthest for sign in (-1.0, 1.0) for level in DIFFERENCE_LEVELS)
-    for axes, off in zip(panels[:-1, 1], fields - lattice, strict=True):
+    for axes, off in zip(panels[1:, 1], fields - lattice, strict=True):
         # white where there is no difference; lines tell the sign without colours, broken where it is negative
         change = draw_field(axes, x, z, off, norm=signed, cmap=style.SIGNED)
         if lines := [level for level in levels if off.min() < level < off.max()]:
             axes.contour(x, z, off, lines, colors=style.MUTED, linewidths=0.5)
-    drawn = [*panels[:, 0], *panels[:-1, 1]]
-    titles(drawn, [*names, "harmonic lattice", *(f"{name}, minus ({last})" for name in names)])
+    drawn = [*panels[:, 0], *panels[1:, 1]]
+    differences = [f"{style.equals(style.FRICTION, mu)} minus (a)" for mu in data["friction"].values]
+    titles(drawn, ["harmonic lattice", *names, *differences])
     for axes in drawn:
         network.draw_load(axes, (0.0, float(z.max())), length=3.0)
         axes.set(xlim=(-half, half), ylim=(0.0, z.max()))
-    for axes in (panels[-1, 0], panels[-2, 1]):
+    for axes in panels[-1]:
         axes.set_xlabel(style.POSITION)
-        axes.tick_params(labelbottom=True)
     for axes in panels[:, 0]:
         axes.set_ylabel(style.HEIGHT)
-    empty = panels[-1, 1]
+    empty = panels[0, 1]
     empty.set_axis_off()
     steps, both = (0.0, 0.005, 0.02, 0.05, 0.1, 0.15), (-0.02, -0.005, 0.0, 0.005, 0.02)
     for place, mapped, label, ticks in (
@@ -128,6 +173,8 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
         bar.set_ticks(ticks)
         bar.ax.xaxis.set_major_formatter("{x:g}")
         bar.ax.tick_params(which="minor", size=0)
+    for x, side, text in ((0.05, "left", "smaller than (a)"), (0.95, "right", "larger than (a)")):
+        empty.text(x, 0.27, text, transform=empty.transAxes, ha=side, va="bottom", fontsize=8)
     return figure
 
 
@@ -141,18 +188,27 @@ def to_floor(stress: FloatArray, z: FloatArray, width: float) -> FloatArray:
 
 
 def _force_profiles(data: xr.Dataset) -> Figure:
-    """Fig. 15: a panel for each friction with a curve for each depth, over all contacts between two rows."""
+    """Fig. 15: a panel for each friction; the curve of each depth stands on a line at that depth."""
     frictions, depths = data["friction"].values, data["depth"].values
-    figure, panels = style.figure(1, len(frictions), height=3.0, sharex=True)
+    figure, panels = style.figure(1, len(frictions), height=3.6, sharex=True, sharey=True)
+    gap = float(np.diff(np.sort(depths)).min()) if len(depths) > 1 else 1.0
     for column, axes in enumerate(panels[0]):
-        for row, look in family(range(len(depths)), of="length", dashed=True):
+        largest = float(np.nanmax(data["magnitude"].values[column]))
+        tall = HIGHEST * gap / largest
+        for row, look in family(range(len(depths)), of="length", marked=False):
             x, magnitude = (data[name].values[column, row] for name in ("contact_x", "magnitude"))
             known = np.flatnonzero(np.isfinite(x) & np.isfinite(magnitude))
-            order = known[np.argsort(x[known])]
-            axes.plot(x[order], magnitude[order], **look | {"markersize": 2.6}, label=f"{depths[row]:.1f}")
-        axes.set(xlim=(-PROFILE_HALF_WIDTH, PROFILE_HALF_WIDTH), ylim=(0.0, None), xlabel=style.POSITION)
-    panels[0, 0].set_ylabel(style.CONTACT_FORCE)
-    panels[0, -1].legend(title=style.DEPTH, loc="upper right", handlelength=3.0)
+            order, base = known[np.argsort(x[known])], -float(depths[row])
+            axes.axhline(base, color=style.FAINT, linewidth=0.5, zorder=0)
+            axes.plot(x[order], base + tall * magnitude[order], color=look["color"], linestyle="-", linewidth=1.1)
+        key = _round(0.5 * largest)
+        top, left = -float(depths.min()) + 0.5 * HIGHEST * gap, -0.93 * PROFILE_HALF_WIDTH
+        axes.plot([left] * 2, [top, top + tall * key], color=style.BLACK, linewidth=2.0, solid_capstyle="butt")
+        note(axes, f"${key:g}\\,{style.WEIGHT}$", (left, top + 0.5 * tall * key), (4.0, 0.0), va="center", fontsize=8)
+        axes.set(xlim=(-PROFILE_HALF_WIDTH, PROFILE_HALF_WIDTH), xlabel=style.POSITION)
+        axes.set_yticks(-np.sort(depths), [f"{depth:.1f}" for depth in np.sort(depths)])
+        axes.tick_params(axis="y", which="both", length=0.0)
+    panels[0, 0].set_ylabel(f"{style.DEPTH}; height of a curve: {style.CONTACT_FORCE}", fontsize=8)
     titles(panels[0], map(_friction, frictions))
     return figure
 

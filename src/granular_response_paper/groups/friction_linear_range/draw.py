@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response_paper.captions import WEIGHT, Caption, Datasets, Value, of_group, of_scene
+from granular_response.state import OPEN, SLIDING
+from granular_response_paper.captions import RADIUS, WEIGHT, Caption, Datasets, Value, of_group, of_scene
 from granular_response_paper.panels import among, family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import Parameters
@@ -23,7 +24,11 @@ LARGE_FRICTION = 0.2
 CONTACT_FORCES = (5.0, 12.0, 20.0)
 CONTACTS = ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1"))
 LARGE_FORCES = (20.0, 30.0, 40.0, 60.0, 80.0)
-DYNAMIC_FORCES = (91.0, 93.0, 95.0, 150.0, 500.0)
+#: Dynamic runs of Fig. 16: from the last symmetric one on, those that lean to either side, and the largest force.
+DYNAMIC_FORCES = (93.0, 150.0, 500.0)
+#: Responses that differ by less than this part of the peak lie on each other in print.
+COINCIDE = 0.04
+_ENDS = ("contact_disk", "contact_partner")
 #: Frictions of Fig. 12.
 AXIS_FRICTIONS = (0.0, 0.1, 0.15, 0.2, 0.5, 1.0)
 
@@ -85,13 +90,97 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         given["fig07_friction_response"] = said(drawn(response.sel(friction=0.2), PROFILE_FORCES), PROFILE_FRICTIONS)
     if LARGE_FRICTION in frictions:
         dynamic = datasets["large_forces"]
-        beyond, left = drawn(dynamic, DYNAMIC_FORCES), drawn(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
+        beyond, left = _dynamic_forces(dynamic), drawn(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
         given["fig16_large_forces"] = said(sorted({*left, *beyond}), [0.2, float(dynamic["friction"])])
         fields |= {"left": left, "beyond": beyond}
     for friction, stem in CONTACTS:
         if f"states_mu_{friction:g}" in datasets:
             given[stem] = said(contact_forces(datasets[f"states_mu_{friction:g}"]), friction)
-    return of_group("friction_linear_range", given, **fields)
+    return of_group("friction_linear_range", given, _findings(datasets), **fields)
+
+
+def _findings(datasets: Datasets) -> dict[str, str]:
+    """What the data show, a sentence for each picture that is drawn."""
+    response, axis, large = (datasets[name] for name in ("response", "friction_axis", "large_forces"))
+    longest = []
+    for part in (LINEAR, 0.05):
+        ends = {mu: _linear_until(response.sel(friction=mu), part) for mu in response["friction"].values.tolist()}
+        best = max(ends, key=lambda mu: ends[mu])
+        longest.append(f"µ = {best:g} for {100.0 * part:g} %")
+    two = [mu for mu in axis["friction"].values.tolist() if int(axis["peak_count"].sel(friction=mu)) >= 2]
+    found = {
+        "fig06_linear_range": f"The response at x = 0 stays linear longest at {' and at '.join(longest)}.",
+        "fig12_friction_crossover": (
+            f"Two peaks or more up to µ = {max(two):g}, one peak at larger friction." if two
+            else "One peak at every friction."
+        ),
+    }  # fmt: skip
+    counts = []
+    for friction in PROFILE_FRICTIONS:
+        if friction in response["friction"].values:
+            one = response.sel(friction=friction).dropna("force", subset=["peak_count"])
+            split = one["force"].values[one["peak_count"].values >= 2]
+            last = float(one["force"][-1])
+            peaks = f"two peaks or more from {split[0]:g}" if split.size else f"one peak up to {last:g}"
+            counts.append(f"{'at' if counts else 'At'} µ = {friction:g} {peaks} {WEIGHT}")
+    found["fig07_friction_response"] = f"{', '.join(counts)}."
+    for friction, stem in CONTACTS:
+        states = datasets.get(f"states_mu_{friction:g}")
+        if states is not None:
+            force = max(contact_forces(states))
+            one = states.isel(state=int(np.flatnonzero(states["force"].values == force)[0]))
+            touched = states["contact_status"].values[0] != OPEN
+            opened = int((touched & (one["contact_status"].values == OPEN)).sum())
+            slide = int((touched & (one["contact_status"].values == SLIDING)).sum())
+            found[stem] = f"At µ = {friction:g} and {force:g} {WEIGHT} {opened} contacts have opened and {slide} slide."
+    kept, lost = _symmetric(large)
+    left = response.sel(friction=LARGE_FRICTION) if LARGE_FRICTION in response["friction"].values else None
+    third = [] if left is None else left["force"].values[left["peak_count"].values >= 3].tolist()
+    found["fig16_large_forces"] = " ".join(
+        [
+            f"At µ = {LARGE_FRICTION:g} the response has three peaks from {third[0]:g} {WEIGHT}." if third else "",
+            f"At µ = {float(large['friction']):g} it is symmetric up to {kept[-1]:.3g} {WEIGHT} and not at "
+            f"{lost[0]:.3g} {WEIGHT}." if lost and kept else "",
+            _on_the_floor_alone(datasets["large_force_states"], lost),
+        ]
+    ).strip()  # fmt: skip
+    return found
+
+
+def _linear_until(one: xr.Dataset, part: float) -> float:
+    """The last force up to which the response at x = 0 differs by less than a ``part`` from that to the smallest."""
+    curve = one["response_at_centre"].dropna("force")
+    off = np.abs(curve.values / curve.values[0] - 1.0) > part
+    return float(curve["force"][max(int(np.argmax(off)) - 1, 0)]) if off.any() else float(curve["force"][-1])
+
+
+def _symmetric(dynamic: xr.Dataset) -> tuple[list[float], list[float]]:
+    """The forces before symmetry is lost, and those from then on at which the response is not symmetric."""
+    force, leans = dynamic["force"].values, dynamic["asymmetry"].values > ASYMMETRIC
+    lost = force[leans].tolist()
+    return force[force < min(lost, default=np.inf)].tolist(), lost
+
+
+def _on_the_floor_alone(states: xr.Dataset, forces: Sequence[float]) -> str:
+    """The disk that nothing but the floor holds in states at these forces, in words; empty where there is none."""
+    alone: dict[float, int] = {}
+    for state in np.flatnonzero(np.isin(states["force"].values, forces)):
+        one = states.isel(state=state)
+        pairs = np.bincount(
+            np.concatenate([one[name].values[one["contact_status"].values != OPEN] for name in _ENDS]),
+            minlength=one.sizes["disk"],
+        )
+        held = one["wall_disk"].values[one["wall_status"].values != OPEN]
+        middle = float(one["position"].values[int(one["loaded_disk"]), 0])
+        for disk in held[pairs[held] == 0]:
+            place = round(float(one["position"].values[disk, 0]) - middle)
+            alone[place] = alone.get(place, 0) + 1
+    if not alone:
+        return ""
+    places = " or ".join(f"{place:g}".replace("-", "\N{MINUS SIGN}") for place in sorted(alone))
+    count = sum(alone.values())
+    which = f"all {count}" if count == len(forces) else f"{count} of {len(forces)}"
+    return f"In {which} asymmetric states the floor alone holds a disk, at x = {places} {RADIUS}."
 
 
 def _linear_range(response: xr.Dataset) -> Figure:
@@ -129,14 +218,26 @@ def _profiles(response: xr.Dataset) -> Figure:
         one = response.sel(friction=friction)
         _plot_profiles(panel, at_forces(one, PROFILE_FORCES), "force", one.isel(force=0))
     axes[0, 0].set(ylabel=style.RESPONSE, ylim=(0.0, None))
-    handles, names = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, names, title=style.FORCE, loc="outside upper center", ncols=len(names), handlelength=2.8)
+    for panel, friction in zip(axes[0], PROFILE_FRICTIONS, strict=True):
+        panel.legend(title=style.FORCE, loc="upper right", handlelength=2.6, fontsize=7)
+        alike = _coinciding(at_forces(response.sel(friction=friction), PROFILE_FORCES))
+        if len(alike) > 2:
+            text = f"{alike[0]:g} to {alike[-1]:g}\ncoincide"
+            panel.text(0.03, 0.3, text, transform=panel.transAxes, fontsize=8, va="bottom")
     return figure
+
+
+def _coinciding(curves: xr.Dataset) -> list[float]:
+    """The largest forces whose responses differ by less than COINCIDE of the peak from that to the largest of them."""
+    response = curves["floor_response"].values
+    near = np.abs(response - response[-1]).max(axis=1) < COINCIDE * response[-1].max()
+    first = len(near) - int(np.argmin(near[::-1])) if not near.all() else 0
+    return curves["force"].values[first:].tolist()
 
 
 def _friction_axis(axis: xr.Dataset, response: xr.Dataset) -> Figure:
     """Fig. 12."""
-    figure, ((panel,),) = style.figure(width=style.SINGLE, height=2.6)
+    figure, ((panel,),) = style.figure(height=2.8)
     curves = axis.sel(friction=among(axis["friction"], AXIS_FRICTIONS))
     _plot_profiles(panel, curves, "friction", response.isel(friction=-1, force=0))
     panel.set(ylabel=style.RESPONSE, ylim=(0.0, None))
@@ -146,25 +247,35 @@ def _friction_axis(axis: xr.Dataset, response: xr.Dataset) -> Figure:
 
 def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     """Fig. 16; the profile at the largest symmetric force of (b) is followed by those beyond the instability."""
-    figure, axes = style.figure(1, 2, height=2.9)
+    figure, axes = style.figure(1, 2, height=3.1)
     left, right = axes[0]
     one = response.sel(friction=LARGE_FRICTION)
     _plot_profiles(left, at_forces(one, LARGE_FORCES), "force", one.isel(force=0))
-    _plot_profiles(right, at_forces(dynamic, DYNAMIC_FORCES), "force", response.isel(friction=-1, force=0))
+    _plot_profiles(right, at_forces(dynamic, _dynamic_forces(dynamic)), "force", response.isel(friction=-1, force=0))
     mu, other = (style.equals(style.FRICTION, friction) for friction in (LARGE_FRICTION, float(dynamic["friction"])))
     peaks = f"{mu}; paper: two peaks from {PAPER_CROSSOVER:g}, third from {PAPER_THIRD_PEAK:g}"
     titles(axes[0], (peaks, f"{other}; paper: symmetric at {PAPER_SYMMETRIC:g}"))
     zero(right)
-    lost = dynamic["force"].values[dynamic["asymmetry"].values > ASYMMETRIC]
-    kept = dynamic["force"].values[dynamic["force"].values < lost.min(initial=np.inf)]
-    if lost.size and kept.size:
-        text = f"here symmetric up to {kept.max():g},\nsymmetry lost at {lost.min():g}"
+    kept, lost = _symmetric(dynamic)
+    if lost and kept:
+        text = f"here symmetric up to {kept[-1]:g},\nsymmetry lost at {lost[0]:g}"
         right.text(0.03, 0.06, text, transform=right.transAxes, fontsize=8)
     left.set_ylim(bottom=0.0)
     for panel in (left, right):
         panel.set_ylabel(style.RESPONSE)
-        panel.legend(title=style.FORCE, loc="upper right", handlelength=2.8)
+        panel.set_ylim(top=1.2 * panel.get_ylim()[1])
+        panel.legend(title=style.FORCE, loc="upper right", handlelength=2.4, fontsize=7)
     return figure
+
+
+def _dynamic_forces(dynamic: xr.Dataset) -> list[float]:
+    """The last symmetric force, the first asymmetric one, the next that leans to the other side, and the largest."""
+    kept, lost = _symmetric(dynamic)
+    if not lost:
+        return among(dynamic["force"].values, DYNAMIC_FORCES)
+    sign = dict(zip(dynamic["force"].values.tolist(), dynamic["asymmetry_sign"].values.tolist(), strict=True))
+    other = [force for force in lost if sign[force] == -sign[lost[0]]]
+    return sorted({*kept[-1:], lost[0], *other[:1], lost[-1]})
 
 
 def contact_forces(states: xr.Dataset) -> list[float]:
@@ -185,7 +296,9 @@ def _plot_profiles(panel: Axes, curves: xr.Dataset, along: Literal["force", "fri
     # symbols at other disks for each curve, and dashes, so that curves which cover each other are all seen
     for index, (value, look) in enumerate(family(curves[along].values, of=along, dashed=True)):
         look |= {"markersize": 3.2, "markevery": (index % SPREAD, SPREAD)}
-        panel.plot(curves["x"], curves["floor_response"].isel({along: index}), label=f"{value:g}", **look)
+        count = int(curves["peak_count"].isel({along: index}))
+        label = f"{value:g}: {count} peak{'s' if count > 1 else ''}"
+        panel.plot(curves["x"], curves["floor_response"].isel({along: index}), label=label, **look)
     panel.set(xlabel=style.POSITION, xlim=(-REACH, REACH))
 
 

@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator
+from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response_paper.captions import Caption, Datasets, of_group, of_scene, values
+from granular_response_paper.captions import WEIGHT, Caption, Datasets, bracket, of_group, of_scene, values
 from granular_response_paper.panels import family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import Parameters
@@ -27,6 +27,8 @@ NETWORK_FORCES = (2.0, 3.0, 5.0)
 STIFFNESS_FORCES = (0.25, 1.0, 2.0, 3.0, 15.0)
 TEARDROP_FORCES = (2.0, 3.0)
 COMPARED_FORCE = 5.0
+#: Slabs whose profiles are compared.
+PROFILE_LAYERS = (15, 30, 60)
 
 #: The marker of a region that reaches the floor.
 AT_FLOOR: dict[str, Any] = {"linestyle": "none", "markersize": 5.0, "markerfacecolor": "white"}
@@ -69,9 +71,48 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
             "fig05b_stiffness": slab | of_stiffness,
             "fig05c_depth": {**deep, "force": parameters.size_forces},
         },
+        _findings(datasets),
         stiffnesses=stiffnesses,
         compared=drawn((COMPARED_FORCE,), "sizes"),
     )
+
+
+def _findings(datasets: Datasets) -> dict[str, str]:
+    """What the data show, a sentence for each picture."""
+    events, sizes, stiffness = (datasets[name] for name in ("events", "sizes", "stiffness"))
+    ends = dict(zip(events["name"].values.tolist(), np.stack([events["low"], events["high"]], axis=1), strict=True))
+
+    def at(name: str) -> str:
+        low, high = ends[name]
+        return f"at {bracket(low, high)}" if np.isfinite(high) else f"not up to {low:.3g} {WEIGHT}"
+
+    chosen = datasets["states"].isel(force=nearest(datasets["states"]["force"].values, NETWORK_FORCES))
+    opened = ((datasets["rest"]["contact_status"].values[0] != 0) & (chosen["contact_status"].values == 0)).sum(axis=1)
+    held = np.flatnonzero(stiffness["new_neighbours"].values == 0)
+    centre = stiffness["response_at_centre"].values[held]
+    last = float(np.nanmax(np.abs(centre[-2] / centre[-1] - 1.0))) if len(held) > 1 else np.nan
+    softest = next(iter(_by_stiffness(sizes).values()))
+    found = np.nanmean(softest["crossover_bracket"].values, axis=1)
+    deep = {int(n): force for n, force in zip(softest["layers"].values, found, strict=True) if np.isfinite(force)}
+    least, most = min(deep, default=0), max(deep, default=0)
+    reached = softest["reaches_floor"].values.any(axis=1)
+    depths = " and ".join(filter(None, [values(softest["layers"].values[reached].tolist())])) if reached.any() else "no"
+    return {
+        "fig03_frictionless_response": f"The single peak of the floor response becomes two {at('crossover')}.",
+        "fig04_frictionless_contacts": (
+            f"The load opens {values(opened.tolist())} contacts; the region below it reaches the floor "
+            f"{at('teardrop_reaches_floor')}."
+        ),
+        "fig05_teardrop": f"The open region reaches the floor in slabs of {depths} layers (softer disks).",
+        "fig05b_stiffness": (
+            f"Between the two largest stiffnesses the response at x = 0 changes by {100.0 * last:.1g} % at most."
+        ),
+        "fig05c_depth": (
+            f"Two peaks appear at {deep[least]:.2g} {WEIGHT} in {least} layers, at {deep[most]:.2g} {WEIGHT} in {most}."
+            if deep
+            else "No slab has two peaks under the forces simulated."
+        ),
+    }
 
 
 def nearest(stored: np.ndarray, wanted: Sequence[float]) -> list[int]:
@@ -152,8 +193,13 @@ def _teardrop(sizes: xr.Dataset) -> Figure:
     handles.append(Line2D([], [], color=style.MUTED, **AT_FLOOR, marker="o"))
     panels[0, 0].legend(handles, [*names, "open: at the floor"], title="layers", loc="upper left")
     for axes in panels[-1]:
-        axes.set(xscale="log", xlabel=style.FORCE)
-        axes.xaxis.set_major_formatter("{x:g}")
+        axes.set(xlabel=style.FORCE)
+    for axes in panels.flat:
+        style.logarithmic(axes)
+        axes.minorticks_off()
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.set_major_formatter("{x:g}")
     titles(panels.flat, [_stiffness_is(k) for k in each for _ in range(2)])
     return figure
 
@@ -165,6 +211,7 @@ def _growth(axes: Axes, slabs: xr.Dataset, name: str) -> None:
         reached = np.flatnonzero(one["reaches_floor"].values > 0)
         end = int(reached[0]) + 1 if len(reached) else one.sizes["force"]
         force, values = one["force"].values[:end], one[name].values[:end]
+        force, values = force[values > 0.0], values[values > 0.0]
         axes.plot(force, values, **look, label=f"{int(one['layers'])}")
         if len(reached):
             axes.plot(force[-1:], values[-1:], **AT_FLOOR, marker=look["marker"], color=look["color"], zorder=4)
@@ -184,8 +231,8 @@ def _stiffness(data: xr.Dataset) -> Figure:
     )
     said = f"paper: {PAPER_CHANGE:.0%}".replace("%", " %")
     note(centre, said, (high, 1.0 + PAPER_CHANGE), (0.0, 1.5), ha="right", fontsize=7, color=style.PAPER)
-    centre.set_ylabel(f"{style.RESPONSE_AT_CENTRE},\nover that of the stiffest")
-    centre.legend(title=style.FORCE)
+    centre.set_ylabel("response at $x = 0$ / stiffest")
+    centre.legend(title=style.FORCE, loc="upper right")
 
     ends = []
     for index, look in family(nearest(data["force"].values, TEARDROP_FORCES), of="force"):
@@ -201,11 +248,7 @@ def _stiffness(data: xr.Dataset) -> Figure:
         bracket = data[f"{name}_bracket"].values
         known = held & np.isfinite(bracket).all(axis=1)
         events.plot(k[known], bracket[known].mean(axis=1), **style.marked_line(at), label=label)
-    style.logarithmic(events, "y")
-    events.set(ylabel=f"onset force, {style.FORCE}")
-    events.yaxis.set_major_locator(FixedLocator([0.5, 1.0, 2.0, 5.0, 10.0]))
-    events.yaxis.set_major_formatter("{x:g}")
-    events.yaxis.set_minor_formatter("")
+    events.set(ylabel=f"onset force, {style.FORCE}", ylim=(0.0, 1.35 * events.get_ylim()[1]))
     events.legend()
     for axes in (centre, size, events):
         axes.set(xscale="log", xlabel=style.STIFFNESS)
@@ -221,7 +264,8 @@ def _slabs(sizes: xr.Dataset) -> Figure:
     each = _by_stiffness(sizes)
     softest, slabs = next(iter(each.items()))
     at_force = slabs.isel(force=nearest(slabs["force"].values, [COMPARED_FORCE])[0])
-    for at, look in family(range(slabs.sizes["slab"]), of="length", marked=False, dashed=True):
+    shown = [at for at in range(slabs.sizes["slab"]) if int(slabs["layers"][at]) in PROFILE_LAYERS]
+    for at, look in family(shown or range(slabs.sizes["slab"]), of="length", marked=False, dashed=True):
         one = at_force.isel(slab=at)
         height = 2.0 + np.sqrt(3.0) * (float(one["layers"]) - 1.0)
         seen = np.abs(one["x"].values) <= 1.5 * height

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from granular_response.observe.peaks import is_double_peaked
 from granular_response.plot import style
 from granular_response.plot.animation import FULL, Frames, animate
-from granular_response.plot.chains import draw_chains, draw_key, draw_response
-from granular_response.plot.pictures import Shown
-from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
+from granular_response.plot.chains import draw_chains, draw_key, draw_peaks, draw_response
+from granular_response.plot.shown import Shown
+from granular_response_paper.captions import WEIGHT, Caption, Datasets, of_group, of_scene, values
 from granular_response_paper.panels import note, packing, polarised
 
 from .parameters import Parameters
@@ -50,7 +50,31 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
                 polydispersity=experiment.polydispersities,
             ),
         },
+        _findings(_slabs(datasets)),
     )  # fmt: skip
+
+
+def _findings(slabs: Datasets) -> dict[str, str]:
+    """How many peaks the response has under the largest force, and from which force on two."""
+    last, first = [], []
+    for slab in slabs.values():
+        x, force = slab["x"].values, np.atleast_1d(slab["total_force"].values)
+        two = [is_double_peaked(x, curve) for curve in np.atleast_2d(slab["floor_response"].values)]
+        last.append(f"{'two peaks' if two[-1] else 'one peak'} at µ = {float(slab['friction']):g}")
+        begun = f"from {force[int(np.argmax(two))]:.3g} {WEIGHT}" if any(two) else "not"
+        first.append(f"{begun} at µ = {float(slab['friction']):g}")
+    return {
+        "overview": f"Under the large force the response has {values(last)}; under the small one it is elastic."
+        if all(_elastic_first(slab) for slab in slabs.values())
+        else f"Under the large force the response has {values(last)}.",
+        "growing_force": f"Two peaks appear: {', '.join(first)}.",
+    }
+
+
+def _elastic_first(slab: xr.Dataset) -> bool:
+    """Whether the response to the smallest force is that to small loads, within 5 % of the peak."""
+    first, elastic = np.atleast_2d(slab["floor_response"].values)[0], slab["elastic_response"].values
+    return bool(np.abs(first - elastic).max() < 0.05 * elastic.max())
 
 
 def _slabs(datasets: Datasets) -> dict[str, xr.Dataset]:
@@ -72,15 +96,14 @@ def _overview(slabs: Datasets) -> Figure:
             draw_chains(above, Shown.of(slab, 1 if row == 0 else -1), largest=FULL * force, half_width=half)
             draw_response(below, x, curves[k, row], elastic, half_width=half, limits=limits)
             below.tick_params(labelleft=k == 0, labelbottom=row == 1)
-            peaks = "2 peaks" if is_double_peaked(x, curves[k, row]) else "1 peak"
-            below.text(0.03, 0.95, peaks, transform=below.transAxes, va="top", weight="bold", color=style.INCREASED)
+            draw_peaks(below, x, curves[k, row])
             if k == 0:
                 name = style.equals(style.F_EXT, force, style.WEIGHT)
                 above.text(0.0, 0.98, name, transform=above.transAxes, va="top")
                 below.set_ylabel(style.RESPONSE.replace(" ", "\n", 1))
         panels[0, k].set_title(title, pad=2.0)
         panels[3, k].set_xlabel(style.POSITION)
-    draw_key(panels[3, -1], "small loads")
+    draw_key(panels[3, -1], "small load")
     return figure
 
 

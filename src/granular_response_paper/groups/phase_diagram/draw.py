@@ -13,15 +13,14 @@ from numpy.typing import NDArray
 
 from granular_response.plot import style
 from granular_response.scene.lattice import touching_largest
-from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, Datasets, Value, of_group
-from granular_response_paper.panels import DASHED, DOTTED, different, family, label_ends, note, packing, titles
+from granular_response_paper.captions import WEIGHT, Caption, Datasets, Value, of_group
+from granular_response_paper.panels import different, family, label_ends, note, packing, titles
 from granular_response_paper.survey.crossover import ABOVE, FOUND
 
 from .parameters import Parameters
 
-#: Levels of the thick and of the thin bar.
-THICK, THIN = (0.16, 0.84), (0.025, 0.975)
+#: Ends of the bars, as fractions of the bootstrap draws.
+THIN = (0.025, 0.975)
 #: Experiments of Sec. VII: from what to what force, in particle weights.
 EXPERIMENTS = (
     ("photoelastic\ndisks, 2D:\nabout 150", 150.0, 150.0),
@@ -30,12 +29,8 @@ EXPERIMENTS = (
 )
 #: Forces of the diagram, as in the paper.
 FORCES = 0.5, 500.0
-#: A response leans visibly from this difference of mirror images on, per largest response.
-ASYMMETRIC = 0.01
-#: Friction and force at which the paper's lattice beside smooth walls becomes asymmetric (Sec. V.E).
-SMOOTH_WALLS = 1.0, 91.0
-#: Fill of the forces that were simulated, and that enough packings bear.
-SIMULATED = "#EFF2F4"
+#: Distance in friction of symbols of two polydispersities.
+APART = 0.012
 #: Markers of the polydispersities, none of which could be an arrow.
 MARKERS = ("o", "s", "D", "P")
 #: The mark of what goes on beyond the axis.
@@ -43,13 +38,9 @@ UPWARDS, DOWNWARDS = r"$\uparrow$", r"$\downarrow$"
 
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
-    shown, shapes, others, realizations = (
-        _usual(datasets[name]) for name in ("crossovers", "shapes", "definitions", "realizations")
-    )
     return {
-        "fig22_phase_diagram": _diagram(shown.isel(width=-1)),
-        "crossover_certainty": _certainty(*(one.isel(width=-1) for one in (shown, shapes, others, realizations))),
-        "starts": _starts(datasets["starts"]),
+        "fig22_phase_diagram": _diagram(_usual(datasets["crossovers"]).isel(width=-1)),
+        "initial_lattice": _starts(datasets["starts"]),
     }
 
 
@@ -74,21 +65,43 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         "realizations": realizations or 1,
         "width": parameters.widths[-1],
     }
-    last, count = chr(ord("a") - 1 + len(deltas)), len(deltas)
-    few = ", ".join(f"({chr(ord('a') + count + k)})" for k in range(len(_disorders(crossovers))))
     return of_group(
         "phase_diagram",
         {
             "fig22_phase_diagram": given,
-            "crossover_certainty": given,
-            "starts": {"friction": [0.0, 0.2], "polydispersity": _disorders(crossovers), "width": parameters.widths[0]},
+            "initial_lattice": {
+                "friction": [0.0, 0.2], "polydispersity": _disorders(crossovers), "width": parameters.widths[0]
+            },
         },
+        _findings(crossovers.isel(width=-1), datasets["starts"]),
         p=parameters,
-        last=last,
-        few=few,
-        tolerances=[100.0 * datasets["definitions"]["tolerance"].values[k] for k in (0, -1)],  # those that are drawn
         dip=100 * parameters.tolerance,
-    )
+    )  # fmt: skip
+
+
+def _findings(crossovers: xr.Dataset, starts: xr.Dataset) -> dict[str, str]:
+    """What the data show, a sentence for each picture."""
+    said = []
+    for delta in different(crossovers["polydispersity"]):
+        one = crossovers.isel(case=_of(crossovers, delta))
+        known = one["kind"].values == FOUND
+        if known.any():
+            friction, force = one["friction"].values[known], one["force"].values[known]
+            name = f"δ = {delta:g}" if delta else "the lattice"
+            rises = f"{force[0]:.2g} {WEIGHT} at µ = {friction[0]:g}"
+            said.append(f"{name}: {rises}" + (f" and {force[-1]:.2g} at {friction[-1]:g}" if known.sum() > 1 else ""))
+    bare = starts.isel(case=starts["friction"].values == 0.0, width=0)
+    rubbed = starts.isel(case=starts["friction"].values > 0.0, width=0)
+    spans = [
+        float(np.nanmax(one["dip"]) - np.nanmin(one["dip"])) if one.sizes["case"] else np.nan for one in (bare, rubbed)
+    ]
+    return {
+        "fig22_phase_diagram": f"Crossover force of {'; '.join(said)}.",
+        "initial_lattice": (
+            f"With the initial lattice constant the dip changes by up to {spans[0]:.2g} without friction and by "
+            f"{spans[1]:.2g} with it."
+        ),
+    }
 
 
 def _diagram(crossovers: xr.Dataset) -> Figure:
@@ -98,24 +111,22 @@ def _diagram(crossovers: xr.Dataset) -> Figure:
     axes.set(xlim=(-0.07, 1.16), ylim=FORCES)
     axes.yaxis.set_major_formatter("{x:g}")
     ends, looks = [], _by_disorder(crossovers)
-    for delta, look in looks:
+    for k, (delta, look) in enumerate(looks):
         one = crossovers.isel(case=_of(crossovers, delta))
-        friction, force, found = one["friction"].values, one["force"].values, one["kind"].values == FOUND
-        low, high = one["interval"].sel(level=list(THICK)).values[found].T
-        known = np.isfinite(high)  # a band to an open interval would say how the bound falls between two frictions
-        axes.fill_between(
-            friction[found], low, np.where(known, high, np.nan), color=look["color"], alpha=0.16, linewidth=0.0
-        )
-        for x, bottom in zip(friction[found][~known], low[~known], strict=True):
-            bar = {"color": look["color"], "linestyle": "-", "linewidth": 1.0, "alpha": 0.6}
-            axes.plot([x, x], [bottom, FORCES[1] / 1.15], marker=UPWARDS, markevery=[1], markersize=7.0, **bar)
+        # side by side, so that bars at one friction do not cover each other
+        friction, force = one["friction"].values + APART * (k - 0.5 * (len(looks) - 1)), one["force"].values
+        found = one["kind"].values == FOUND
+        bars = one["interval"].sel(level=list(THIN)).transpose("level", ...).values
+        for x, low, high in zip(friction[found], *bars[:, found], strict=True):
+            if low < high:
+                _bar(axes, x, low, high, FORCES, 0.9, look["color"])
         axes.plot(friction[found], force[found], **look | {"linewidth": 1.4, "markersize": 4.5})
         ends += [(packing(delta), friction[found][-1], force[found][-1], look["color"])] if found.any() else []
     _bounds(axes, crossovers, looks)
     for text, x, y in (("two peaks\n(hyperbolic-like)", 0.24, 0.83), ("one peak\n(elastic-like)", 0.62, 0.2)):
         axes.text(x, y, text, transform=axes.transAxes, va="center", style="italic", fontsize=10, color=style.MUTED)
     for row, text in enumerate(
-        ("paper: rises with friction, falls with disorder", "bands: 68 % of the bootstrap draws")
+        ("paper: rises with friction, falls with disorder", "bars: 95 % of the bootstrap draws")
     ):
         colour = style.MUTED if row else style.PAPER
         axes.text(0.985, 0.09 - 0.05 * row, text, transform=axes.transAxes, ha="right", fontsize=8, color=colour)
@@ -150,62 +161,12 @@ def _bounds(axes: Axes, crossovers: xr.Dataset, looks: Iterable[tuple[float, dic
                 continue
             above = what == ABOVE
             row = rows[friction, above] = rows.get((friction, above), -1) + 1
-            inwards = (10.0 * row + 4.0) * (-1) ** above
-            text, (ha, va) = (f"> {bound:g}", ("right", "top")) if above else (f"≤ {bound:g}", ("left", "bottom"))
+            inwards = (10.0 * row + 8.0) * (-1) ** above
+            text, (ha, va) = (f"> {bound:g}", ("right", "center")) if above else (f"≤ {bound:g}", ("left", "center"))
+            leader = {"arrowstyle": "-", "color": look["color"], "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0}
             at_edge = {"xycoords": axes.get_xaxis_transform(), "ha": ha, "va": va, "color": look["color"]}
-            place = (-5.0 if above else -1.0, inwards)
-            note(axes, text, (friction, float(above)), place, fontsize=8, **at_edge)
-
-
-def _certainty(crossovers: xr.Dataset, shapes: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:
-    """How well each crossover force is known: a column for each polydispersity; keys stand below the lattice."""
-    applied = shapes["applied_force"].values
-    limits = FORCES[0], 2.0 * float(np.nanmax(applied))
-    columns = _by_disorder(crossovers)
-    figure, panels = style.figure(2, len(columns), height=4.2, sharey="row")
-    handles: dict[str, Any] = {}
-    for (delta, look), axes in zip(columns, panels[0], strict=True):
-        here = _of(crossovers, delta)
-        one, colour = crossovers.isel(case=here), look["color"]
-        axes.set(ylim=limits, xlabel=f"${style.BOTH_FRICTIONS}$", **_FRICTION_AXES)
-        friction, found = one["friction"].values, one["kind"].values == FOUND
-        smallest, largest = np.nanmin(applied[here], axis=1), np.nanmax(applied[here], axis=1)
-        handles["forces simulated"] = axes.fill_between(
-            friction, smallest, largest, color=SIMULATED, linewidth=0.0, zorder=0
-        )
-        for width, low, high in ((0.7, *THIN), (2.4, *THICK)):
-            ends = one["interval"].sel(level=[low, high]).transpose("level", ...).values
-            for x, bottom, top in zip(friction, *ends, strict=True):
-                if bottom < top:
-                    _bar(axes, x, bottom, top, limits, width, colour)
-        axes.plot(friction[found], one["force"].values[found], **look | {"markersize": 4.0})
-        if delta:
-            ways = others.isel(case=here)
-            forces = np.where(
-                ways["kind"].transpose("tolerance", ...) == FOUND, ways["force"].transpose("tolerance", ...), np.nan
-            )
-            for k, edge in ((0, DASHED), (-1, DOTTED)):
-                percent = 100.0 * float(ways["tolerance"][k])
-                (handles[f"dip of {percent:g} %"],) = axes.plot(
-                    friction, forces[k], color=style.MUTED, linestyle=edge, linewidth=0.9
-                )
-            median = realizations.isel(case=here)["median"].values
-            cross: dict[str, Any] = {"linestyle": "none", "marker": "x", "color": style.BLACK, "markersize": 4.0}
-            (handles["median of realizations"],) = axes.plot(friction, median, zorder=7, **cross)
-        else:
-            handles |= _transitions(axes, realizations.isel(case=here), applied[here])
-        _bounds(axes, one, [(delta, look)])
-    few, keys = _few(panels[1, 1:], crossovers, shapes), panels[1, 0]
-    keys.set_axis_off()
-    keys.legend(
-        [*handles.values(), *few.values()], [*handles, *few], loc="center left", fontsize=7.5, borderaxespad=0.0
-    )
-    panels[0, 0].set_ylabel(f"crossover force {style.FORCE}")
-    panels[1, 1].tick_params(labelleft=True)
-    panels[1, 1].set_ylabel(f"fraction of means of {int(shapes['number'][0])}")
-    names = [packing(delta) for delta, _ in columns]
-    titles([*panels[0], *panels[1, 1:]], [*names, *names[1:]])
-    return figure
+            place = (-14.0 if above else 14.0, inwards)
+            note(axes, text, (friction, float(above)), place, fontsize=8, arrowprops=leader, **at_edge)
 
 
 #: Axes of force against friction.
@@ -223,23 +184,6 @@ def _of(crossovers: xr.Dataset, delta: float) -> NDArray[np.intp]:
     return here[np.argsort(crossovers["friction"].values[here])]
 
 
-def _transitions(axes: Axes, lattice: xr.Dataset, applied: FloatArray) -> dict[str, Any]:
-    """A cross between the last force under which a lattice is symmetric and the first under which it is not, and a star
-    for the paper's; keys by name."""
-    keys: dict[str, Any] = {}
-    look: dict[str, Any] = {"color": style.BLUE, "markersize": 6.0, "zorder": 6, "linestyle": "none"}
-    for case in range(lattice.sizes["case"]):
-        lost = np.flatnonzero(lattice["asymmetry"].values[case] > ASYMMETRIC)
-        if lost.size and lost[0] > 0:
-            ends = applied[case, lost[0] - 1 : lost[0] + 1]
-            friction = float(lattice["friction"][case])
-            axes.plot([friction] * 2, ends, color=style.BLUE, linewidth=1.6, linestyle="-", zorder=6)
-            (keys["symmetry lost"],) = axes.plot(friction, np.sqrt(ends.prod()), marker="x", **look)
-    star = {**look, "marker": "*", "markerfacecolor": "white"}
-    (keys["the same, paper, smooth walls"],) = axes.plot(*SMOOTH_WALLS, **star)
-    return keys
-
-
 def _bar(
     axes: Axes, x: float, low: float, high: float, limits: tuple[float, float], linewidth: float, colour: str
 ) -> None:
@@ -249,28 +193,6 @@ def _bar(
     for end, edge, marker in ((low, 1.1 * limits[0], DOWNWARDS), (high, limits[1] / 1.1, UPWARDS)):
         if not np.isfinite(end):
             axes.plot(x, edge, marker=marker, markersize=7.0, color=colour, zorder=6)
-
-
-def _few(panels: Iterable[Axes], crossovers: xr.Dataset, shapes: xr.Dataset) -> dict[str, Any]:
-    """How often the mean of a few realizations has as many peaks as that of all, against the force per crossover force.
-
-    A panel for each polydispersity, a line for each friction; the lines by name.
-    """
-    looks = dict(family(different(crossovers["friction"]), of="friction"))
-    tolerance, few = float(shapes.attrs["tolerance"]), shapes.isel(number=0)
-    drawn = {}
-    for delta, axes in zip(_disorders(crossovers), panels, strict=True):
-        for case in np.flatnonzero(
-            (crossovers["polydispersity"].values == delta) & (crossovers["kind"].values == FOUND)
-        ):
-            friction, row = float(crossovers["friction"][case]), few.isel(case=case)
-            two_peaked = row["two_peaked_means"].values
-            agree = np.where(row["shape"].values > tolerance, two_peaked, 1.0 - two_peaked)
-            force = shapes["applied_force"].values[case] / float(crossovers["force"][case])
-            (drawn[friction],) = axes.plot(force, agree, **looks[friction] | {"markersize": 2.8})
-        axes.axvline(1.0, color=style.MUTED, linewidth=0.6, linestyle="-", zorder=0)
-        axes.set(xscale="log", xlim=(0.03, 8.0), ylim=(0.2, 1.05), xlabel="force / crossover force")
-    return {style.equals(style.FRICTION, friction): drawn[friction] for friction in sorted(drawn)}
 
 
 def _starts(starts: xr.Dataset) -> Figure:

@@ -7,39 +7,50 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 from scipy.spatial import ConvexHull
 from scipy.special import erfc
 
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field
-from granular_response.state import FLOOR, Box
-from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
-from granular_response_paper.panels import Contacts, force_key, forces, titles
+from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, Box
+from granular_response_paper.captions import RADIUS, Caption, Datasets, of_group, of_scene
+from granular_response_paper.panels import Contacts, force_key, forces, note, titles
 
 from .parameters import Parameters
 
-#: The cases, and which are drawn, left and right: of the two frictionless minima one.
-NAMES = {
-    "frictionless": "without friction",
-    "mirrored": "without friction, its mirror image",
-    "frictional": "with friction",
-}
-DRAWN = ["frictionless", "frictional"]
+#: The cases that are drawn, left and right: of the two frictionless minima one.
+NAMES = {"frictionless": "without friction", "frictional": "with friction"}
+DRAWN = list(NAMES)
 
+#: A dip of the stress that is smaller, relative to the largest stress, is none.
+LEAST_DIP = 1e-3
 #: Force of the key, in mean disk weights.
 KEY = 5.0
 
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
     piles, stress = datasets["piles"], datasets["stress"]
-    return {"fig17_pile": _pile(piles, stress), "fig17_pile_profiles": _profiles(piles, stress)}
+    return {"fig17_pile": _pile(piles, stress)}
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     said = {**of_scene(parameters.scene), "width": parameters.stress_width}
     opened = datasets["piles"]["central_open_contacts"].sel(case=DRAWN).values.astype(int).tolist()
-    return of_group("pile_dip", {"fig17_pile": said, "fig17_pile_profiles": said}, p=parameters, open=opened)
+    return of_group("pile_dip", {"fig17_pile": said}, {"fig17_pile": _finding(datasets["stress"])}, open=opened)
+
+
+def _finding(stress: xr.Dataset) -> str:
+    """Whether the vertical stress has a dip under the apex, in each pile."""
+    said = []
+    for case, name in NAMES.items():
+        profile = stress["profile_zz"].sel(case=case)
+        middle, largest = float(profile[int(np.abs(stress["x"].values).argmin())]), float(profile.max())
+        dip = 1.0 - middle / largest
+        said.append(f"{name} " + ("it is largest there" if dip < LEAST_DIP else f"it has a dip of {100.0 * dip:.2g} %"))
+    height = f"{float(stress['dip_height']):g} {RADIUS}"
+    return f"Vertical stress under the apex, at the height {height}: {' and '.join(said)}."
 
 
 def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
@@ -63,7 +74,7 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
         for axes in (chains, contacts):
             network.draw_box(axes, Box(width), 2.0)
             style.no_axes(axes)
-            axes.set(xlim=(-2.6, width + 2.6), ylim=(-1.6, top + 0.2))
+            axes.set(xlim=(-4.6, width + 4.6), ylim=(-1.6, top + 0.2))
         map_axes.set(xlim=(-0.5 * width, 0.5 * width), ylim=(0.0, top))
         force_key(chains, (0.8 * width, 0.9 * top), KEY, strongest, style.WEIGHT)
     titles(panels.flat, [*(f"forces, {NAMES[case]}" for case in DRAWN), *2 * ["$\\sigma_{zz}$"], *2 * ["contacts"]])
@@ -94,6 +105,23 @@ def _forces(axes: Axes, one: xr.Dataset, strongest: float) -> None:
     network.draw_disks(axes, position, radius, facecolor=style.DISKS, edgecolor="none")
     touching = np.where(one["contact_status"].values[:, None] != 0, one["contact_force"].values, 0.0)
     forces(axes, Contacts.of(one, position), np.concatenate([touching, one["wall_force"].values]), strongest)
+    _clipped_at_walls(axes, one)
+
+
+def _clipped_at_walls(axes: Axes, one: xr.Dataset) -> None:
+    """Lines of forces end at the side walls; those that would go through have their force beside them."""
+    width = float(one["width"])
+    inside = Rectangle((0.0, -4.0), width, 200.0, transform=axes.transData)
+    for lines in axes.collections:
+        lines.set_clip_path(inside)
+        lines.set_in_layout(False)
+    for wall, x, gap, side in ((LEFT_WALL, 0.0, -3.0, "right"), (RIGHT_WALL, width, 3.0, "left")):
+        here = one["wall_index"].values == wall
+        size = np.linalg.norm(one["wall_force"].values[here], axis=1)
+        if here.any() and size.max() > KEY:
+            height = float(one["position"].values[one["wall_disk"].values[here][size.argmax()], 1])
+            text = f"${size.max():.0f}\\,{style.WEIGHT}$"
+            note(axes, text, (x, height), (gap, 4.0), ha=side, va="bottom", fontsize=7, annotation_clip=False)
 
 
 def _outline(axes: Axes, one: xr.Dataset) -> None:
@@ -112,24 +140,3 @@ def _network(axes: Axes, one: xr.Dataset) -> None:
     network.draw_disks(axes, one["position"].values, one["radius"].values)
     pairs = one["contact_disk"].values[touching], one["contact_partner"].values[touching]
     network.draw_contacts(axes, one["position"].values, *pairs, linewidth=0.6)
-
-
-def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
-    """Not in the paper: the stress at one height, and the floor forces, of all three states."""
-    figure, ((line, floor),) = style.figure(1, 2, height=2.5)
-    for index, (case, name) in enumerate(NAMES.items()):
-        one = stress["profile_zz"].sel(case=case)
-        line.plot(stress["x"], one, **style.line(index), label=name)
-        look = {**style.marked_line(index), "linestyle": style.LINE_STYLES[index]}
-        floor.plot(piles["x_floor"], piles["floor_force"].sel(case=case), **look)
-    line.set(xlabel=style.POSITION, ylabel=style.STRESS_OF_GRAVITY)
-    line.set_ylim(bottom=0.0)
-    figure.legend(*line.get_legend_handles_labels(), loc="outside upper center", ncols=len(NAMES))
-    height = style.equals("z", float(stress["dip_height"]), style.RADIUS)
-    titles((line, floor), (height, ""), stem="fig17_pile_profiles", place="inside")
-    floor.set(xlabel=style.POSITION, ylabel=rf"floor force$\,/\,{style.WEIGHT}$")
-    floor.set_ylim(0.0, 1.15 * float(piles["floor_force"].max()))
-    half = 0.5 * float(piles["width"])
-    for axes in (line, floor):
-        axes.set_xlim(-half, half)
-    return figure

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,10 +12,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from granular_response.observe.peaks import central_dip, is_double_peaked
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
-from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
+from granular_response_paper.captions import RADIUS, Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import (
+    DASHED,
     Contacts,
     banded,
     different,
@@ -63,7 +65,7 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
         "fig02_polydisperse_forces": _forces(datasets["forces"]),
         "fig19_disordered_response": _response(datasets["individual"], datasets["averages"]),
-        "fig20_disordered_linear_range": _linear_range(datasets["linear_range"]),
+        "fig20_disordered_linear_range": _linear_range(datasets["linear_range"], datasets["averages"]),
         "fig21_disordered_forces": _averages(datasets["averages"]),
         "packings": _packings(datasets["packings"]),
     }
@@ -100,8 +102,56 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         tolerance=100.0 * float(datasets["linear_range"].attrs["tolerance"]),
         last=chr(ord("a") - 1 + len(disordered) * len(frictions)),
         contacts=PAPER_CONTACTS,
-        typical=_typical(datasets["linear_range"], averages),
+        findings=_findings(datasets),
+        smoothed=f"{float(datasets['linear_range'].attrs['width']):g} {RADIUS}",
     )
+
+
+def _findings(datasets: Datasets) -> dict[str, str]:
+    """What the data show, a sentence for each picture."""
+    single, averages, packings = (datasets[name] for name in ("individual", "averages", "packings"))
+    x, mean = single["x"].values, single["response"].mean("realization").values
+    dips = []
+    for case, friction in enumerate(single["friction"].values):
+        even = 0.5 * (mean[case] + mean[case][::-1])
+        dips.append(f"{100.0 * central_dip(x, even):.2g} % at µ = {friction:g}")
+    grown, total = 0, 0
+    w = smoothed_by(averages)
+    for case in np.flatnonzero((averages["polydispersity"].values > 0.0) & (averages["friction"].values > 0.0)):
+        one = averages.isel(case=case, width=w)
+        usable = np.flatnonzero((one["count_at_rest"].values >= 2) & np.isfinite(one["force"].values))
+        if usable.size and case in _shown(averages):
+            total += 1
+            grown += not is_double_peaked(averages["x"].values, one["mean"].values[usable[0]])
+    data = datasets["linear_range"]
+    shorter, compared = 0, 0
+    for friction in different(data["friction"]):
+        ends = [
+            float(data["linear_until"].values[_case(data, delta, friction)])
+            for delta in different(data["polydispersity"])
+            if _case(data, delta, friction) is not None
+        ]
+        compared += len(ends) > 1
+        shorter += len(ends) > 1 and ends[-1] < ends[0]
+    shown = _shown(packings)
+    z = np.nanmean(packings["coordination_number_with_walls"].values[shown], axis=1)
+    load = datasets["forces"]
+    under, rest = _contact_forces(load)[1], _contact_forces(load)[0]
+    part = float(np.linalg.norm(under - rest, axis=1).max() / np.linalg.norm(rest, axis=1).max())
+    return {
+        "fig02_polydisperse_forces": f"The largest incremental force is {part:.2g} times the largest under gravity.",
+        "fig19_disordered_response": (
+            f"The mean response, both sides made alike, has a central dip of {' and of '.join(dips)}."
+        ),
+        "fig20_disordered_linear_range": (
+            f"The linear range of the disordered slab is shorter than that of the lattice at {shorter} of {compared} "
+            "frictions."
+        ),
+        "fig21_disordered_forces": (
+            f"With friction {grown} of {total} averages have one peak at the smallest force."
+        ),
+        "packings": f"The coordination number is between {np.nanmin(z):.2f} and {np.nanmax(z):.2f}.",
+    }  # fmt: skip
 
 
 def _counts(parameters: Parameters, polydispersities: Sequence[float]) -> list[int]:
@@ -192,6 +242,10 @@ def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
             _elastic(axes, averages, float(data["width"]))
             axes.plot(x, rows.T, color="#909090", linewidth=0.4, linestyle="-")
             axes.plot(x, mean, color=style.BLACK, linewidth=1.4, linestyle="-", zorder=3)
+            even = 0.5 * (mean + mean[::-1])
+            axes.plot(x, even, color=style.BLUE, linewidth=1.1, linestyle=DASHED, zorder=3.5, label="mean, sides alike")
+            if not (row or column):
+                axes.legend(loc="upper right", fontsize=7)
             axes.fill_between(x, mean - error, mean + error, color=style.VERMILION, linewidth=0.0, zorder=2.5)
             zero(axes)
             name = f"$\\mu = {friction:g}$, {START_NAMES[start]}, {len(rows)} realizations"
@@ -217,7 +271,7 @@ def _case(data: xr.Dataset, polydispersity: float, friction: float, start: str |
     return int(np.argmax(here)) if here.any() else None
 
 
-def _linear_range(data: xr.Dataset) -> Figure:
+def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Fig. 20: one packing and the lattice, smoothed alike, and the ends of their linear ranges."""
     deltas, frictions = different(data["polydispersity"])[::-1], different(data["friction"])
     looks = {friction: look | {"markersize": 3.0} for friction, look in family(frictions, of="friction")}
@@ -227,10 +281,24 @@ def _linear_range(data: xr.Dataset) -> Figure:
     for axes, delta in zip(responses, deltas, strict=True):
         for friction in frictions:
             response = data["response_at_centre"].values[_case(data, delta, friction)]
-            axes.plot(data["force"], response, **looks[friction], label=style.equals(style.FRICTION, friction))
+            axes.plot(data["force"], response, **looks[friction])
     largest = 1.05 * max(line.get_ydata().max() for axes in responses for line in axes.get_lines())
-    for axes in responses:
-        axes.set(xscale="log", xlabel=style.FORCE, ylim=(0.0, largest), xlim=(0.04, 600.0))
+    smallest = float(data["force"].min())
+    for axes, delta in zip(responses, deltas, strict=True):
+        axes.set(xscale="log", xlabel=style.FORCE, ylim=(0.0, 1.1 * largest), xlim=(0.3 * smallest, 1200.0))
+        starts = []
+        for friction in frictions:
+            known = data["response_at_centre"].values[_case(data, delta, friction)]
+            last = int(np.flatnonzero(np.isfinite(known))[-1])
+            end = float(data["force"][last]), float(known[last])
+            starts.append((f"{friction:g}", *end, looks[friction]["color"]))
+        label_ends(axes, starts)
+        text = f"numbers: ${style.FRICTION}$"
+        axes.text(0.97, 0.97, text, transform=axes.transAxes, ha="right", va="top", fontsize=8)
+    if beside := _beside(data, averages):
+        mean, spread = beside
+        bar = {"color": style.MUTED, "marker": "_", "markersize": 8.0, "capsize": 2.5, "elinewidth": 1.0}
+        responses[0].errorbar([0.5 * smallest], [mean], [spread], **bar)
     for axes in responses[1:]:
         axes.tick_params(labelleft=False)
     responses[0].set_ylabel(f"{style.FLOOR_STRESS} at $x = 0$")
@@ -239,29 +307,19 @@ def _linear_range(data: xr.Dataset) -> Figure:
         _range_ends(ends, data.isel(path=data["polydispersity"].values == delta), look, packing(delta))
     ends.set(yscale="log", xlabel=f"${style.FRICTION}$", ylabel=f"end of the linear range, {style.FORCE}")
     ends.legend(loc="lower center", bbox_to_anchor=(0.45, 0.0))
-    figure.legend(*responses[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(frictions))
     return figure
 
 
-def _typical(data: xr.Dataset, averages: xr.Dataset) -> str:
-    """How typical the packing of Fig. 20 is: its response to the smallest force beside those of Fig. 21, in words.
-
-    They differ in nothing without friction, where walls are smooth in both.
+def _beside(data: xr.Dataset, averages: xr.Dataset) -> tuple[float, float] | None:
+    """What the packing of Fig. 20 stands beside without friction, where walls are smooth in both: mean and standard
+    deviation of the response to the smallest force over the packings of Fig. 21, smoothed as it is.
     """
-    delta, width = max(different(data["polydispersity"])), float(data.attrs["width"])
-    case, path = _case(averages, delta, 0.0), _case(data, delta, 0.0)
-    if case is None or path is None or width not in averages["width"].values:
-        return ""
+    width = float(data.attrs["width"])
+    case = _case(averages, max(different(data["polydispersity"])), 0.0)
+    if case is None or width not in averages["width"].values:
+        return None
     one = averages.isel(case=case, step=0).sel(width=width, x=0.0)
-    count = int(one["count_at_rest"])
-    spread = float(one["standard_error"]) * np.sqrt(count)
-    mean, found = float(one["mean"]), float(data["response_at_centre"].values[path][0])
-    off = (found - mean) / spread
-    side = "above" if off > 0.0 else "below"
-    return (
-        " Single packings scatter widely without friction: the response of this one to the smallest force is"
-        f" {found:.3f}, {abs(off):.1f} standard deviations {side} the mean of {count} packings (Fig. 21), {mean:.3f}."
-    )
+    return float(one["mean"]), float(one["standard_error"]) * float(np.sqrt(int(one["count_at_rest"])))
 
 
 def smoothed_by(averages: xr.Dataset) -> int:
@@ -285,9 +343,7 @@ def _averages(data: xr.Dataset) -> Figure:
     """Fig. 21: a panel for each polydispersity and friction, one scale in each row, forces from dark to light."""
     disordered = data.isel(case=data["polydispersity"].values > 0.0)
     deltas, frictions = different(disordered["polydispersity"]), different(disordered["friction"])
-    figure, panels = style.figure(
-        len(frictions), len(deltas), height=0.5 + 1.35 * len(frictions), sharex=True, sharey="row"
-    )
+    figure, panels = style.figure(len(frictions), len(deltas), height=0.5 + 1.35 * len(frictions), sharex=True)
     w = smoothed_by(data)
     x = data["x"].values
     for row, friction in enumerate(frictions):
@@ -301,11 +357,14 @@ def _averages(data: xr.Dataset) -> Figure:
             _family(axes, data.isel(case=case, width=w), x)
             letter = chr(ord("a") + row * len(deltas) + column)
             style.letter(axes, letter, text=material(delta, friction).replace(", ", "\n      "))
-        panels[row, 0].set_ylim(top=1.3 * panels[row, 0].get_ylim()[1])
+        limits = np.array([axes.get_ylim() for axes in panels[row] if axes.axison])
+        for axes, (low, high) in zip([axes for axes in panels[row] if axes.axison], limits, strict=True):
+            # without friction the scatter of the widest disorder would flatten the others
+            axes.set_ylim(*((low, 1.3 * high) if friction == 0.0 else (limits.min(), 1.3 * limits.max())))
     panels[0, 0].set_xlim(-45.0, 45.0)
-    outer(panels, style.POSITION, style.FLOOR_STRESS)
-    note = f"over each panel: {style.FORCE}, in brackets the number of stable slabs if some collapsed; grey: elastic"
-    figure.suptitle(note, fontsize=8)
+    for axes in panels[-1]:
+        axes.set_xlabel(style.POSITION)
+    figure.supylabel(style.FLOOR_STRESS, fontsize=9)
     return figure
 
 
@@ -338,7 +397,7 @@ def _packings(data: xr.Dataset) -> Figure:
         axes.remove()
     roses = [figure.add_subplot(grid[0, k], projection="polar") for k in range(len(disordered))]
     for axes, delta in zip(roses, disordered, strict=True):
-        _rose(axes, data, delta, None, {"color": colours[delta], "linestyle": "-"})
+        _rose(axes, data, delta, colours[delta])
     coordination = figure.add_subplot(grid[1, :])
     ends, counted = [], data["coordination_number_with_walls"].values
     for delta, look in family(deltas, of="polydispersity"):
@@ -357,13 +416,13 @@ def _packings(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _rose(axes: Axes, data: xr.Dataset, delta: float, start: str | None, look: Mapping[str, Any]) -> None:
-    """The distribution of the directions of contacts without friction over the full turn."""
-    case = _case(data, delta, 0.0, start)
+def _rose(axes: Axes, data: xr.Dataset, delta: float, colour: str) -> None:
+    """The distribution of the directions of contacts without friction over the full turn, a wedge for each bin."""
+    case = _case(data, delta, 0.0)
     if case is not None:
         density = np.nanmean(data["contact_angle_density"].values[case], axis=0)
-        angle = np.concatenate([data["angle"].values, np.pi + data["angle"].values, data["angle"].values[:1]])
-        axes.plot(angle, np.concatenate([density, density, density[:1]]), **{"linewidth": 1.2, **look})
+        angle = np.concatenate([data["angle"].values, np.pi + data["angle"].values])
+        axes.bar(angle, np.tile(density, 2), width=np.pi / len(density), color=colour, edgecolor="white", linewidth=0.3)
     axes.set_xticks(np.radians(range(0, 360, 60)))
     axes.tick_params(labelsize=7, pad=-2.0)
     axes.yaxis.set_major_locator(MaxNLocator(3))

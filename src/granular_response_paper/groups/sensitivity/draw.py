@@ -19,7 +19,7 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     figure, ((axes,),) = style.figure(height=3.2)
     # powers of ten as such
     texts = [str(text) for text in next(iter(datasets.values()))["text"].values[1:]]
-    names = [re.sub(r"1e(-?\d+)", r"$10^{\1}$", text) for text in texts]
+    names = [_named(text) for text in texts]
     # the largest on top; for scale the peak of the response itself
     size = np.max([data["largest_difference"].values[1:] for data in datasets.values()], axis=0)
     places = np.argsort(np.argsort(size))
@@ -38,6 +38,22 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     return {"sensitivity": figure}
 
 
+def _named(text: str) -> str:
+    """A variant with the units of its numbers, powers of ten as such."""
+    time, energy = f"\\,{style.TIME_UNIT}$", f"\\,{style.ENERGY_UNIT}$"
+    text = re.sub(r"gravity grows over (\S+) in place of at once", lambda m: f"gravity ramped over ${m[1]}{time}", text)
+    text = re.sub(r"load ramp of (\S+) in place of \S+", lambda m: f"load ramped over ${m[1]}{time}", text)
+    return re.sub(r"1e(-?\d+) per disk", lambda m: f"$10^{{{m[1]}}}{energy} per disk", text)
+
+
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     said = of_scene(parameters.scene, force=parameters.force, friction=parameters.friction)
-    return of_group("sensitivity", {"sensitivity": said})
+    groups = list(datasets)
+    first = datasets[groups[0]]
+    size = np.max([datasets[name]["largest_difference"].values[1:] for name in groups], axis=0)
+    largest, peak = float(size.max()), max(float(one["floor_response"].values[0].max()) for one in datasets.values())
+    finding = (
+        f"The largest change is {100.0 * largest / peak:.0f} % of the peak of the response "
+        f"({first['text'].values[1:][int(size.argmax())]})."
+    )
+    return of_group("sensitivity", {"sensitivity": said}, {"sensitivity": finding})

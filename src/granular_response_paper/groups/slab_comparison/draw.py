@@ -48,12 +48,22 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         stiffness_ratio=parameters.scene.contact.stiffness_ratio,
         packing=f"slabs of {layers[0]} to {layers[-1]} layers",
     )
-    return of_group("slab_comparison", {STEM: said})
+    slabs = datasets["slabs"].isel(slab=datasets["slabs"]["friction"].values == 0.0)
+    slabs = slabs.isel(slab=slabs["disks_per_layer"].values == slabs["disks_per_layer"].values.max())
+    layers, off = slabs["layers"].values, 100.0 * slabs["distance"].values
+    finding = (
+        f"Without friction the difference from the elastic slab is {off[layers.argmin()]:.2g} % of the peak in "
+        f"{layers.min():g} layers and {off[layers.argmax()]:.2g} % in {layers.max():g}."
+        if layers.size
+        else ""
+    )
+    wide = float(datasets["slabs"]["disks_per_layer"].max())
+    return of_group("slab_comparison", {STEM: said}, {STEM: finding}, wide=wide)
 
 
 def _name(case: tuple) -> str:
-    friction, floor, gravity, shape = case
-    return f"µ = {friction:g}, {floor}, {shape:g} wide" + (", slow" if gravity == "slow" else "")
+    friction, floor, gravity, _ = case
+    return f"µ = {friction:g}, {floor} floor" + (", gravity ramped" if gravity == "slow" else "")
 
 
 def _profiles(axes: Axes, data: xr.Dataset) -> None:
@@ -82,15 +92,13 @@ def _profiles(axes: Axes, data: xr.Dataset) -> None:
 
 def _distances(axes: Axes, data: xr.Dataset) -> None:
     """Distance against the number of layers, one line for each case."""
-    for index, (case, slabs) in enumerate(alike(data, "slab", *_KEYS).items()):
+    widest = data["disks_per_layer"].values == data["disks_per_layer"].values.max()
+    for index, (case, slabs) in enumerate(alike(data.isel(slab=widest), "slab", *_KEYS).items()):
         layers, distance = slabs["layers"].values, slabs["distance"].values
         colour = style.COLOURS[FLOORS.index(case[1])]
         marked = style.marked_line(index, colour=colour)
         apart = np.flatnonzero(np.diff(np.log(distance)) > 1.0) + 1  # no part of how the distance falls: not joined
         axes.plot(*np.delete([layers, distance], apart, axis=1), **marked, label=_name(case))
-        for k in apart:
-            axes.plot(layers[k], distance[k], **marked | {"markerfacecolor": "white", "markeredgewidth": 0.9})
-            note(axes, "gravity opened a row", (layers[k], distance[k]), (6, 0), va="center", fontsize=7)
     layers = np.array([data["layers"].min(), data["layers"].max()], dtype=float)
     other = data["distance_other_floor"].values.min()
     axes.axhline(other, color=style.MUTED, linewidth=0.8, linestyle=(0, (2, 2)))

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from matplotlib.axes import Axes
+import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
 from granular_response.plot import style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Datasets, of_group
-from granular_response_paper.panels import titles
 
 from .parameters import BLOWS_UP, SETTLES, Parameters
 
@@ -35,58 +31,63 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
-    axes = sum(f"time_step_{name}" in datasets for name in AXES)
-    return of_group("stability", {"stability_steps": {}}, p=parameters, last=chr(ord("a") + axes - 1))
+    found = {"stability_steps": _finding(datasets)}
+    return of_group("stability", {"stability_steps": {}}, found, p=parameters)
+
+
+def _finding(datasets: Datasets) -> str:
+    """The least step over the limit up to which all settle, of each integrator."""
+    least: dict[str, float] = {}
+    for name in _studied(datasets):
+        for integrator, (low, *_) in _limits(datasets[f"time_step_{name}"], name).items():
+            least[integrator] = min(least.get(integrator, np.inf), float(np.min(low, initial=np.inf)))
+    said = [f"{integrator.capitalize()} {ratio:.2f}" for integrator, ratio in least.items() if np.isfinite(ratio)]
+    return f"Largest time step with which all scenes settle, over the predicted limit: {', '.join(said)}."
+
+
+def _studied(datasets: Datasets) -> list[str]:
+    return [name for name in AXES if f"time_step_{name}" in datasets]
 
 
 def _steps(datasets: Datasets) -> Figure:
-    """A panel for each property of the scene: where settling ends for each integrator, and where energy explodes."""
-    studies = {name: datasets[f"time_step_{name}"] for name in AXES if f"time_step_{name}" in datasets}
-    columns = min(4, len(studies))
-    rows = -(-len(studies) // columns)
-    figure, panels = style.figure(rows, columns, height=0.5 + 1.9 * rows, sharey=True)
-    for axes in panels.flat[len(studies) :]:
-        axes.set_axis_off()
-    for axes, (name, study) in zip(panels.flat, studies.items(), strict=False):
-        for k, integrator in enumerate(study["integrator"].values.tolist()):
-            outcome = study["outcome"].sel(integrator=integrator).transpose(name, "ratio").values
-            shift = 0.22 * (k - 0.5 * (study.sizes["integrator"] - 1))
-            _limits(axes, study["ratio"].values, outcome, shift, style.marked_line(k), integrator.capitalize())
-        axes.axhline(1.0, color=style.BLACK, linestyle="-", linewidth=0.8, zorder=0, label="predicted limit")
-        axes.set(yscale="log", xlabel=AXES[name], xlim=(-0.6, study.sizes[name] - 0.4), ylim=(0.7, 4.6))
-        axes.set_xticks(range(study.sizes[name]), [_short(value) for value in study[name].values], rotation=90)
-        axes.set_yticks([1.0, 2.0, 4.0], ["1", "2", "4"])
-        axes.minorticks_off()
-        axes.tick_params(axis="x", top=False, length=2.0)
-    titles(panels.flat[: len(studies)])
-    for axes in panels[:, 0]:
-        axes.set_ylabel("time step / limit")
-    handles, labels = panels.flat[0].get_legend_handles_labels()
+    """A column for each property of the scene, over all of its values: where settling ends, where energy explodes."""
+    names = _studied(datasets)
+    figure, ((axes,),) = style.figure(height=3.0)
+    labels: set[str] = set()
+    for column, name in enumerate(names):
+        limits = _limits(datasets[f"time_step_{name}"], name)
+        for k, (integrator, (low, high, exploding)) in enumerate(limits.items()):
+            x, look = column + 0.18 * (k - 0.5 * (len(limits) - 1)), style.marked_line(k)
+            label = integrator.capitalize()
+            if len(low):
+                middle = np.sqrt(low * high)
+                axes.plot([x, x], [low.min(), high.max()], color=look["color"], linewidth=1.2, linestyle="-")
+                marks = look | {"linestyle": "none", "markersize": 3.5, "label": None if label in labels else label}
+                axes.plot(np.full(len(middle), x), middle, **marks)
+                labels.add(label)
+            if len(exploding):
+                axes.plot(x, exploding.min(), marker="x", color=look["color"], markersize=4.5)
+    axes.axhline(1.0, color=style.BLACK, linestyle="-", linewidth=0.8, zorder=0, label="predicted limit")
+    axes.set(yscale="log", ylabel="time step / limit", xlim=(-0.6, len(names) - 0.4), ylim=(0.7, 5.5))
+    axes.set_xticks(range(len(names)), [AXES[name] for name in names])
+    axes.set_yticks([1.0, 2.0, 4.0], ["1", "2", "4"])
+    axes.minorticks_off()
+    axes.tick_params(axis="x", top=False, length=0.0)
+    handles, texts = axes.get_legend_handles_labels()
     handles.append(Line2D([], [], linestyle="none", marker="x", color=style.BLACK))
-    figure.legend(handles, [*labels, "blows up from here"], loc="outside upper center", ncols=len(handles))
+    figure.legend(handles, [*texts, "blows up from here"], loc="outside upper center", ncols=len(handles))
     return figure
 
 
-def _limits(
-    axes: Axes, ratio: FloatArray, outcome: NDArray[Any], shift: float, look: dict[str, Any], name: str
-) -> None:
-    """Brackets of the step up to which all settle; a cross at the smallest step that blows up.
-
-    ``outcome`` (value, ratio) are codes of :data:`OUTCOMES` for growing ``ratio``. There is no bracket where the
-    smallest step does not settle, or the largest does.
+def _limits(study: xr.Dataset, name: str) -> dict[str, tuple[FloatArray, FloatArray, FloatArray]]:
+    """By integrator: brackets of the steps up to which all settle, over the values of a property, and smallest steps
+    that blow up. There is no bracket where the smallest step does not settle, or the largest does.
     """
-    settled = np.logical_and.accumulate(outcome == SETTLES, axis=1).sum(axis=1)
-    here = np.flatnonzero((settled > 0) & (settled < len(ratio)))
-    low, high = ratio[settled[here] - 1], ratio[settled[here]]
-    middle = np.sqrt(low * high)
-    marks = look | {"linestyle": "none", "markersize": 4.5}
-    axes.errorbar(here + shift, middle, [middle - low, high - middle], elinewidth=1.2, label=name, **marks)
-    for index, row in enumerate(outcome):
-        exploding = np.flatnonzero(row == BLOWS_UP)
-        if exploding.size:
-            axes.plot(index + shift, ratio[exploding[0]], marker="x", color=look["color"], markersize=4.5)
-
-
-def _short(value: float) -> str:
-    exponent = round(np.log10(value)) if value else 0
-    return rf"$10^{exponent}$" if exponent > 2 and value == 10.0**exponent else f"{value:g}"
+    ratio, found = study["ratio"].values, {}
+    for integrator in study["integrator"].values.tolist():
+        outcome = study["outcome"].sel(integrator=integrator).transpose(name, "ratio").values
+        settled = np.logical_and.accumulate(outcome == SETTLES, axis=1).sum(axis=1)
+        here = settled[(settled > 0) & (settled < len(ratio))]
+        exploding = (outcome == BLOWS_UP).argmax(axis=1)[(outcome == BLOWS_UP).any(axis=1)]
+        found[integrator] = ratio[here - 1], ratio[here], ratio[exploding]
+    return found

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
@@ -18,8 +16,9 @@ from granular_response_paper.panels import among, family, note, titles, zero
 from .parameters import Parameters
 
 #: Ratios whose simulated profiles are drawn, and those of the elastic bodies; others are in the dataset.
-DRAWN = (0.0, 0.1, 0.2, 0.3, 0.6, 1.0)
-ELASTIC = (0.1, 0.3, 0.6)
+DRAWN = (0.0, 0.1, 0.3, 0.8)
+#: Ratios in the panel about the depth of the dip.
+NEAR = 0.2, 0.4
 #: The crossover of the paper's half plane (Sec. V.C), and that of its simulations (Fig. 10).
 PAPER = 0.2915, 0.3
 
@@ -29,25 +28,20 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     figure, ((simulated, bodies, dips),) = style.figure(1, 3, height=3.1)
     force = float(response["force"])
     shown = among(response["stiffness_ratio"], DRAWN)
-    looks = {ratio: look | {"linewidth": 1.1} for ratio, look in family(shown, of="other", marked=False, dashed=True)}
+    looks = {ratio: look | {"linewidth": 1.2} for ratio, look in family(shown, of="other", marked=False, dashed=True)}
+    profile = elastic["profile"].sel(rotations="free", body="smooth floor")
     for ratio in shown:
-        one = response["floor_response"].sel(stiffness_ratio=ratio)
-        simulated.plot(response["x"], one, **looks[ratio], label=f"{ratio:g}")
-
-    profile = elastic["profile"].sel(rotations="free")
-    marks: dict[str, dict[str, Any]] = {
-        "slab": {},
-        "half plane": {"marker": "o", "markerfacecolor": "white", "markersize": 3.0, "markevery": 3},
-    }
-    for ratio in among(shown, ELASTIC):
-        for name, body in (("slab", "smooth floor"), ("half plane", "half plane")):
-            one = profile.sel(body=body).sel(stiffness_ratio=ratio, method="nearest")
-            bodies.plot(elastic["x"], one, **looks[ratio], **marks[name])
-    keys = [Line2D([], [], color=style.MUTED, linestyle="-", **marks[name]) for name in marks]
-    bodies.legend(keys, list(marks), loc="upper right", borderaxespad=0.3)
+        curve = response["floor_response"].sel(stiffness_ratio=ratio)
+        simulated.plot(response["x"], curve, **looks[ratio])
+        solid = profile.sel(stiffness_ratio=ratio, method="nearest")
+        bodies.plot(elastic["x"], solid, **looks[ratio])
+        for axes, one in ((simulated, curve), (bodies, solid)):
+            middle = float(one.values[np.argmin(np.abs(one["x"].values))])
+            note(axes, f"{ratio:g}", (0.0, middle), (0.0, 2.5), ha="center", fontsize=8, color=looks[ratio]["color"],
+                 path_effects=[withStroke(linewidth=2.0, foreground="white")], zorder=5)
     _draw_dips(dips, response, elastic, events)
     load = f"simulation, {style.equals(style.F_EXT, force, style.WEIGHT)}"
-    titles((simulated, bodies, dips), (load, "elastic, no horizontal springs", "depth of the dip"))
+    titles((simulated, bodies, dips), (load, "elastic slab", "depth of the dip"))
 
     reach = min(40.0, float(np.abs(response["x"]).max()))
     top = 1.08 * float(response["floor_response"].max())
@@ -55,12 +49,9 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
         zero(axes)
         axes.set(xlabel=style.POSITION, xlim=(-reach, reach), ylim=(-0.012 * top / 0.11, top))
     simulated.set_ylabel(style.RESPONSE)
-    figure.legend(
-        *simulated.get_legend_handles_labels(),
-        title=f"${style.STIFFNESS_RATIO}$",
-        loc="outside upper center",
-        ncols=len(shown),
-    )
+    for axes in (simulated, bodies):
+        axes.text(0.97, 0.95, f"numbers: ${style.STIFFNESS_RATIO}$", transform=axes.transAxes, ha="right", va="top",
+                  fontsize=8)  # fmt: skip
     return {"fig10_stiffness_ratio": figure, **draw_spring_model()}
 
 
@@ -70,29 +61,34 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     return of_group(
         "stiffness_ratio_crossover",
         {"fig10_stiffness_ratio": said, "fig11_spring_model": {}},
-        bracket=f"{float(events['low'].min()):.3g} to {float(events['high'].max()):.3g}",
+        {"fig10_stiffness_ratio": _finding(events)},
         paper=PAPER,
     )
 
 
+def _finding(events: xr.Dataset) -> str:
+    low, high = float(events["low"].min()), float(events["high"].max())
+    if not np.isfinite(high):
+        return f"The simulated response has two peaks up to k_T/k_N = {low:.3g}."
+    return f"The simulated response has two peaks below k_T/k_N = {low:.3g} and one above {high:.3g}."
+
+
 def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr.Dataset) -> None:
-    """The depth of the dip, and below it the same near the crossover, where the differences are small."""
-    inset = axes.inset_axes((0.36, 0.25, 0.61, 0.36))
+    """The depth of the dip near the crossover, where the differences are small."""
     ratio, fine = response["stiffness_ratio"].values, elastic["stiffness_ratio"].values
     low, high = float(events["low"].min()), float(events["high"].max())
     dip = elastic["central_dip"].sel(rotations="free")
-    simulated = {**style.marked_line(0), "color": style.BLACK}
-    for panel in (axes, inset):
-        zero(panel)
-        if np.isfinite(high):
-            panel.axvspan(low, high, color=style.FAINT, linewidth=0.0, zorder=0)
-        panel.plot(fine, dip.sel(body="half plane"), **style.line(1), label="half plane")
-        panel.plot(fine, dip.sel(body="smooth floor"), **style.line(2), label="slab")
-        panel.plot(ratio, response["central_dip"], **simulated, label="simulation")
-    axes.set(xlabel=f"${style.STIFFNESS_RATIO}$", ylabel="relative depth of the dip at $x = 0$", xlim=(-0.03, 1.03))
+    zero(axes)
+    if np.isfinite(high):
+        axes.axvspan(low, high, color=style.FAINT, linewidth=0.0, zorder=0)
+    axes.plot(fine, dip.sel(body="half plane"), **style.line(1), label="half plane")
+    axes.plot(fine, dip.sel(body="smooth floor"), **style.line(2), label="elastic slab")
+    axes.plot(ratio, response["central_dip"], **{**style.marked_line(0), "color": style.BLACK}, label="simulation")
+    axes.set(xlabel=f"${style.STIFFNESS_RATIO}$", ylabel="relative depth of the dip at $x = 0$", xlim=NEAR)
+    drawn = np.concatenate([line.get_xydata()[(line.get_xdata() >= NEAR[0]) & (line.get_xdata() <= NEAR[1])]
+                            for line in axes.get_lines() if len(line.get_xdata()) > 2])  # fmt: skip
+    if len(drawn):
+        axes.set_ylim(min(-0.012, 1.1 * drawn[:, 1].min()), 1.1 * drawn[:, 1].max())
     axes.legend(loc="upper right", borderaxespad=0.3)
-    inset.set(xlim=(0.24, 0.41), ylim=(-0.012, 0.045))
-    inset.tick_params(labelsize=7)
-    for value, side in zip(PAPER, ("right", "left"), strict=True):
-        style.paper_value(inset, value)
-        note(inset, f"{value:g}", (value, inset.get_ylim()[1]), (0.0, 2.0), ha=side, fontsize=7, color=style.PAPER)
+    for value, text, side in zip(PAPER, ("half plane", "paper"), ("before", "behind"), strict=True):
+        style.paper_value(axes, value, f"{text} {value:g}", side=side, at=0.62)

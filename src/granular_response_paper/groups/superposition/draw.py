@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
 from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, Datasets, lettered, of_group, of_scene
-from granular_response_paper.panels import banded, family, titles, zero
+from granular_response_paper.captions import WEIGHT, Caption, Datasets, lettered, of_group, of_scene
+from granular_response_paper.panels import banded, family, label_ends, titles, zero
 
 from .parameters import FORCES, Parameters
 
@@ -41,8 +41,29 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         "superposition",
         given | {"fig24b_superposition_error": several},
         panels=lettered(f"d = {d:g} diameters" for d in diameters),
+        findings={stem: _finding(datasets["errors"], force) for stem, force in FORCES.items()}
+        | {"fig24b_superposition_error": _errors_finding(datasets["errors"])},
         tolerance=100.0 * parameters.tolerance,
         until=LINEAR_UNTIL,
+    )
+
+
+def _finding(errors: xr.Dataset, force: float) -> str:
+    """How far the sum is off in the packing that is drawn, at the smallest and the largest distance."""
+    off = 100.0 * errors["floor_error"].isel(realization=REALIZATION).sel(force=force, method="nearest").values
+    near, far = errors["distance"].values[[0, -1]]
+    return (
+        f"In this packing the sum of the single responses is off by {off[0]:.2g} % (root mean square) at a distance of "
+        f"{near:g} diameters and by {off[-1]:.2g} % at {far:g}."
+    )
+
+
+def _errors_finding(errors: xr.Dataset) -> str:
+    mean = 100.0 * errors["floor_error"].isel(distance=0).mean("realization").values
+    low, high = errors["force"].values[[0, -1]]
+    return (
+        f"At {float(errors['distance'][0]):g} diameters the deviation on the floor is {mean[0]:.2g} % at {low:g} "
+        f"and {mean[-1]:.2g} % at {high:g} {WEIGHT}, in the mean over realizations."
     )
 
 
@@ -92,12 +113,15 @@ def _errors(datasets: Datasets) -> Figure:
     force, distances = errors["force"].values, errors["distance"].values
     ends = 0.5 * (linear["linear_until"].values + linear["nonlinear_from"].fillna(np.inf).values)
     quarter, middle, three_quarters = np.quantile(ends, [0.25, 0.5, 0.75], method="closest_observation")
+    labels: dict[str, list[tuple[str, float, float, str]]] = {}
     for axes, name in ((floor, "floor_error"), (contacts, "contact_error")):
         axes.axvspan(quarter, min(three_quarters, force[-1]), color=style.FAINT, alpha=0.35, linewidth=0.0, zorder=0)
         if np.isfinite(middle):
             axes.axvline(middle, ymax=0.78, color=style.MUTED, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
         for k, look in family(range(len(distances)), of="length"):
-            _mean_with_error(axes, force, errors[name].values[:, k], look, f"{distances[k]:g}")
+            _mean_with_error(axes, force, errors[name].values[:, k], look, "")
+            ends = (f"{distances[k]:g}", float(force[-1]), float(errors[name].values[:, k, -1].mean()), look["color"])
+            labels.setdefault(name, []).append(ends)
         style.paper_value(axes, LINEAR_UNTIL, f"paper: {LINEAR_UNTIL:g}", at=0.2)
         axes.set(xscale="log", yscale="log", xlabel=style.FORCE)
     change = linear["contact_change"].values.mean(axis=0)[1:]  # zero at the first force, by definition
@@ -108,16 +132,12 @@ def _errors(datasets: Datasets) -> Figure:
     for k, look in family(range(len(distances)), of="length"):
         _mean_with_error(deep, errors["gap"].values, profiles[:, k], look, "")
     deep.set(yscale="log", ylim=(1e-4, 1.5), xlabel=rf"depth below the loads$\,/\,{style.RADIUS}$", xlim=(0.0, None))
-    handles, names = floor.get_legend_handles_labels()
-    deep.legend(
-        [*handles, dotted],
-        [*names, "single load"],
-        title=f"$d$ (diameters), {errors.sizes['realization']} realizations",
-        alignment="left",
-        loc="lower left",
-        ncols=2,
-        columnspacing=0.8,
-    )
+    (median,) = contacts.plot([], [], color=style.MUTED, linewidth=0.8, linestyle=(0, (4, 2)))
+    deep.legend([dotted, median], ["single load", "linear range ends, median"], loc="lower left")
+    for axes, name in ((floor, "floor_error"), (contacts, "contact_error")):
+        axes.set_xlim(right=1.9 * force[-1])
+        label_ends(axes, labels[name])
+    floor.text(0.97, 0.03, "numbers: distance in diameters", transform=floor.transAxes, ha="right", fontsize=7)
     rows = f"contacts between rows, {style.equals(style.F_EXT, last, style.WEIGHT)}"
     texts = ("floor forces", "all contact forces", rows)
     titles(panels[0], texts, stem="fig24b_superposition_error", place="inside")

@@ -11,11 +11,12 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
-from granular_response_paper.panels import family, titles, zero
+from granular_response_paper.captions import WEIGHT, Caption, Datasets, bracket, of_group, of_scene
+from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
 
+STEM = "fig16s_symmetry_breaking"
 #: A contact is marked when its tangential force is within this fraction of the Coulomb limit.
 MARGIN = 0.05
 #: A response is not symmetric from this difference of mirror images on, per largest response.
@@ -24,36 +25,26 @@ ASYMMETRIC = 0.01
 REACH = 30.0
 #: The force at which the paper sees the symmetry lost, in mean disk weights (Sec. V.E).
 PAPER = 91.0
-#: Legends stand over their panel.
-OVER: dict[str, Any] = {
-    "loc": "lower center",
-    "bbox_to_anchor": (0.5, 1.11),
-    "fontsize": 7.5,
-    "labelspacing": 0.2,
-    "borderaxespad": 0.0,
-}
-
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
     states, copies = datasets["states"], datasets["copies"]
     with_states = states.sizes["state"] == 3
     rows = 2 if with_states else 1
-    figure, axes = style.figure(rows, 2, height=3.3 + 2.3 * (rows - 1), height_ratios=[1.3, 1.0][:rows])
-    _protocols(axes[0, 0], datasets["runs"], datasets["held"])
+    figure, axes = style.figure(rows, 2, height=2.5 + 2.2 * (rows - 1))
+    _protocols(axes[0, 0], datasets["runs"], datasets["held"], datasets["equal_rows"])
     _copies(axes[0, 1], copies)
-    loads = [_lost(datasets["runs"]), f"copies, {_load(float(copies['force']))}"]
+    loads = ["symmetric or not", f"a copy and its mirror image, {_load(float(copies['force']))}"]
     handles: dict[str, Any] = {}
     if with_states:
         for panel, state in zip(axes[1], (1, 2), strict=True):
             handles |= _network(panel, states.isel(state=0), states.isel(state=state))
             loads.append(_load(float(states["force"][state])))
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
-    titles(axes.flat, loads, stem="fig16s_symmetry_breaking")
-    return {"fig16s_symmetry_breaking": figure}
+    titles(axes.flat, loads, stem=STEM)
+    return {STEM: figure}
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
-    steps = {step for protocol in parameters.protocols for step in protocol.time_steps}
     contacts = (
         " (e), (f) Contact network at the last symmetric and the first asymmetric force, ramp of "
         f"{parameters.protocols[0].ramp_time:g}."
@@ -61,56 +52,69 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     forces = sorted(set(datasets["runs"]["force"].values.tolist()))
     return of_group(
         "symmetry_breaking",
-        {"fig16s_symmetry_breaking": of_scene(parameters.scene, force=forces)},
+        {STEM: of_scene(parameters.scene, force=forces)},
+        {STEM: _finding(datasets)},
         p=parameters,
-        ramps=sorted({protocol.ramp_time for protocol in parameters.protocols}),
-        steps=(max(steps), min(steps)),
+        least=100.0 * ASYMMETRIC,
         paper=PAPER,
         contacts=contacts if datasets["states"].sizes["state"] == 3 else "",
     )
 
 
-def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:
-    """Asymmetry against force: colours for ramps, full and hollow markers for time steps."""
-    ramps = sorted(set(runs["ramp_time"].values))
-    steps = sorted(set(runs["time_step"].values), reverse=True)
-    hollow: dict[str, Any] = {
-        "linestyle": "none", "markersize": 6.0, "markerfacecolor": "none", "markeredgewidth": 0.8,
-    }  # fmt: skip
-    for ramp, look in family(ramps, of="other"):
-        for column, step in enumerate(steps):
-            chosen = (runs["ramp_time"].values == ramp) & (runs["time_step"].values == step)
-            curve = runs.isel(run=np.flatnonzero(chosen)).sortby("force")
-            label = "" if column else rf"gravity, then a ramp of {ramp:g}$\,{style.TIME_UNIT}$"
-            panel.plot(curve["force"], curve["asymmetry"], label=label, **look | (hollow if column else {}))
-    if len(steps) > 1:
-        panel.plot([], [], color=style.MUTED, label=f"open symbols: time step {steps[-1]:g}", **hollow, marker="o")
-    cross: dict[str, Any] = {"color": style.BLACK, "linestyle": "none", "marker": "x", "markersize": 4.5}
-    text = f"path, then displaced by {_power(float(held['displacement']))}"
-    panel.plot(held["force"], held["asymmetry"], label=text, **cross)
-    panel.set_yscale("log")
-    style.paper_value(panel, PAPER, f"paper: {PAPER:g}", at=0.8)
-    panel.set(xlabel=style.FORCE, ylabel="asymmetry of the floor response")
-    panel.legend(**OVER)
-
-
-def _lost(runs: xr.Dataset) -> str:
-    """From which force on the response is asymmetric, after the ramps under which that is soonest and latest."""
-    lost = runs.isel(run=runs["asymmetry"].values >= ASYMMETRIC).to_dataframe().groupby("ramp_time")["force"].min()
-    ends = sorted({float(lost.min()), float(lost.max())}) if len(lost) else []
-    return rf"symmetry lost at {' to '.join(f'{force:.0f}' for force in ends)}$\,{style.WEIGHT}$" if ends else ""
+def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset, equal_rows: xr.Dataset) -> None:
+    """A row for each way to reach a force: grey where the response is symmetric, orange where it is not."""
+    rows: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+    for ramp in sorted(set(runs["ramp_time"].values)):
+        one = runs.isel(run=runs["ramp_time"].values == ramp)
+        rows[rf"ramp of {ramp:g}$\,{style.TIME_UNIT}$"] = one["force"].values, one["asymmetry"].values > ASYMMETRIC
+    shift = _power(float(held["displacement"]))
+    rows[f"path, then moved\nby {shift}"] = held["force"].values, held["asymmetry"].values > ASYMMETRIC
+    for low, high in zip(equal_rows["low"].values, equal_rows["high"].values, strict=True):
+        if np.isfinite(high):
+            rows["equal rows,\nbracket"] = np.array([low, high]), np.array([False, True])
+    for row, (force, lost) in enumerate(rows.values()):
+        for chosen, colour in ((~lost, style.MUTED), (lost, style.VERMILION)):
+            face = "white" if colour == style.MUTED else colour
+            panel.plot(force[chosen], np.full(int(chosen.sum()), row), "o", color=colour, markersize=5.0,
+                       markerfacecolor=face)  # fmt: skip
+    panel.set_yticks(range(len(rows)), list(rows), fontsize=7.5)
+    panel.set(xlabel=style.FORCE, ylim=(len(rows) - 0.4, -0.9))
+    panel.tick_params(axis="y", which="both", length=0.0)
+    style.paper_value(panel, PAPER, f"paper: {PAPER:g}", at=0.34, side="behind")
+    for name, look in (("symmetric", {"color": style.MUTED, "markerfacecolor": "white"}),
+                       ("asymmetric", {"color": style.VERMILION})):  # fmt: skip
+        panel.plot([], [], "o", label=name, markersize=5.0, **look)
+    panel.legend(loc="upper left", ncols=2, columnspacing=1.0, handletextpad=0.2, borderaxespad=0.2)
 
 
 def _copies(panel: Axes, copies: xr.Dataset) -> None:
-    """Profiles of the copies; those that lie on each other have markers of different size."""
-    for k, name in enumerate(copies["name"].values):
-        look = style.marked_line(k)
-        look |= {"markersize": 2.6} if k < 2 else {"markersize": 5.0, "markerfacecolor": "none"}
-        look["markeredgewidth"] = 0.0 if k < 2 else 0.8
+    """Profiles of the last copy, which is the mirror image of the one before, and of that."""
+    for k in (-2, -1):
+        look = style.marked_line(k % 2) | {"markersize": 2.8}
+        name = "copy" if k == -2 else "its mirror image"
         panel.plot(copies["x"], copies["floor_response"].isel(copy=k), label=name, **look)
     zero(panel)
     panel.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(-REACH, REACH))
-    panel.legend(**OVER)
+    panel.legend(loc="upper right")
+
+
+def _finding(datasets: Datasets) -> str:
+    """From which forces on the response is not symmetric, and to which side copies lean."""
+    said = []
+    for ramp in sorted(set(datasets["runs"]["ramp_time"].values)):
+        one = datasets["runs"].isel(run=datasets["runs"]["ramp_time"].values == ramp)
+        force, lost = one["force"].values, one["asymmetry"].values > ASYMMETRIC
+        if lost.any():
+            kept = force[force < force[lost].min()]
+            first = float(force[lost].min())
+            ends = bracket(float(kept.max()), first) if kept.size else f"{first:g} {WEIGHT}"
+            said.append(f"at {ends} with a ramp of {ramp:g} sqrt(R/g)")
+        else:
+            said.append(f"not up to {force.max():g} {WEIGHT} with a ramp of {ramp:g} sqrt(R/g)")
+    sides = datasets["copies"]["asymmetry_sign"].values[datasets["copies"]["asymmetry"].values > ASYMMETRIC]
+    count = datasets["copies"].sizes["copy"]
+    lean = f" Of {count} copies, to the left: {int((sides < 0).sum())}, to the right: {int((sides > 0).sum())}."
+    return f"Loss of symmetry of the response: {', '.join(said)}." + (lean if sides.size else "")
 
 
 def _network(panel: Axes, rest: xr.Dataset, loaded: xr.Dataset) -> dict[str, Any]:

@@ -7,11 +7,13 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
-from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
+from granular_response_paper.captions import RADIUS, Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import Contacts, force_key, forces, titles
 
 from .parameters import Parameters
 
+#: Forces near the disk (radii), and those along the applied force (degrees), of which the caption says the part.
+NEAR, ALONG = 12.0, 15.0
 #: Force of the key, in mean disk weights.
 KEY = 5.0
 
@@ -22,7 +24,26 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     given = of_scene(parameters.scene, force=parameters.force, angle=parameters.angle, torque=parameters.torques)
-    return of_group("torque", {"fig18_torque": given}, last=chr(ord("a") - 1 + len(parameters.torques)))
+    found = {"fig18_torque": _finding(datasets["torques"], parameters.angle)}
+    return of_group("torque", {"fig18_torque": given}, found, last=chr(ord("a") - 1 + len(parameters.torques)))
+
+
+def _finding(data: xr.Dataset, angle: float) -> str:
+    """Which part of the forces near the disk points along the applied force, without torque and with the largest."""
+    disk, along = int(data["loaded_disk"]), data["applied_force"].values
+    along = along / np.linalg.norm(along)
+    parts = []
+    for state in (0, -1):
+        position, vector = data["position"].values[state], data["contact_added_force"].values[state]
+        point = Contacts.of(data, position).point[: len(vector)]
+        near = np.linalg.norm(point - position[disk], axis=1) < NEAR
+        size = np.linalg.norm(vector[near], axis=1)
+        within = np.abs(vector[near] @ along) > np.cos(np.radians(ALONG)) * size
+        parts.append(100.0 * float((size * within).sum() / size.sum()) if size.any() else np.nan)
+    return (
+        f"Without torque {parts[0]:.0f} % of the forces within {NEAR:g} {RADIUS} of the disk are within {ALONG:g}° "
+        f"of the applied one, with the largest torque {parts[1]:.0f} %."
+    )
 
 
 def _chains(data: xr.Dataset) -> Figure:
@@ -52,11 +73,12 @@ def _chains(data: xr.Dataset) -> Figure:
         # the force as a straight arrow to the disk's centre, a clockwise torque as an arc over it
         network.draw_load(axes, position[disk], data["applied_force"].values, length=4.6)
         network.draw_torque(axes, position[disk], -float(torques[index]))
-        force_key(axes, (right - 6.0, top + 1.4), KEY, largest, style.WEIGHT)
+        if index == 0:
+            force_key(axes, (right - 6.0, top + 1.4), KEY, largest, style.WEIGHT)
         axes.set(**limits)
     titles(panels.flat, map(_torque, torques.tolist()))
     return figure
 
 
 def _torque(value: float) -> str:
-    return "no torque" if value == 0.0 else rf"torque ${value:g}\,{style.TORQUE_UNIT}$"
+    return "no torque" if value == 0.0 else rf"torque ${value:g}\,{style.TORQUE_UNIT}$ clockwise"
