@@ -41,7 +41,7 @@ def grows(data: Data) -> Numbers:
 
 @claim(
     "B9", "beyond the paper, IV.C", Ask("exponent of the force in the layers", within("nearly", 2.0)),
-    primary=f"open region at the floor, {SERIES['walls']}"
+    primary=f"open region at the floor, {SERIES['walls']}", source="hypothesis", finds="not supported"
 )  # fmt: skip
 def as_the_weight(data: Data) -> Numbers:
     """Therefore, the opening of contacts is due to a "competition" between the compression due to gravity and the

@@ -49,7 +49,7 @@ def holds(data: Data) -> Numbers:
 
 @claim(
     "B20", "beyond the paper, II.B", Ask("direction of the largest force beside the vertical, degrees", within("nearly", 60.0)),
-    Ask("force at 60 degrees per that at 75", higher_by("marked")), figures=[15]
+    Ask("force at 60 degrees per that at 75", higher_by("marked")), primary="direction", figures=[15]
 )  # fmt: skip
 def chains(data: Data) -> Numbers:
     """These profiles exhibited strong dependence on the particle shapes: the ordered lattice of monodisperse disks
@@ -63,7 +63,8 @@ def chains(data: Data) -> Numbers:
     Remark: Packings of nearly equal disks under 150 mg. That prominent is taken as half more than the force at 75
     degrees is a choice of this project
     """
-    yield tuple(_mean(data, name, "nearly equal", 150.0) for name in ("chain", "contrast"))
+    yield "direction", _mean(data, "chain", "nearly equal", 150.0), None
+    yield "prominence", None, _mean(data, "contrast", "nearly equal", 150.0)
 
 
 @claim(
@@ -155,7 +156,7 @@ def linear_force(data: Data) -> Numbers:
 
 @claim(
     "B26", "beyond the paper, V.D", Ask("direction of the largest mean force, degrees", between(22.5, 52.5)),
-    Ask("the same under 30 degrees", between(15.0, 45.0))
+    Ask("the same under 30 degrees", between(15.0, 45.0)), modal=True, finds="not seen"
 )  # fmt: skip
 def oblique(data: Data) -> Numbers:
     """We have also been able to reproduce [86] force chains along non-lattice directions observed in experiments with

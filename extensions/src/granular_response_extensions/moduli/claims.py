@@ -88,17 +88,16 @@ def reach(data: Data) -> Numbers:
 @claim(
     "B28", "beyond the paper, IV and VIII",
     Ask("difference of the incremental response from the elastic slab per largest response", at_most("nearly"), "%"),
-    primary="friction 0.2, up to the crossover, averages over 1 R", modal=True, finds="not seen"
+    primary="friction 0.2, up to the crossover, averages over 2 R", modal=True, finds="not seen"
 )  # fmt: skip
 def incrementally_elastic(data: Data) -> Numbers:
     """If the particle positions do not change significantly, so that only the contact network is modified in response
     to the applied stress, the behavior can possibly be modeled as "incrementally elastic".
 
     Short: The behavior can possibly be modeled as incrementally elastic
-    Here: At friction 0.2, up to the crossover and with moduli averaged over one radius, the incremental response
+    Here: At friction 0.2, up to the crossover and with moduli averaged over two radii, the incremental response
     differs from that of an elastic slab with the measured incremental moduli by {0}.
-    Remark: Ranges over the loads to which moduli are fitted. Largest difference of all forces. One of thirteen cases
-    holds, that with the narrowest averages
+    Remark: Ranges over the loads to which moduli are fitted. Largest difference of all forces. Two radii is the width of Fig. 14
     """
     for name, slab in _slabs(data).items():
         crossover = Quantity.bracket(*slab["crossover"].values)

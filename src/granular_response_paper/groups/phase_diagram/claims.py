@@ -486,7 +486,7 @@ def _at_15(data: Data, slab: Slab, name: str) -> xr.Dataset:
 
 @claim(
     "D10", "VI, Fig. 19", Ask("standard deviation without friction per that with 0.2", more_than(1.0)),
-    Ask("difference of a typical packing from the mean at friction 0.2", at_least("small"), "%"), disorder=True
+    Ask("difference of a typical packing from the mean at friction 0.2", at_least("visible"), "%"), disorder=True
 )  # fmt: skip
 def fluctuations(data: Data) -> Numbers:
     """The fluctuations are quite large even for this small degree of polydispersity (and larger for the frictionless
@@ -496,7 +496,7 @@ def fluctuations(data: Data) -> Numbers:
     Short: Fluctuations are large, and larger without friction
     Here: Under 15 mg the response scatters {0} times as much from packing to packing without friction as at friction
     0.2; with it a typical packing differs from the mean by {1} in root mean squares.
-    Remark: Quite large is taken as not small: a quarter or more. w = 3
+    Remark: Quite large has no scale in the text; asked is only what a picture shows. w = 3
     """
     for slabs in _by_start(data, "shapes", 0.0, 0.2):
         without, full = (_with_interval(_at_15(data, slab, "shapes"), "spread") for slab in slabs)
