@@ -335,7 +335,7 @@ class Verdict:
 
     def others(self, prepared: str = "") -> dict[str, Outcome]:
         """The outcomes of the other cases, or of those that are ``prepared`` in another way."""
-        chosen = [test for test in self.tests if test.case.prepared == prepared and test not in self.primary]
+        chosen = [test for test in self.tests if test.case.prepared == prepared and test.case != Case(self.claim.primary)]
         names = dict.fromkeys(test.case.name for test in chosen)
         return {name: together(test.outcome for test in chosen if test.case.name == name) for name in names}
 

@@ -49,8 +49,8 @@ class Quantity:
 
     @classmethod
     def bracket(cls, low: float, high: float) -> Quantity:
-        """An event above ``low`` and not above ``high``; ``high`` nan means that it does not happen up to ``low``."""
-        if math.isnan(high):
+        """An event above ``low`` and not above ``high``; ``high`` nan or inf means that it does not happen up to ``low``."""
+        if not math.isfinite(high):
             return cls(None, float(low), math.inf, "bracket")
         return cls(0.5 * float(low + high), float(low), float(high), "bracket")
 

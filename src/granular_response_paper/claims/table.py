@@ -154,7 +154,8 @@ def _tested(test: Test) -> dict[str, Any]:
 
 
 def _named(one: object, *names: str) -> dict[str, Any]:
-    return {name: getattr(one, name) for name in names}
+    found = {name: getattr(one, name) for name in names}
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in found.items()}
 
 
 def _interval(quantity: Quantity | None) -> dict[str, Any]:

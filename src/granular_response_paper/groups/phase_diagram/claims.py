@@ -592,7 +592,7 @@ def shorter(ends: FloatArray, lattice: FloatArray) -> Quantity:
 
 def linear_end(ends: FloatArray) -> Quantity:
     """The median force at which realizations (r, 2) leave their linear range; a lattice has one, without scatter."""
-    each = [Quantity(0.5 * (low + high), low, high) for low, high in ends.tolist()]
+    each = [Quantity.bracket(low, high) for low, high in ends.tolist()]
     return over_brackets(each, partial(np.quantile, q=0.5, method="inverted_cdf"))
 
 
