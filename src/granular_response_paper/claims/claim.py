@@ -209,6 +209,7 @@ class Data:
         if from_rest:
             ramps = self.get(ROBUSTNESS, "events_from_rest")
             there = (ramps["name"].values.astype(str) == from_rest) & np.isclose(ramps["friction"].values, friction)
+            needs(there.any(), f"robustness holds no {from_rest} from rest")
             ends = zip(ramps["low"].values[there].tolist(), ramps["high"].values[there].tolist(), strict=True)
             found += [Quantity.bracket(*one) for one in ends]
         return Quantity.over(found, "protocol", "range over the protocol")
@@ -391,7 +392,7 @@ def tests(claim: Claim, data: Data) -> list[Test]:
     _checked(claim, data)
     limits = [ask.bound.limits(data.words) for ask in claim.asks]
     found = []
-    for one in claim.measure(data):
+    for one in _yielded(claim, data):
         case, *numbers = one if isinstance(one, tuple) else ("", one)
         if not isinstance(case, (str, Case)):
             case, numbers = "", [case, *numbers]
@@ -405,6 +406,12 @@ def tests(claim: Claim, data: Data) -> list[Test]:
                 found.append(Test(ask, quantity, limit_here, case))
     needs(any(test.case == Case(claim.primary) for test in found), f"the primary case {claim.primary} is not stored")
     return found
+
+
+def _yielded(claim: Claim, data: Data) -> list[Any]:
+    """What its function yields. Divisions by 0 give no number, which no quantity can be."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return list(claim.measure(data))
 
 
 def judge(claim: Claim, data: Data) -> Verdict:

@@ -44,9 +44,9 @@ BASE = UNIT_LOAD.updated({"contact.stiffness_ratio": 0.8, "wall.friction": 0.0})
 FRICTIONS = (0.0, 0.05, 0.1, 0.2, 0.5, 1.0)
 FORCES = (
     *(0.1, 0.2, 0.3, 0.5, 0.6, 0.7, 0.8, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 11.0),
-    *(12.0, 15.0, 18.0, 20.0, 22.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0, 85.0, 90.0, 95.0, 100.0),
+    *(12.0, 15.0, 18.0, 20.0, 22.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0, 85.0, 90.0),
 )
-LAST = {0.0: 10.0, 0.05: 20.0, 0.1: 30.0, 0.2: 50.0, 0.5: 50.0, 1.0: 100.0}
+LAST = {0.0: 10.0, 0.05: 20.0, 0.1: 30.0, 0.2: 50.0, 0.5: 50.0, 1.0: 90.0}
 
 #: Size of displacements of copies: far below any length of the problem, far above rounding. And of the kicks of the
 #: control, which a stable symmetric branch forgets.

@@ -121,5 +121,6 @@ def peaks(data: Data) -> Numbers:
     Remark: Ranges over the averages and the loads to which moduli are fitted
     """
     for name, slab in _slabs(data).items():
+        needs(slab[["predicted_two_peaks", "two_peaks"]].to_array().notnull().all(), f"{name}: no number of peaks")
         wrong = (slab["predicted_two_peaks"] != slab["two_peaks"]).sum("step")
         yield name, Quantity.over(wrong.values.ravel().tolist())

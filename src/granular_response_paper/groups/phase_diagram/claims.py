@@ -574,7 +574,9 @@ def linear_ends(force: FloatArray, changes: FloatArray, tolerance: float) -> Flo
             found.append((force[k - 1] * (force[k] / force[k - 1]) ** part,) * 2)
         elif known.sum() > 1:
             found.append((force[known][-1], np.inf))
-    return np.array(found).reshape(-1, 2)
+    ends = np.array(found).reshape(-1, 2)
+    needs(not np.isnan(ends).any(), "linear_range holds no forces")
+    return ends
 
 
 def _ends(data: Data, slab: Slab, tolerance: float, whole: bool) -> FloatArray:
