@@ -8,7 +8,7 @@ from places import ROOT
 from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response_paper.groups.theory import simulate as theory
 
-FORCES = np.unique(np.concatenate([0.1 * 1.05 ** np.arange(141), [4.0, 5.0, 15.0, 25.0, 40.0, 50.0]]))
+FORCES = np.unique(np.concatenate([0.1 * 1.05 ** np.arange(141), [4.0, 5.0, 15.0, 25.0, 30.0, 40.0, 50.0]]))
 X = np.linspace(-60.0, 60.0, 61)
 STARTS = ["touching-largest", "2.0"]
 
@@ -48,6 +48,9 @@ def events(*rows):
     return dataset(**by_row("event", "name friction low high", rows))
 
 
+#: Floor disks away from the side walls.
+INSIDE = (np.abs(X) < 55.0).astype(int)
+
 #: An elastic response.
 ELASTIC = 0.07 * np.exp(-((X / 20.0) ** 2))
 
@@ -75,6 +78,8 @@ def friction_study():
         "half_maximum_width": 28.0 - 0.1 * FORCES * np.array([[0.0], [0.0], [1.0]]),
         "third_peak_prominence": 0.1 * (FORCES > 38.0) * np.array([[0.0], [1.0], [0.0]]),
         "opened_contacts": opened,
+        "peak_height": 0.14,
+        **dict.fromkeys(("teardrop_width", "teardrop_depth"), opened),
     }
     one_side = np.where(X > 0.0, 0.08, 0.01)
     profiles = np.stack([ELASTIC, ELASTIC, one_side] + [one_side[::-1]] * 3)
@@ -83,7 +88,7 @@ def friction_study():
         "asymmetry_sign": [1, 1, 1, -1, -1, -1],
         "network_asymmetry": [0.0, 0.0] + [0.02] * 4,
     }
-    forces = [90.0, 91.0, 93.0, 95.0, 150.0, 500.0]
+    forces = [90.0, 91.0, 93.0, 150.0, 300.0, 500.0]
     away = np.array([0.8, 0.3, 0.1, 0.05, 0.0])[:, None]
     axis = {
         "central_dip": [0.9, 0.5, -0.01, -0.03, -0.03],
@@ -96,8 +101,8 @@ def friction_study():
     slides = np.zeros((len(STATES), 16), bool)
     for force, upper, level in zip(STATES, (0, 1, 2, 2, 3, 5, 1, 3), (0, 0, 0, 0, 0, 0, 3, 1), strict=True):
         slides[STATES.index(force), :upper] = slides[STATES.index(force), 13 : 13 + level] = True
-    few, status = np.full((2, 8), STICKING), np.full((7, 8), STICKING)
-    few[1, 0], few[1, 1:5], status[3:, :6] = OPEN, SLIDING, OPEN
+    status = np.full((7, 8), STICKING)
+    status[1:, 6], status[3:, :6] = OPEN, OPEN
     table = events(
         *((name, mu, *ends) for name, by_friction in COMES.items() for mu, ends in by_friction.items()),
         *(("first_opening_anywhere", mu, low, low + 0.02) for mu, low in ((0.0, 0.66), (0.2, 3.8), (1.0, 5.5))),
@@ -105,7 +110,7 @@ def friction_study():
     )
     return {
         "response": dataset(
-            {"friction": [0.0, 0.2, 1.0], "force": FORCES},
+            {"friction": [0.0, 0.2, 1.0], "force": FORCES, "interior": ("floor_disk", INSIDE)},
             **over("friction force", **response),
             floor_response=("friction force floor_disk", double),
         ),
@@ -119,6 +124,7 @@ def friction_study():
         "friction_axis": dataset(
             {"friction": [0.0, 0.1, 0.2, 1.0, 2.0]},
             **over("friction", **axis),
+            force=15.0,
             floor_response=("friction floor_disk", (1.0 - away) * ELASTIC),
         ),
         "states_mu_0.2": dataset(
@@ -129,7 +135,6 @@ def friction_study():
             contact_status=("state contact", np.where(slides, SLIDING, STICKING)),
             loaded_disk=0,
         ),
-        "states_mu_1": dataset({"force": ("state", [0.0, 90.0])}, contact_status=("state contact", few)),
         "events": table,
         "events_equal_rows": table.copy(deep=True),
     }
@@ -172,7 +177,7 @@ def ratio_study():
     return {
         "events": events(("two_peaks_end", 10.0, 0.295, 0.3), ("central_maximum_begins", 10.0, 0.31, 0.315)),
         "response": dataset(
-            {"stiffness_ratio": ratio},
+            {"stiffness_ratio": ratio, "interior": ("floor_disk", INSIDE)},
             double_peaked=("stiffness_ratio", [1, 1, 1, 0, 0, 0, 0, 0]),
             response_at_centre=("stiffness_ratio", centre),
             floor_response=("stiffness_ratio floor_disk", centre[:, None] * np.exp(-((X / 20.0) ** 2))),
@@ -245,7 +250,7 @@ def comparison_study():
 
 
 def numerics_study():
-    error = [[0.1, 1e-3], [0.1, 1e-4]]
+    error = [[0.1, 0.02, 1e-3], [0.1, 0.02, 1e-4]]
     damping = by_row(
         "damping_ratio",
         "relaxation_time settled beeman_limit",
@@ -254,8 +259,8 @@ def numerics_study():
     means = over("realization x", stopped=[1.001, 2.002, 1.0], finished=[1.0, 2.0, 1.0])
     return {
         "stop_energy": dataset(
-            {"friction": [0.0, 0.2], "stop_kinetic_energy": [1e-9, 1e-13]},
-            **over("friction stop_kinetic_energy", rest_error=error, loaded_error=error),
+            {"friction": [0.0, 0.2], "stop_kinetic_energy": [1e-9, 1e-11, 1e-13]},
+            **over("friction stop_kinetic_energy", rest_error=error, loaded_error=error, response_error=error),
         ),
         "restart": dataset(sizes={"load": 2, "reading": 3}, kinetic_energy=("load reading", 1e-28)),
         "at_rest": dataset(network_fixed_steps=6000.0, sliding_contacts=0.0, loose_disks=0.0),
@@ -275,7 +280,7 @@ def frictionless_study():
     rows = [8, 7, 7, 6, 6, 6, 5]
     first = 2 * np.arange(len(rows))
     position = [p for k, row in enumerate(rows) for p in ([4.0 * k, row * 3**0.5], [4.0 * k + 2.0, row * 3**0.5])]
-    slabs = over("slab", layers=[15, 30, 15, 30], normal_stiffness=[3000.0, 3000.0, 1e5, 1e5])
+    slabs = over("slab", layers=[15, 20, 15, 20], normal_stiffness=[3000.0, 3000.0, 1e5, 1e5])
     wide = [[30.0, 40.0, 50.0], [29.0, 39.0, 49.0]] * 2
     crossing = over("slab bracket", crossover_bracket=[[3.0, 3.1], [6.0, 6.1]] * 2) | over("slab", open_at_rest=0)
     labels = {"force": forces, "normal_stiffness": [500.0, 1000.0, 2000.0, 3000.0, 1e5], "dip": [0.0, 0.01]}
@@ -290,7 +295,7 @@ def frictionless_study():
             position=("force disk axis", position),
             **over("contact", contact_disk=first, contact_partner=first + 1),
         ),
-        "sizes": dataset(slabs, disks_per_row=("slab", [61, 122, 61, 122]), **crossing),
+        "sizes": dataset(slabs, disks_per_row=("slab", [61, 82, 61, 82]), **crossing),
         "regions": dataset(
             slabs, {"force": 3}, **over("slab force", teardrop_depth=wide, teardrop_width=wide, reaches_floor=0)
         ),
@@ -328,7 +333,7 @@ DRAWS = np.linspace(0.95, 1.05, 41)
 def phases_study():
     cases = disordered_cases()
     rng = np.random.default_rng(0)
-    grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 9.0], [0.5, 2.0, 4.0], [2.5, 12.0]]
+    grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 14.0], [0.5, 2.0, 8.0], [2.5, 12.0]]
     force = np.array([f for row in grid for f in row])
     mu, delta = cases["friction"][1], cases["polydispersity"][1]
     n, few = len(mu), FEW
@@ -408,18 +413,6 @@ def phases_study():
     }
 
 
-def means_study():
-    """Symmetrical means of five, and contacts along the directions of the lattice."""
-    angle, x = np.radians(np.arange(2.5, 180.0, 5.0)), np.linspace(-10.0, 10.0, 21)
-    cases = over("case", polydispersity=[0.1, 0.25], friction=[0.0, 0.0])
-    return {
-        "averages": dataset({"width": [6.0], **cases}, mean_of_few=("width case step x", np.exp(-(x**2)))),
-        "packings": dataset(
-            {**cases, "angle": angle}, contact_angle_density=("case realization angle", 1.0 + np.cos(6.0 * angle))
-        ),
-    }
-
-
 def superposition_study():
     rng = np.random.default_rng(0)
     error = np.array([0.01, 0.1]) * rng.uniform(0.8, 1.2, (8, 2, 1))
@@ -427,7 +420,7 @@ def superposition_study():
     ends = over("realization", linear_until=np.linspace(0.35, 0.4, 8), nonlinear_from=np.linspace(0.4, 0.45, 8))
     return {
         "errors": dataset(
-            {"force": [0.2, 1.0], "distance": [4.0, 8.0], "gap": [1.0, 3.0, 5.0]},
+            {"force": [0.2, 1.0], "distance": [2.0, 8.0], "gap": [1.0, 3.0, 5.0]},
             **over("realization distance force", floor_error_largest=error, contact_error_largest=error),
             row_error=("realization distance force gap", rows),
         ),
@@ -436,21 +429,20 @@ def superposition_study():
 
 
 def sensitivity_study():
-    """Responses by the linear law and by the power 3/2, a tenth of the largest apart."""
+    """Responses by the power 3/2, a tenth of the largest from those by the linear law, and with other dashpots."""
     one = dataset(
-        {"variant": ["reference", "hertz"]},
-        floor_response=("variant floor_disk", np.stack([ELASTIC, 1.1 * ELASTIC])),
-        largest_difference=("variant", np.array([0.0, 0.1 * ELASTIC.max()])),
+        {"variant": ["reference", "hertz", "damping_halved"]},
+        floor_response=("variant floor_disk", np.stack([ELASTIC, 1.1 * ELASTIC, 1.001 * ELASTIC])),
     )
     return {"mu_0.2": one, "mu_1": one}
 
 
 def hysteresis_study():
     """Loops that are reversible as far as the response is linear, and lose nothing a second time."""
-    low = np.full((2, 3, 2), np.nan)
-    low[0, 0] = [4.0, 4.1]
+    low = np.full((3, 3, 2), np.nan)
+    low[[0, 2], 0] = [4.0, 4.1]
     low[1] = [[0.5, 0.5], [0.6, 0.58], [0.55, 0.6]]
-    materials = over("case", polydispersity=[0.0, 0.1], friction=[0.2, 0.2])
+    materials = over("case", polydispersity=[0.0, 0.1, 0.0], friction=[0.2, 0.2, 0.0])
     nothing = np.where(np.isfinite(low), 1e-4, np.nan)
     return {
         "events": dataset(
@@ -459,7 +451,7 @@ def hysteresis_study():
         ),
         "loops": dataset(
             materials,
-            force=("case turn", [[1.0, 15.0], [3.0, np.nan]]),
+            force=("case turn", [[1.0, 15.0], [3.0, np.nan], [1.0, 15.0]]),
             **over("case realization turn", work=1e4 * nothing, slid_again=nothing, floor_repeated=nothing),
             crossed_again=("case realization turn", 0.0 * nothing),
         ),
@@ -485,7 +477,7 @@ def moduli_study():
     """Two cases with friction and one without."""
     difference = np.full((2, 4, 1, 1), 0.3)
     difference[1] = 0.03 + np.array([-0.004, 0.0, 0.002, 0.004])[:, None, None]
-    cases = over("case", polydispersity=[0.1, 0.25, 0.1], friction=[0.2, 0.2, 0.0])
+    cases = over("case", polydispersity=[0.1, 0.01], friction=[0.2, 0.2])
     return {
         "packings": dataset(
             {**cases, "solid": ["affine", "suppressed", "free", "isotropic"]},
@@ -532,14 +524,14 @@ def rolling_study():
 
 def loaded_study():
     """A region of r < 0 that reaches the floor at the crossover, in an incrementally elastic slab."""
-    peaks = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])
-    reach = np.array([[0.5, 0.8, 1.0], [0.0, 0.1, 0.2]])
+    peaks = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    reach = np.array([[0.5, 0.8, 1.0], [0.0, 0.1, 0.2], [0.5, 0.8, 1.0]])
     return {
         "slabs": dataset(
-            {"friction": ("slab", [0.2, 1.0]), "width": [1.0, 2.0]},
+            {"friction": ("slab", [0.2, 1.0, 0.0]), "width": [1.0, 2.0]},
             {"loads": 2, "step": 3},
             **over("slab step", force=[10.0, 19.0, 21.0], two_peaks=peaks),
-            crossover=("slab end", [[20.0, 20.0], [21.0, np.nan]]),
+            crossover=("slab end", [[20.0, 20.0], [21.0, np.nan], [20.0, 20.0]]),
             **over(
                 "slab step width loads",
                 reach=reach[..., None, None],
@@ -580,6 +572,55 @@ def experiments_study():
     }
 
 
+def robustness_study():
+    """Events that hardly move with the protocol, width and stiffness; copies that lean to both sides, and a control."""
+    changes = [("reference", "as in the paper"), ("protocol", "dashpots halved"), ("protocol", "dashpots doubled")]
+    changes += [("protocol", "displaced copy 1"), ("width", "121 disks a row"), ("stiffness", "k_N = 10000 mg/R")]
+    comes = {name: {**by, 0.05: mean(by[0.0], by[0.2], 0.3), 0.1: mean(by[0.0], by[0.2], 0.6)} for name, by in COMES.items()}
+    comes["loss_of_symmetry_path"] = {1.0: (91.2, 92.0)}
+    comes["first_opening_anywhere"] = {0.0: (0.66, 0.68), 0.2: (3.8, 3.82), 1.0: (5.5, 5.52)}
+    rows = [
+        (name, mu, *ends, *change)
+        for change in changes
+        for name, by_friction in comes.items()
+        for mu, ends in by_friction.items()
+        if not (mu == 0.0 and change[1].startswith("displaced"))
+    ]
+    rest = [("loss_of_symmetry", 1.0, 91.2, 92.0), ("loss_of_symmetry", 1.0, 92.0, 93.0), ("crossover", 0.2, 19.8, 20.0)]
+    rest += [("first_opening", 0.2, 3.8, 4.0), ("first_opening", 1.0, 5.5, 5.7), ("third_peak", 0.2, 37.0, 38.0)]
+    rest = [(*row, "protocol", "load ramp of 10 sqrt(R/g)") for row in rest]
+    rest.append(("loss_of_symmetry", 1.0, 91.2, 92.0, "width", "121 disks a row"))
+    columns = "name friction low high kind variant"
+    lean = np.where(X > 0.0, 0.08, 0.01)
+    sides = np.array([1.0, -1.0, 1.0])
+    control = {"friction": [1.0, 1.0, 10.0, 10.0] * 3, "force": np.repeat([95.0, 150.0, 300.0], 4)}
+    return {
+        "events": dataset(**by_row("event", columns, rows)),
+        "events_from_rest": dataset(**by_row("event", columns, rest)),
+        "copies": dataset(
+            **over("run", force=95.0 * np.ones(3), asymmetry=[1.8] * 3, asymmetry_sign=sides),
+            floor_response=("run floor_disk", [lean, lean[::-1], 1.01 * lean]),
+        ),
+        "control": dataset(
+            **over("run", **control, asymmetry=[1.5, 1.6, 0.0, 0.01] * 3, sliding_contacts=np.zeros(12)),
+            opened_contacts=("run", [100.0, 101.0, 120.0, 121.0] * 3),
+        ),
+    }
+
+
+def mean(first, second, part):
+    """Between two brackets on a logarithmic scale."""
+    return tuple(float(one ** (1.0 - part) * other**part) for one, other in zip(first, second, strict=True))
+
+
+def parameters(claims):
+    """Those that sentences are about, by group: the parameters of data in which every claim can be judged."""
+    found = {}
+    for claim in claims:
+        found.setdefault(claim.group, {}).update(claim.requires)
+    return found
+
+
 def everything():
     """Datasets in which every claim holds, in every interpretation and every variant."""
     return {
@@ -594,7 +635,6 @@ def everything():
         "pile_dip": pile_study(),
         "torque": torque_study(),
         "phase_diagram": phases_study(),
-        "polydisperse_averages": means_study(),
         "superposition": superposition_study(),
         "numerics": numerics_study(),
         "sensitivity": sensitivity_study(),
@@ -605,4 +645,5 @@ def everything():
         "network": network_study(),
         "rolling_resistance": rolling_study(),
         "experiments": experiments_study(),
+        "robustness": robustness_study(),
     }

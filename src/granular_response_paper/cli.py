@@ -138,9 +138,9 @@ def claims(
         star = "*" if row["star"] else ""
         typer.echo(f"{row['id']:4} {row['verdict'] + star:15} {row['here']}")
         typer.echo(f"{'':20} {row['source'].capitalize()}, {row['place']}: {row['paper']}")
-        for text in (row["cases"], row["preparations"] and f"Other preparations: {row['preparations']}"):
-            if text:
-                typer.echo(f"{'':20} {text}")
+        elsewhere = (f"Other {what}: {row[what]['text']}." for what in ("gravity", "lattice") if row[what]["of"])
+        for text in filter(None, (row["cases"], *elsewhere)):
+            typer.echo(f"{'':20} {text}")
     typer.echo(f"{output}: {table.quoted(found)}")
 
 

@@ -12,7 +12,7 @@ from places import ROOT
 from granular_response.plot import style
 from granular_response.store import files as store
 from granular_response.studies import linear_end
-from granular_response_paper.claims import words
+from granular_response_paper.claims import bounds
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, NOT_REACHED
 from granular_response_paper.groups.phase_diagram import draw as figures
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
@@ -413,6 +413,6 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
 def test_the_tolerance_is_the_bound_of_the_word() -> None:
     """So that the figure and the claims tell one peak from two alike; others are half and twice as large."""
     section = yaml.safe_load((ROOT / "params.yaml").read_text())["phase_diagram"]
-    visible = words.THRESHOLDS["visible"]
+    visible = bounds.THRESHOLDS["visible"]
     assert section["tolerance"] == visible
-    assert {factor * visible for factor in words.FACTORS} <= set(section["other_tolerances"])
+    assert {factor * visible for factor in bounds.FACTORS} <= set(section["other_tolerances"])

@@ -149,7 +149,7 @@ def _keep(compiled: Any, folder: Path) -> None:
                 files.flush()
 
     def compile_alone(signature: Any) -> Any:
-        # Numba's own lock first: a thread that holds the file would wait for one that compiles, and that one for the file
+        # Numba's own lock first: a thread with the file would wait for one that compiles, and that one for the file
         with compiler_lock.global_compiler_lock, _held(lock):
             return compile_now(signature)
 
@@ -207,8 +207,8 @@ def cache_folder() -> Path | None:
     """The folder for machine code of these sources; None where nothing may be written.
 
     In ``NUMBA_CACHE_DIR`` if that is set. A checkout keeps it in its own ``__pycache__``, else the user's cache does. A
-    package that pip installed keeps it outside of itself, in the user's cache or in the environment's ``var/cache``: what
-    pip removes is gone.
+    package that pip installed keeps it outside of itself, in the user's cache or in the environment's ``var/cache``, so
+    that what pip removes is gone.
     """
     name = source_digest()
     for base in _bases():

@@ -9,18 +9,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import betaincinv
 
-from .claim import Quantity, needs
+from .numbers import Quantity, needs
 
 #: Number of draws, and the ends of an interval that holds 95 % of them: a part of samples below the first is rare.
 DRAWS, LEVELS = 2000, (0.025, 0.975)
 RARE = LEVELS[0]
 
 
-def of_draws(value: float, draws: ArrayLike, test: str, samples: int, method: Any = "linear") -> Quantity:
+def of_draws(value: float | None, draws: ArrayLike, test: str, samples: int, method: Any = "linear") -> Quantity:
     """A number with 95 % of its draws (d,), or of the ends (2, d) between which each lies, by numpy's ``method``."""
     ends = np.broadcast_to(draws, (2, np.shape(draws)[-1]))
     low, high = (float(np.quantile(one, level, method=method)) for one, level in zip(ends, LEVELS, strict=True))
-    return Quantity(float(value), low, high, "confidence", test, samples)
+    return Quantity(None if value is None else float(value), low, high, "confidence", test, samples)
 
 
 def _picked(number: int) -> NDArray[np.intp]:
@@ -54,7 +54,7 @@ def part_of(hits: ArrayLike, unknown: ArrayLike = False) -> Quantity:
     most = hit + number - known
     low = float(betaincinv(hit, number - hit + 1, LEVELS[0])) if hit else 0.0
     high = float(betaincinv(most + 1, number - most, LEVELS[1])) if most < number else 1.0
-    return Quantity(hit / known if known else np.nan, low, high, "confidence", "exact binomial interval", number)
+    return Quantity(hit / known if known else None, low, high, "confidence", "exact binomial interval", number)
 
 
 def over_brackets(each: Sequence[Quantity], median: Callable[..., Any] = np.median) -> Quantity:
@@ -67,7 +67,7 @@ def over_brackets(each: Sequence[Quantity], median: Callable[..., Any] = np.medi
         return each[0]
     picked = _picked(len(each))
     low, high = (np.array([getattr(one, end) for one in each]) for end in ("low", "high"))
-    middle = median([one.value if np.isfinite(one.value) else 0.5 * (one.low + one.high) for one in each], axis=0)
+    middle = median([one.value if one.value is not None else 0.5 * (one.low + one.high) for one in each], axis=0)
     drawn = [median(end[picked], axis=1) for end in (low, high)]
-    middle = middle if np.isfinite(middle) else np.nan
+    middle = float(middle) if np.isfinite(middle) else None
     return of_draws(middle, drawn, "bootstrap of the median", len(each), "inverted_cdf")

@@ -1,14 +1,28 @@
-"""A claim is a sentence with one primary test, which the text fixes; its tests are numbers against bounds.
+"""A claim is a function beside a sentence: what it yields are the numbers that the sentence is judged by.
 
-Where the text leaves a parameter open, the test is made for each of its values (``case``), and tests with the same case
-hold together. Tests in another preparation of the packing (``prepared``) decide nothing but the second column.
+    claim = Claims("pile_dip", {"scene.packing.layers": 11})
+
+    @claim("P2", "V.F, Fig. 17d", Ask("dip per largest stress", at_most("visible"), "%"))
+    def no_dip(data):
+        '''<the sentence of the paper, word for word>
+
+        Short: Piles have no dip with friction
+        Here: With friction the stress is largest under the apex.
+        '''
+        yield data.value("pile_dip", "stress.dip", case="frictional")
+
+A function yields, for each case, its name (left out for the only one) and a number for each :class:`Ask`. One case,
+``primary``, decides; the others say how far the sentence holds. The mapping beside the group's name has the parameters of
+the paper: on other data nothing is measured.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any, ClassVar, Literal, NamedTuple
 
@@ -16,170 +30,95 @@ import numpy as np
 import xarray as xr
 
 from granular_response.errors import GranularError
+from granular_response_paper import TOO_LITTLE
 
-from .words import THRESHOLDS
+from .bounds import FACTORS, THRESHOLDS, Bound, Limits, Outcome
+from .numbers import NotMeasured, Quantity, needs, text
 
-#: What an interval means: none (one deterministic run); the event lies inside; 95 % of the bootstrap draws; the
-#: smallest to the largest value.
-Kind = Literal["none", "bracket", "confidence", "range"]
+#: The group whose events are those of other preparations, and the study of what moves the events of ordered slabs.
+PREPARATION, ROBUSTNESS = "preparation", "robustness"
+#: The group whose events both have.
+ORDERED = "friction_linear_range"
 
-Outcome = Literal["yes", "no", "cannot tell"]
+SCHEME = (
+    "Each sentence has one primary case, which its figure, its forces or its words fix; that case alone decides.",
+    "The sentence is supported, or not supported, if the number and its whole interval lie on one side of the bound; "
+    "otherwise the data cannot tell. What may be, and was not found, is not seen.",
+    "The interval is the 95 % confidence over packings, or for ordered slabs the range over what the text leaves open: "
+    "dashpots, time step, integrator, duration of the load ramp and displacements by 10⁻⁹ radii.",
+    "Every other case says for what the sentence holds, fails or is open; so do other ways of applying gravity and other "
+    "initial lattices.",
+    "A star marks a verdict that changes if the threshold of a qualitative term is halved or doubled.",
+)
 
-#: The group whose events are those of other preparations.
-PREPARATION = "preparation"
+Kind = Literal["supported", "not supported", "cannot tell", "not seen", "not measured"]
+
+#: Every verdict and what it says.
+MEANINGS: dict[Kind, str] = {
+    "supported": "the sentence holds in its primary case",
+    "not supported": "it does not hold there",
+    "cannot tell": "the interval of the number straddles the bound",
+    "not seen": "the sentence says that something may be, and it was not found here",
+    "not measured": "no stored dataset decides it",
+}
+
+#: What a row is: only statements are counted.
+ROWS = {
+    "statement": "statements",
+    "check": "checks of the code, which can hardly fail",
+    "derivation": "derivations, which no simulation can fail",
+}
 
 
 class ClaimsError(GranularError):
     """A claim that is not declared as it must be, nothing to judge, or no stored table. The message is one line."""
 
 
-class NotMeasured(GranularError):
-    """What a claim needs is not stored. The message names it."""
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A number, the interval in which it lies and the kind of that interval; ``high`` is inf for a lower bound.
-
-    ``method`` names the statistic behind the interval, ``samples`` the number of packings.
-    """
-
-    value: float
-    low: float
-    high: float
-    kind: Kind = "none"
-    method: str = field(default="", compare=False)
-    samples: int = field(default=1, compare=False)
-
-    @classmethod
-    def exact(cls, value: float) -> Quantity:
-        return cls(float(value), float(value), float(value))
-
-    @classmethod
-    def bracket(cls, low: float, high: float) -> Quantity:
-        """An event above ``low`` and not above ``high``; ``high`` nan means that it does not happen up to ``low``."""
-        if math.isnan(high):
-            return cls(float("nan"), float(low), float("inf"), "bracket")
-        return cls(0.5 * float(low + high), float(low), float(high), "bracket")
-
-    @classmethod
-    def range(cls, values: Iterable[float], value: float | None = None) -> Quantity:
-        found = [float(v) for v in values]
-        return cls(found[0] if value is None else value, min(found), max(found), "range")
-
-    def per(self, other: Quantity) -> Quantity:
-        """The ratio, with the interval that both intervals leave; both positive. NotMeasured if ``other`` is 0."""
-        needs(other.high != 0.0, "nothing to compare with")
-        kind: Kind = other.kind if self.kind == "none" else self.kind
-        low = self.low / other.high
-        high = self.high / other.low if other.low > 0.0 else float("inf")
-        value = self.value / other.value if other.value else float("nan")
-        return Quantity(value, low, high, kind, self.method or other.method, max(self.samples, other.samples))
-
-    @property
-    def happens(self) -> bool:
-        return math.isfinite(self.high)
-
-    def text(self, unit: str = "") -> str:
-        """For readers; the ``unit`` "%" shows parts as per cent."""
-        low, high = shown(self.low, unit), shown(self.high, unit)
-        if self.kind == "none" or (self.happens and low == high):  # in as many digits as are shown
-            return shown(self.value if math.isfinite(self.value) else self.low, unit)
-        ends = f"{low} to {high}" if self.happens else f"above {low}"
-        whole = self.kind != "bracket" and math.isfinite(self.value)
-        return f"{shown(self.value, unit)} ({ends})" if whole else ends
-
-
-def shown(value: float, unit: str) -> str:
-    return f"{100.0 * value:.3g} %" if unit == "%" else f"{value:.4g}{' ' + unit if unit else ''}"
-
-
-class Bound(NamedTuple):
-    """What the text asks of a number: from ``least`` to ``most``, or with ``strict`` between them.
-
-    ``word`` is the qualitative term whose threshold set it, if any did.
-    """
-
-    least: float = -math.inf
-    most: float = math.inf
-    word: str = ""
-    strict: bool = False
-
-    def outcome(self, found: Quantity) -> Outcome:
-        """Yes with the whole interval inside, no with all of it outside, cannot tell otherwise."""
-        low, high = found.low, found.high
-        if self.strict:
-            inside = self.least < low and (high < self.most or self.most == math.inf)
-            outside = high <= self.least or low >= self.most
-        else:
-            inside = self.least <= low and high <= self.most
-            outside = high < self.least or low > self.most
-        return "yes" if inside else "no" if outside else "cannot tell"
-
-    def text(self, unit: str = "") -> str:
-        least, most = shown(self.least, unit), shown(self.most, unit)
-        if not math.isfinite(self.most):
-            return f"{'more than' if self.strict else 'at least'} {least}"
-        if not math.isfinite(self.least):
-            return f"{'less than' if self.strict else 'at most'} {most}"
-        return least if self.least == self.most else f"{least} to {most}"
-
-
-@dataclass(frozen=True)
-class Test:
-    """A number against a bound, for one value of what the text leaves open (``case``).
-
-    ``prepared`` names the preparation if it is not the paper's.
-    """
+class Ask(NamedTuple):
+    """What a number is, its bound and its unit; ``paper`` is the number that the paper prints for it."""
 
     what: str
-    found: Quantity
     bound: Bound
-    case: str = ""
     unit: str = ""
-    prepared: str = ""
-
-    __test__: ClassVar = False  # for pytest: no class of tests
-
-    @property
-    def outcome(self) -> Outcome:
-        needs(not np.isnan([self.found.low, self.found.high]).any(), f"{self.what}: no number is stored")
-        return self.bound.outcome(self.found)
+    paper: float | None = None
 
 
 class Case(NamedTuple):
-    """A value of what the text leaves open, what its number is ``of``, and the preparation if not the paper's."""
+    """A case by its name; ``prepared`` is gravity or lattice if the packing is prepared in another way than the paper's."""
 
     name: str = ""
-    of: str = ""
-    prepared: str = ""
+    prepared: Literal["", "gravity", "lattice"] = ""
 
 
-#: What the function of a claim yields: for each case its name, or a :class:`Case`, and a number for each test.
-Numbers = Iterator[tuple[Any, ...]]
+#: What the function of a claim yields for each case: its name or a :class:`Case`, and the numbers.
+Numbers = Iterator[Any]
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A sentence, where it stands, and the function that makes its tests from stored data.
+    """A sentence of the paper, or of whoever ``source`` says, and the function that measures it.
 
-    ``here`` is a sentence with the numbers of the first tests in braces; ``modal`` a sentence that says what may be, so
-    that a failed test does not contradict it; ``derivation`` algebra that no simulation can fail; ``disorder`` a
-    statement on disordered packings.
+    ``here`` is our sentence, with {0}, {1} for numbers of the primary case, {case|1} for those of another one and {0:4} for
+    four digits. It is written for the verdict ``finds``; with any other one only the numbers are said. ``modal`` marks a
+    sentence that says what may be.
     """
 
     id: str
     place: str
     paper: str
-    measured: str
-    measure: Callable[[Data], Sequence[Test]] = field(repr=False)
-    group: str = ""
+    asks: Sequence[Ask]
+    measure: Callable[[Data], Numbers] = field(repr=False)
+    short: str = ""
     here: str = ""
+    group: str = ""
+    requires: Mapping[str, Any] = field(default_factory=dict)
+    primary: str = ""
     figures: Sequence[int] = ()
-    source: Literal["paper", "literature", "hypothesis"] = "paper"  #: whose sentence it is
+    source: Literal["paper", "literature", "hypothesis"] = "paper"
+    row: Literal["statement", "check", "derivation"] = "statement"
     modal: bool = False
-    derivation: bool = False
     disorder: bool = False
+    finds: Kind = "supported"
     remark: str = ""
 
     @property
@@ -188,50 +127,136 @@ class Claim:
         return "extension" if self.id.startswith("B") else "disorder" if self.disorder else "ordered"
 
 
+class Claims:
+    """The claims of a figure group, in the order in which they are declared; ``requires`` are the paper's parameters."""
+
+    def __init__(self, group: str, requires: Mapping[str, Any] | None = None) -> None:
+        self.group, self.requires, self.rows = group, requires or {}, list[Claim]()
+
+    def __call__(
+        self,
+        id: str,
+        place: str,
+        *asks: Ask,
+        figures: Sequence[int] | None = None,
+        requires: Mapping[str, Any] | None = None,
+        **said: Any,
+    ) -> Callable[[Callable[[Data], Numbers]], Callable[[Data], Numbers]]:
+        """Declare a claim by the function below and its docstring: the sentence, or "As R3a." for that of another claim of
+        the group, then Short, Here and Remark. Figures are those of the place; ``requires`` are further parameters.
+        """
+        if figures is None:
+            figures = [int(number) for number in re.findall(r"\d+", "".join(re.findall(r"Figs?\. (.*)", place)))]
+
+        def declare(function: Callable[[Data], Numbers]) -> Callable[[Data], Numbers]:
+            paper, *texts = re.split(r"\s+(?=(?:Short|Here|Remark): )", " ".join((function.__doc__ or "").split()))
+            if other := re.fullmatch(r"As (\w+)\.", paper):
+                paper = next(row.paper for row in self.rows if row.id == other[1])
+            parts = {name.lower(): text for name, _, text in (one.partition(": ") for one in texts)}
+            needed = {**self.requires, **(requires or {})}
+            about = {"group": self.group, "figures": figures, "requires": needed} | said
+            self.rows.append(Claim(id, place, paper, asks, function, **about, **parts))
+            return function
+
+        return declare
+
+
 @dataclass(frozen=True)
 class Data:
-    """Stored datasets by figure group and name, as ``store.read`` returns them; a missing one raises NotMeasured.
+    """Stored datasets by figure group and name, with the parameters of each group; what is missing raises NotMeasured.
 
-    ``words`` are the thresholds under which they are judged, ``prepared`` the labels of another preparation.
+    ``words`` are the thresholds under which they are judged, ``prepared`` the labels of another preparation of ordered
+    slabs, ``variant`` a change to the paper's slab or protocol of the study ``robustness``.
     """
 
     groups: Mapping[str, Mapping[str, xr.Dataset]]
-    words: dict[str, float] = field(default_factory=lambda: THRESHOLDS)
-    prepared: dict[str, Any] = field(default_factory=dict)
+    parameters: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    words: Mapping[str, float] = field(default_factory=lambda: THRESHOLDS)
+    prepared: Mapping[str, Any] = field(default_factory=dict)
+    variant: str = ""
 
     def get(self, group: str, name: str) -> xr.Dataset:
         needs(group in self.groups, f"data/{group}.nc is missing")
         needs(name in self.groups[group], f"data/{group}.nc holds no dataset {name}")
         return self.groups[group][name]
 
-    def event(self, group: str, name: str, **labels: Any) -> Quantity:
-        """The bracket of an event, ``name`` or ``dataset.name`` if not of ``events``: the first with these labels.
+    def value(self, group: str, name: str, over: Callable[..., Any] | None = None, **labels: Any) -> Quantity:
+        """One number, ``dataset.variable``, at the given labels; ``over`` reduces what dimensions are left."""
+        dataset, _, variable = name.rpartition(".")
+        values = at(self.get(group, dataset), **labels)[variable].values
+        if over is not None:
+            values = np.asarray(over(values))
+        needs(values.size == 1, f"{name}: {values.size} numbers in place of one")
+        return Quantity.exact(values.item())
 
-        Without friction it is the same in every preparation: the equilibrium is one minimum, whatever came before.
-        """
-        table, _, name = name.rpartition(".")
-        if self.prepared and labels["friction"] > 0.0:
+    def event(self, name: str, friction: float, table: str = "events") -> Quantity:
+        """The bracket of an event of the ordered slab. Without friction there is one equilibrium, whatever came before."""
+        group, labels = ORDERED, {"name": name, "friction": friction}
+        if self.variant:
+            copy = friction == 0.0 and self.variant.startswith("displaced")
+            group, labels["variant"] = ROBUSTNESS, "as in the paper" if copy else self.variant
+        elif self.prepared and friction > 0.0:
             group, labels = PREPARATION, labels | self.prepared
-        found = at(self.get(group, table or "events"), name=name, **labels)
+        found = at(self.get(group, table), **labels)
         return Quantity.bracket(float(found["low"]), float(found["high"]))
 
+    def protocol(self, measure: Callable[[Data], Quantity], from_rest: str = "", friction: float = 0.0) -> Quantity:
+        """What is measured along the paper's load path, in the range over every protocol.
 
-def needs(there: object, what: str) -> None:
-    """Raises NotMeasured, which says ``what`` is missing, unless ``there`` is true."""
-    if not there:
-        raise NotMeasured(what)
+        ``from_rest`` is an event whose forces by dynamics from rest to each force, with several ramps, belong to it.
+        """
+        found = [measure(self), *(measure(replace(self, variant=name)) for name in self.variants("protocol"))]
+        if from_rest:
+            ramps = self.get(ROBUSTNESS, "events_from_rest")
+            there = (ramps["name"].values.astype(str) == from_rest) & np.isclose(ramps["friction"].values, friction)
+            needs(there.any(), f"robustness holds no {from_rest} from rest")
+            ends = zip(ramps["low"].values[there].tolist(), ramps["high"].values[there].tolist(), strict=True)
+            found += [Quantity.bracket(*one) for one in ends]
+        return Quantity.over(found, "protocol", "range over the protocol")
+
+    def variants(self, *kinds: str) -> list[str]:
+        """The changes of these kinds in the study ``robustness``."""
+        events = self.get(ROBUSTNESS, "events")
+        there = np.isin(events["kind"].values.astype(str), kinds)
+        names = dict.fromkeys(events["variant"].values.astype(str)[there].tolist())
+        needs(names, f"robustness holds no change of the {' or the '.join(kinds)}")
+        return list(names)
+
+    def elsewhere(self, *measures: Callable[[Data], Quantity]) -> Numbers:
+        """The same in slabs of other width and stiffness, and in other preparations, that have the events for it."""
+        changed = [(Case(name), replace(self, variant=name)) for name in self.variants("width", "stiffness")]
+        for case, data in [*changed, *_preparations(self)]:
+            with suppress(NotMeasured):  # not every event is looked for in every slab
+                yield case, *(measure(data) for measure in measures)
+
+
+def _preparations(data: Data) -> Iterator[tuple[Case, Data]]:
+    """Other preparations beside smooth walls, with the paper's dashpots; none without their summary."""
+    if PREPARATION not in data.groups:
+        return
+    events = data.get(PREPARATION, "events")
+    fixed = {"wall_friction": 0.0, "damping_ratio": float(events["damping_ratio"][0])}
+    others = events.isel(event=events["gravity"].values != "at-once")
+    ways = set(zip(others["gravity"].values.tolist(), others["ramp_time"].values.tolist(), strict=True))
+    for gravity, ramp in sorted(ways, key=lambda way: (way[0] != "slow", way[1])):
+        name = f"gravity ramped over {ramp:g} sqrt(R/g)" if gravity == "slow" else "gravity first without friction"
+        yield Case(name, "gravity"), replace(data, prepared={"gravity": gravity, "ramp_time": ramp} | fixed)
 
 
 def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
     """The first entry with all of the given labels, numbers to 1e-9 of them; raises NotMeasured if there is none.
 
-    Labels may be of several coordinates along one dimension.
+    Labels may be of several coordinates along one dimension, or of a scalar, which must have that value.
     """
     masks: dict[Hashable, np.ndarray] = {}
     for name, label in labels.items():
-        (dimension,) = dataset[name].dims
+        needs(name in dataset.variables, f"{name} is not stored")
         stored = dataset[name].values
         same = stored.astype(str) == label if isinstance(label, str) else np.isclose(stored, label, 1e-9, 0.0)
+        if not dataset[name].dims:
+            needs(bool(same), f"is not stored at {name} = {label}")
+            continue
+        (dimension,) = dataset[name].dims
         masks[dimension] = masks.get(dimension, True) & same
         needs(masks[dimension].any(), f"nothing is stored at {name} = {label}")
     return dataset.isel({dimension: int(np.flatnonzero(mask)[0]) for dimension, mask in masks.items()})
@@ -241,8 +266,16 @@ def rise(values: Iterable[Quantity]) -> Quantity:
     """The smallest ratio of neighbours among positive ``values``; above 1 if each is larger than the one before."""
     steps = [after.per(before) for before, after in pairwise(values)]
     needs(steps, "fewer than two values to compare")
-    value, low, high = (min(getattr(step, name) for step in steps) for name in ("value", "low", "high"))
-    return Quantity(value, low, high, steps[0].kind)
+    known = [step.value for step in steps if step.value is not None]
+    low, high = (min(getattr(step, name) for step in steps) for name in ("low", "high"))
+    return Quantity(min(known) if known else None, low, high, steps[0].kind)
+
+
+def steps(values: xr.DataArray, along: str, least: float, most: float, falls: bool = False) -> Quantity:
+    """:func:`rise` of numbers along a dimension whose labels lie between two values, or with ``falls`` of their fall."""
+    part = values.sortby(along, ascending=not falls)
+    part = part.isel({along: (part[along].values >= least) & (part[along].values <= most)})
+    return rise(Quantity.exact(value) for value in part.values.tolist())
 
 
 def materials(study: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
@@ -250,3 +283,155 @@ def materials(study: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
     for k in range(study.sizes["case"]):
         one = study.isel(case=k)
         yield f"polydispersity {float(one['polydispersity']):g}, friction {float(one['friction']):g}", one
+
+
+@dataclass(frozen=True)
+class Test:
+    """A number of a case against its limits."""
+
+    ask: Ask
+    found: Quantity
+    limits: Limits
+    case: Case
+
+    __test__: ClassVar = False  # for pytest: no class of tests
+
+    @property
+    def outcome(self) -> Outcome:
+        return self.limits.outcome(self.found)
+
+
+def together(outcomes: Iterable[Outcome]) -> Outcome:
+    """Of numbers that must all lie in their bounds."""
+    found = set(outcomes)
+    return "no" if "no" in found else "cannot tell" if "cannot tell" in found else "yes"
+
+
+_NUMBER = re.compile(r"\{(?:(?P<case>[^{}|]+)\|)?(?P<place>\d+)(?::(?P<digits>\d))?\}")
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """On a claim, by its tests, or what is ``missing`` for them, so that there is no number.
+
+    ``star`` names the qualitative terms whose threshold, halved or doubled, changes it.
+    """
+
+    claim: Claim
+    tests: Sequence[Test] = ()
+    missing: str = ""
+    star: Sequence[str] = ()
+
+    @property
+    def primary(self) -> list[Test]:
+        return [test for test in self.tests if test.case == Case(self.claim.primary)]
+
+    @property
+    def verdict(self) -> Kind:
+        if self.missing:
+            return "not measured"
+        outcome = together(test.outcome for test in self.primary)
+        failed: Kind = "not seen" if self.claim.modal else "not supported"
+        return {"yes": "supported", "no": failed, "cannot tell": "cannot tell"}[outcome]  # type: ignore[return-value]
+
+    def others(self, prepared: str = "") -> dict[str, Outcome]:
+        """The outcomes of the other cases, or of those that are ``prepared`` in another way."""
+        chosen = [test for test in self.tests if test.case.prepared == prepared and test.case != Case(self.claim.primary)]
+        names = dict.fromkeys(test.case.name for test in chosen)
+        return {name: together(test.outcome for test in chosen if test.case.name == name) for name in names}
+
+    @property
+    def here(self) -> str:
+        """What was measured, in a sentence: the claim's own if it is written for this verdict, and all its numbers are there."""
+        if self.missing:
+            return self.missing
+        by_case: dict[str, list[Test]] = {}
+        for test in self.tests:
+            by_case.setdefault(test.case.name, []).append(test)
+
+        def number(field: re.Match[str]) -> str:
+            test = by_case[field["case"] or self.claim.primary][int(field["place"])]
+            return text(test.found, test.ask.unit, int(field["digits"] or 0))
+
+        with suppress(KeyError, IndexError):
+            if self.claim.finds == self.verdict:
+                return _NUMBER.sub(number, self.claim.here)
+        found = "; ".join(f"{test.ask.what}: {text(test.found, test.ask.unit)}" for test in self.primary)
+        return f"{found[0].upper()}{found[1:]}."
+
+    @property
+    def cases(self) -> str:
+        """For which other cases the sentence holds, fails or is open, in words."""
+        return _listed(self.others(), "For", "Not for", "Open for")
+
+
+def _listed(found: Mapping[str, Outcome], *titles: str) -> str:
+    names = [[name for name, one in found.items() if one == outcome] for outcome in ("yes", "no", "cannot tell")]
+    return " ".join(f"{title}: {'; '.join(some)}." for title, some in zip(titles, names, strict=True) if some)
+
+
+def _checked(claim: Claim, data: Data) -> None:
+    """Raises NotMeasured unless the data are those of the parameters that the sentence is about."""
+    stored = data.parameters.get(claim.group, {})
+    for key, asked in claim.requires.items():
+        needs(key in stored, f"data/{claim.group}.nc does not say its {key}")
+        found = stored[key]
+        wanted = asked if isinstance(asked, (list, tuple)) else [asked]
+        there = found if isinstance(found, (list, tuple)) else [found]
+        same = all(any(_same(one, other) for other in there) for one in wanted)
+        needs(same, f"the sentence is about {key} = {asked}; data/{claim.group}.nc has {found}")
+
+
+def _same(one: Any, other: Any) -> bool:
+    numbers = isinstance(one, (int, float)) and isinstance(other, (int, float))
+    return math.isclose(one, other, rel_tol=1e-9) if numbers else one == other
+
+
+def tests(claim: Claim, data: Data) -> list[Test]:
+    """Every number of a claim against its bound. Raises NotMeasured, ClaimsError for another number of numbers."""
+    _checked(claim, data)
+    limits = [ask.bound.limits(data.words) for ask in claim.asks]
+    found = []
+    for one in _yielded(claim, data):
+        case, *numbers = one if isinstance(one, tuple) else ("", one)
+        if not isinstance(case, (str, Case)):
+            case, numbers = "", [case, *numbers]
+        case = Case(case) if isinstance(case, str) else case
+        if len(numbers) != len(claim.asks):
+            raise ClaimsError(f"{claim.group}: {claim.id}: {len(numbers)} numbers for {len(claim.asks)} bounds")
+        for ask, limit, number in zip(claim.asks, limits, numbers, strict=True):
+            if number is not None:  # not asked of this case
+                number, limit_here = number if isinstance(number, tuple) else (number, limit)
+                quantity = number if isinstance(number, Quantity) else Quantity.exact(number)
+                found.append(Test(ask, quantity, limit_here, case))
+    needs(any(test.case == Case(claim.primary) for test in found), f"the primary case {claim.primary} is not stored")
+    return found
+
+
+def _yielded(claim: Claim, data: Data) -> list[Any]:
+    """What its function yields. Divisions by 0 give no number, which no quantity can be."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return list(claim.measure(data))
+
+
+def judge(claim: Claim, data: Data) -> Verdict:
+    """Make the tests of a claim on stored data.
+
+    It is not measured if its function finds too little: a variable, a label, or all that is left to look at is missing.
+    """
+
+    def under(word: str, factor: float) -> Kind:
+        changed = dict(data.words) | {word: factor * data.words[word]}
+        return Verdict(claim, tests(claim, replace(data, words=changed))).verdict
+
+    try:
+        found = Verdict(claim, tests(claim, data))
+        used = sorted({test.ask.bound.word for test in found.primary if test.ask.bound.word})
+        star = [word for word in used if any(under(word, factor) != found.verdict for factor in FACTORS)]
+        return replace(found, star=star)
+    except NotMeasured as lacking:
+        named = str(lacking).startswith(("data/", "the sentence"))
+        return Verdict(claim, missing=str(lacking) if named else f"data/{claim.group}.nc: {lacking}")
+    except TOO_LITTLE as error:
+        problem = " ".join(f"{type(error).__name__}: {error}".split())
+        return Verdict(claim, missing=f"data/{claim.group}.nc holds too little ({problem})")

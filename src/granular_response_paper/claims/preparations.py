@@ -10,39 +10,18 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Iterator
-from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from granular_response.inputs import read_text
 from granular_response.store import files as store
 
-from .claim import PREPARATION, Case, ClaimsError, Data, NotMeasured
+from .claim import PREPARATION, ClaimsError
+from .numbers import NotMeasured
 
 #: The columns of the summary, what it is made of, and where it is kept.
 COLUMNS = ("name", "friction", "wall_friction", "gravity", "ramp_time", "damping_ratio", "low", "high")
 SOURCE = Path("extensions") / "data" / f"{PREPARATION}.nc"
 OUTPUT = Path("extensions") / "summary.nc"
-
-
-def along(data: Data, measure: Callable[[Data], Any]) -> Iterator[tuple[Case, Any]]:
-    """What is measured in each other preparation that has the events for it, beside smooth walls.
-
-    Dashpots are the paper's. There is nothing without the summary.
-    """
-    if PREPARATION not in data.groups:
-        return
-    events = data.get(PREPARATION, "events")
-    fixed = {"wall_friction": 0.0, "damping_ratio": float(events["damping_ratio"][0])}
-    others = events.isel(event=events["gravity"].values != "at-once")
-    ways = set(zip(others["gravity"].values, others["ramp_time"].values, strict=True))
-    for gravity, ramp in sorted(ways, key=lambda way: (way[0] != "slow", way[1])):
-        name = f"ramped over {ramp:g} sqrt(R/g)" if gravity == "slow" else "first without friction"
-        with suppress(NotMeasured):  # not every event is looked for in every preparation
-            found = measure(replace(data, prepared={"gravity": gravity, "ramp_time": ramp} | fixed))
-            yield Case(prepared=f"gravity {name}"), found
 
 
 def check(summary: Path = OUTPUT) -> None:

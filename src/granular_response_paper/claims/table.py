@@ -7,20 +7,22 @@ import math
 import os
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from granular_response.inputs import read_json
+from granular_response.scene import text as yaml
 from granular_response.store import atomic
 from granular_response.store import files as store
 
 from ..registry import PAPER, Collection
-from . import declared, preparations
-from .claim import PREPARATION, Claim, ClaimsError, Data, Quantity, Test
-from .verdict import MEANINGS, SCHEME, Verdict, judge, key
-from .words import WORDS
+from . import preparations, printed
+from .bounds import WORDS
+from .claim import MEANINGS, PREPARATION, ROBUSTNESS, ROWS, SCHEME, Claim, ClaimsError, Data, Test, Verdict, judge
+from .numbers import Quantity, text
 
 #: Where the table is kept.
 OUTPUT = Path("figures") / "claims.json"
@@ -33,7 +35,7 @@ PARTS = {
 }
 
 #: What a stored table lists of each claim.
-LISTED = {"id", "group", "part", "verdict", "star", "elsewhere", "here", "paper", "tests"}
+LISTED = {"id", "group", "part", "row", "verdict", "star", "here", "paper", "short", "tests"}
 
 #: Sections of the paper, in order.
 SECTIONS = ("abstract", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "beyond")
@@ -49,8 +51,9 @@ def _place(claim: Claim) -> tuple[int, int, str, str, int, str]:
 @cache
 def claims_in(collection: Collection) -> tuple[Claim, ...]:
     """All claims of a collection in the order of the table."""
-    groups = [group for group in collection.groups if (collection.path / group / declared.TEXTS).is_file()]
-    found = (claim for group in groups for claim in declared.read(f"{collection.package}.{group}"))
+    names = [name for name in collection.groups if (collection.path / name / "claims.py").is_file()]
+    modules = [import_module(f"{collection.package}.{name}.claims") for name in names]
+    found = [claim for module in modules for claim in vars(module)["claim"].rows]
     return tuple(sorted(found, key=_place))
 
 
@@ -59,51 +62,91 @@ def groups_read(collection: Collection) -> list[str]:
     return sorted({claim.group for claim in claims_in(collection)})
 
 
+#: Where the study of what moves the events of ordered slabs is kept.
+MOVES = Path("survey") / "data" / f"{ROBUSTNESS}.nc"
+
+
 def collect(folder: str | os.PathLike[str], others: str | os.PathLike[str], collection: Collection = PAPER) -> Data:
-    """The stored datasets that claims read, and the summary of ``others``, preparations that are not the paper's.
+    """The stored datasets that claims read with the parameters of each, the summary of ``others``, preparations that are
+    not the paper's, and the study ``robustness``.
 
     A file that is not there is left out; raises StoreError if one cannot be read.
     """
-    groups = {path.stem: store.read(path) for path in _paths(folder, collection) if path.exists()}
-    if Path(others).exists():
-        groups[PREPARATION] = groups.get(PREPARATION, {}) | store.read(Path(others))
-    return Data(groups)
+    paths = {path.stem: path for path in _paths(folder, collection) if path.exists()}
+    groups = {name: store.read(path) for name, path in paths.items()}
+    parameters = {name: flat(yaml.read(store.read_attributes(path)["parameters"])) for name, path in paths.items()}
+    for name, path in ((PREPARATION, Path(others)), (ROBUSTNESS, MOVES)):
+        if path.exists():
+            groups[name] = groups.get(name, {}) | store.read(path)
+    return Data(groups, parameters)
+
+
+def flat(parameters: Mapping[str, Any], above: str = "") -> dict[str, Any]:
+    """Parameters by their dotted keys."""
+    found: dict[str, Any] = {}
+    for name, value in parameters.items():
+        found |= flat(value, f"{above}{name}.") if isinstance(value, Mapping) else {f"{above}{name}": value}
+    return found
 
 
 def _paths(folder: str | os.PathLike[str], collection: Collection) -> list[Path]:
     return [Path(folder) / f"{group}.nc" for group in groups_read(collection)]
 
 
-def document(entries: Sequence[Verdict]) -> dict[str, Any]:
-    """Everything about the verdicts, as it is stored; ``counts`` are scalars for ``dvc metrics show``."""
-    number = Counter((entry.claim.part, entry.verdict) for entry in entries)
+def document(entries: Sequence[Verdict], data: Data | None = None) -> dict[str, Any]:
+    """Everything about the verdicts, as it is stored; ``counts`` are scalars for ``dvc metrics show``.
+
+    Only statements are counted; ``checks`` are the other rows. ``quantities`` are the numbers that the paper prints.
+    """
+    statements = [entry for entry in entries if entry.claim.row == "statement"]
+    number = Counter((entry.claim.part, entry.verdict) for entry in statements)
     return {
         "counts": {part: {key(kind): number[part, kind] for kind in MEANINGS} for part in PARTS},
+        "checks": {row: sum(entry.claim.row == row for entry in entries) for row in list(ROWS)[1:]},
         "scheme": list(SCHEME),
         "verdicts": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
-        "words": [{"word": word, "bound": bound, "sentence": text} for word, (bound, text) in WORDS.items()],
+        "words": [{"word": word, "bound": bound, "sentence": sentence} for word, (bound, sentence) in WORDS.items()],
         "table": [_row(entry) for entry in entries],
+        "quantities": printed.quantities(entries, data) if data else [],
     }
+
+
+def key(kind: str) -> str:
+    """Of a verdict in the stored table."""
+    return kind.replace(" ", "_")
 
 
 def _row(entry: Verdict) -> dict[str, Any]:
+    gravity, lattice = (entry.others(prepared) for prepared in ("gravity", "lattice"))
     return {
-        **_named(entry.claim, "id", "place", "paper", "source", "measured", "figures", "group", "part"),
-        **_named(entry, "verdict", "star", "elsewhere", "here", "cases", "preparations"),
+        **_named(entry.claim, "id", "place", "paper", "short", "source", "figures", "group", "part", "row", "primary"),
+        **_named(entry, "verdict", "star", "here", "cases"),
         "remark": entry.claim.remark,
-        **_interval(entry.tests[0].found if entry.tests else None),
+        "gravity": _held(gravity),
+        "lattice": _held(lattice),
+        **_interval(entry.primary[0].found if entry.primary else None),
         "tests": [_tested(test) for test in entry.tests],
     }
+
+
+def _held(found: Mapping[str, str]) -> dict[str, Any]:
+    """In how many preparations a sentence holds, of how many in which that can be told, and the words for it."""
+    holds, of = sum(one == "yes" for one in found.values()), len(found)
+    by_outcome = {name: [case for case, one in found.items() if one == name] for name in ("yes", "no", "cannot tell")}
+    return {"holds": holds, "of": of, "text": f"holds in {holds} of {of}" if of else "not tried", **by_outcome}
 
 
 def _tested(test: Test) -> dict[str, Any]:
     found = test.found
     ends = "the number itself" if found.kind == "none" else f"both ends of the {found.kind}"
     return {
-        **_named(test, "what", "case", "prepared", "outcome"),
-        "found": found.text(test.unit),
-        "bound": test.bound.text(test.unit),
-        "word": test.bound.word,
+        "what": test.ask.what,
+        "case": test.case.name,
+        "prepared": test.case.prepared,
+        "outcome": test.outcome,
+        "found": text(found, test.ask.unit),
+        "bound": test.limits.text(test.ask.unit),
+        "word": test.ask.bound.word,
         "method": found.method or ends,
         "samples": found.samples,
         **_interval(found),
@@ -111,21 +154,22 @@ def _tested(test: Test) -> dict[str, Any]:
 
 
 def _named(one: object, *names: str) -> dict[str, Any]:
-    return {name: getattr(one, name) for name in names}
+    found = {name: getattr(one, name) for name in names}
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in found.items()}
 
 
 def _interval(quantity: Quantity | None) -> dict[str, Any]:
     """A value with its interval and the kind of it; null without them, and for an end that is open."""
     if quantity is None or quantity.kind == "none":
-        return {"value": quantity and _rounded(quantity.value), "interval": None, "interval_kind": ""}
+        return {"value": quantity and _rounded(quantity.low), "interval": None, "interval_kind": ""}
     kind = "95 % confidence" if quantity.kind == "confidence" else quantity.kind
     ends = [_rounded(quantity.low), _rounded(quantity.high)]
     return {"value": _rounded(quantity.value), "interval": ends, "interval_kind": kind}
 
 
-def _rounded(value: float) -> float | None:
-    """To six digits, so that the last ones of a machine do not show; None for nan and inf, which JSON lacks."""
-    return float(f"{value:.6g}") if math.isfinite(value) else None
+def _rounded(value: float | None) -> float | None:
+    """To six digits, so that the last ones of a machine do not show; None for an open end and no value."""
+    return float(f"{value:.6g}") if value is not None and math.isfinite(value) else None
 
 
 def write(
@@ -144,7 +188,7 @@ def write(
     if not any(path.exists() for path in read_):
         raise ClaimsError(f"{folder}: holds none of the datasets that claims read; make them with dvc repro")
     data = collect(folder, others, collection)
-    found = document([judge(claim, data) for claim in claims_in(collection)])
+    found = document([judge(claim, data) for claim in claims_in(collection)], data if collection == PAPER else None)
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, (json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode())
     return found
@@ -167,22 +211,26 @@ def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
 
 
 def quoted(found: dict[str, Any]) -> str:
-    """The counts in words: a line for each part of the table, and one on thresholds and preparations of the paper's."""
+    """The counts in words: a line for each part of the table, and one on what is not counted and on thresholds."""
     lines = []
-    for part, text in PARTS.items():
+    for part, title in PARTS.items():
         number = found["counts"][part]
-        named = {"derivation": "derivations"} if number["derivation"] > 1 else {}
-        parts = [f"{number[key(kind)]} {named.get(kind, kind)}" for kind in MEANINGS if number[key(kind)]]
-        if parts:
-            lines.append(f"Of {sum(number.values())} statements on {text}: {', '.join(parts)}.")
+        counted = {kind: number[key(kind)] for kind in MEANINGS if number[key(kind)]}
+        if counted:
+            held = counted.pop("supported", 0)
+            rest = "".join(f", {count} {kind}" for kind, count in counted.items())
+            lines.append(f"{held} of {sum(number.values())} statements on {title} are supported{rest}.")
     own = [row for row in found["table"] if row["part"] != "extension"]
     if not own:  # of a collection that goes beyond the paper
         return "\n".join(lines)
-    starred = sum(bool(row["star"]) for row in own)
-    tried = [row["elsewhere"] for row in own if row["elsewhere"] != "not tried"]
+    statements = [row for row in own if row["row"] == "statement"]
+    starred = sum(bool(row["star"]) for row in statements)
+    rest = ", ".join(f"{number} {ROWS[row]}" for row, number in found["checks"].items() if number)
+    tried = {name: [row[name] for row in statements if row[name]["of"]] for name in ("gravity", "lattice")}
+    whole = {name: sum(one["holds"] == one["of"] for one in found_) for name, found_ in tried.items()}
     lines.append(
-        f"{starred} verdicts on the paper's statements change if the threshold of a qualitative term is halved or "
-        f"doubled. Under another preparation {len(tried)} were tried: {tried.count('yes')} hold, "
-        f"{tried.count('no')} fail, {tried.count('cannot tell')} cannot be told."
+        f"{starred} of these verdicts change if the threshold of a qualitative term is halved or doubled. With gravity "
+        f"applied in other ways {whole['gravity']} of {len(tried['gravity'])} statements keep holding in every way, from "
+        f"other initial lattices {whole['lattice']} of {len(tried['lattice'])}. Not counted: {rest}."
     )
     return "\n".join(lines)

@@ -18,13 +18,11 @@ import jinja2
 from granular_response import __version__
 from granular_response.errors import GranularError
 from granular_response.plot import style
-from granular_response.scene import text as yaml
 from granular_response.store import atomic
 from granular_response.store import files as store
 
 from .. import captions
 from ..claims import table
-from ..claims.verdict import key
 from ..registry import PAPER, Collection, group_member
 from . import against, benchmarks, explorer, markdown, pictures, readings
 from .typeset import typeset
@@ -39,6 +37,12 @@ SENSITIVITY = "sensitivity"
 #: Claims whose sentences stand first on the page: the result without friction, with friction, in disorder, and the
 #: preparation.
 FIRST = ("F4a", "R3a", "R5a", "A5")
+
+#: Claims of the notes' first table, in its order.
+RESULTS = (
+    *("F4a", "F4b", "A4", "F8", "F7", "R1", "R3a", "R3b", "R4", "R2a", "R5a", "R7", "R6d", "R9", "A1", "A2", "F12", "N10"),
+    *("R12", "K1a", "P1", "P2", "D1", "D7b", "A5", "D3b", "D6", "U4"),
+)
 
 
 #: Of the page, by collection.
@@ -101,18 +105,15 @@ def fragments(root: Path, collection: Collection = PAPER) -> dict[str, Callable[
 
 
 def results(claims: Mapping[str, Any]) -> str:
-    """The table of the notes: statements of the paper in short, what is found, the verdict, another preparation."""
-    rows, by_id = [], {row["id"]: row for row in claims["table"]}
-    for name, statement in _in_short().items():
+    """The table of the notes: statements of the paper in short, what is found, the verdict, other preparations."""
+    by_id = {row["id"]: row for row in claims["table"]}
+    rows = []
+    for name in RESULTS:
         row = by_id[name]
         star = "*" if row["star"] else ""
-        rows.append((f"{statement} ({name})", row["here"], f"{row['verdict']}{star}", row["elsewhere"]))
-    return markdown.table(("the paper", "here", "verdict", "in another preparation"), rows)
-
-
-def _in_short() -> dict[str, str]:
-    """What the paper says in short, by claim."""
-    return {str(name): str(statement) for name, statement in yaml.read(_resource("results.yaml")).items()}
+        elsewhere = "; ".join(f"{what}: {row[what]['text']}" for what in ("gravity", "lattice") if row[what]["of"])
+        rows.append((f"{row['short']} ({name})", row["here"], f"{row['verdict']}{star}", elsewhere or "not tried"))
+    return markdown.table(("the paper", "here", "verdict", "other gravity or initial lattice"), rows)
 
 
 def write_fragments(
@@ -157,7 +158,7 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
     )
     environment.filters["typeset"] = typeset
     template = environment.from_string(_resource("page.html.j2"))
-    by_id, in_short = {row["id"]: row for row in claims["table"]}, _in_short()
+    by_id = {row["id"]: row for row in claims["table"]}
     values = {
         "version": __version__,
         "size": _SIZE,
@@ -166,9 +167,9 @@ def page(root: Path, folder: Path | None = None, *, collection: Collection = PAP
         "folder": collection.folder,
         "embedded": embedded,
         "claims": claims,
-        "verdicts": [(k["verdict"], key(k["verdict"])) for k in claims["verdicts"]],
+        "verdicts": [(k["verdict"], table.key(k["verdict"])) for k in claims["verdicts"]],
         "parts": {part: text for part, text in table.PARTS.items() if any(r["part"] == part for r in claims["table"])},
-        "results": [(in_short[name], by_id[name]) for name in FIRST if name in by_id],
+        "results": [(by_id[name]["short"], by_id[name]) for name in FIRST if name in by_id],
         "numbers": range(1, captions.NUMBER_OF_FIGURES + 1),
         "first": shown.first,
         "overview": shown.overview,

@@ -1,32 +1,159 @@
-"""Claims F13 and S3: stress inside slabs with and without friction (Secs. IV and V.C)."""
+"""Claims A3, F13 and S1 to S4: stress and forces inside slabs with and without friction (Secs. IV, V.C and V.D)."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from granular_response.observe.peaks import central_dip
-from granular_response_paper.claims.claim import Data, Numbers, at
+from granular_response_paper.claims.bounds import at_least, at_most, higher_by, lower_by
+from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers, at, rise
+from granular_response_paper.claims.numbers import Quantity, needs
+
+GROUP = "friction_fields"
+claim = Claims(GROUP, {"force": 15.0, "frictions": [0.0, 0.2, 1.0]})
 
 #: "Near the load": within this distance (mean radii). Pressure is compared where it exceeds this part of its maximum.
 NEAR, FAINT = 6.0, 0.1
 
 
+def _stress(data: Data, name: str, friction: float) -> Quantity:
+    return data.value(GROUP, f"stress.{name}", friction=friction)
+
+
+@claim(
+    "A3", "VIII", Ask("fall of the difference from the isotropic lattice, smallest ratio", higher_by("visible")),
+    figures=[14]
+)  # fmt: skip
+def closer(data: Data) -> Numbers:
+    """In addition, friction, which is present in all real granular systems, increases the range of linearity in the
+    applied force and further reduces the effect of stress-induced anisotropy, rendering the response even closer to
+    that predicted by isotropic elasticity.
+
+    Short: Friction brings the response closer to isotropic elasticity
+    Here: Farther than 6 radii from the load, the difference of the stress from that of the isotropic lattice falls by a
+    factor of {0} at least from each of the frictions 0, 0.2 and 1 to the next.
+    Remark: The first half of the sentence, on the range of linearity, is R1
+    """
+    yield rise(_stress(data, "distance_to_lattice", mu) for mu in (1.0, 0.2, 0.0))
+
+
+@claim(
+    "F13", "IV", Ask("dip with one-sided contacts per largest stress", at_least("visible"), "%"),
+    Ask("dip with two-sided springs per largest stress", at_most("visible"), "%"), figures=[14]
+)  # fmt: skip
 def two_sided(data: Data) -> Numbers:
-    """F13, on the lowest line of the grid, away from the side walls: one-sided contacts, and two-sided springs."""
-    study = at(data.get("friction_fields", "stress"), friction=0.0).sortby("z").isel(z=0)
+    """The stress distribution obtained for unilateral springs [29] is anisotropic, and shows two peaks at the floor.
+
+    Short: With one-sided contacts the stress has two peaks at the floor
+    Here: With one-sided contacts the stress above the floor dips by {0} at x = 0. In the isotropic lattice of two-sided
+    springs it has one peak.
+    """
+    study = at(data.get(GROUP, "stress"), friction=0.0).sortby("z").isel(z=0)
     x = study["x"].values
     inside = np.abs(x) < np.abs(x).max() - 10.0
-    yield "", *(central_dip(x, study[name].values, interior=inside) for name in ("stress_zz", "stress_zz_lattice"))
+    yield tuple(central_dip(x, study[name].values, interior=inside) for name in ("stress_zz", "stress_zz_lattice"))
 
 
-def antisymmetric(data: Data) -> Numbers:  # S3
-    study = data.get("friction_fields", "stress")
+@claim(
+    "S1a", "V.D, Fig. 13", Ask("mean angle to the contact lines without friction, degrees", at_most(0.57)),
+    row="check"
+)  # fmt: skip
+def aligned(data: Data) -> Numbers:
+    """The most prominent effect of friction on the force chains (Fig. 13) is that the forces (and hence the chains) no
+    longer need to be aligned with the (here, triangular) lattice direction, as they are in the absence of tangential
+    forces.
+
+    Short: Without friction forces are along the lattice, with it not
+    Here: Without friction the incremental forces are along the contact lines to {0} degrees.
+    """
+    yield _stress(data, "misalignment", 0.0)
+
+
+@claim(
+    "S1b", "V.D, Fig. 13", Ask("angle to the vertical, degrees", at_most(15.0)),
+    Ask("share of the force per that without friction", higher_by("marked"))
+)  # fmt: skip
+def vertical(data: Data) -> Numbers:
+    """In particular, a vertical force chain is evident for µ = 1.
+
+    Short: At friction 1 a vertical force chain is evident
+    Here: At friction 1 the forces below the load are {0} degrees off the vertical and carry {1} times the share of the
+    load that they carry without friction.
+    Remark: 15 degrees: nearer to the vertical than to a lattice line, 30 degrees off it
+    """
+    share = [_stress(data, "axis_share", mu) for mu in (1.0, 0.0)]
+    yield _stress(data, "axis_angle", 1.0), share[0].per(share[1])
+
+
+@claim(
+    "S2", "V.D, Fig. 14", Ask("difference at friction 1", at_most("similar"), "%"),
+    Ask("difference at friction 1 per that without", lower_by("marked"), "%")
+)  # fmt: skip
+def isotropic(data: Data) -> Numbers:
+    """In particular, the reduced anisotropy is apparent in the stress field (the stress field for µ = 1 is quite
+    similar to that obtained in the case of an isotropic harmonic lattice [29]).
+
+    Short: The stress at friction 1 is that of an isotropic lattice
+    Here: Farther than 6 radii from the load, the stress at friction 1 differs from that of the harmonic lattice by {0}
+    in root mean squares, which is {1} of the difference without friction.
+    """
+    off = [_stress(data, "distance_to_lattice", mu) for mu in (1.0, 0.0)]
+    yield off[0], off[0].per(off[1])
+
+
+@claim(
+    "S3", "V.C", Ask("antisymmetric part per pressure, largest of all frictions", at_most("few per cent"), "%"),
+    primary="per the largest pressure", figures=[14]
+)  # fmt: skip
+def antisymmetric(data: Data) -> Numbers:
+    """We verified (in the DEM simulations) that they are very small, even near the point of application of the external
+    force, where the magnitude of the antisymmetric part of the stress is only a few percent of the pressure.
+
+    Short: The antisymmetric stress is a few per cent of the pressure
+    Here: Within 6 radii of the load the antisymmetric part of the stress is {0} of the largest pressure, {local|0} of
+    the local pressure and {root mean squares|0} in root mean squares.
+    Remark: The largest local ratio is where the pressure itself is small, a tenth of its maximum or little more
+    """
+    study = data.get(GROUP, "stress")
     study = study.sel(friction=study["friction"] > 0.0)
     x, z = np.meshgrid(study["x"].values, study["z"].values)
     odd = 0.5 * np.abs(study["stress_xz"].values - study["stress_zx"].values)
     pressure = 0.5 * (study["stress_xx"].values + study["stress_zz"].values)
     there = pressure > FAINT * pressure.max(axis=(1, 2), keepdims=True)
     there &= np.hypot(x, z - float(study["load_height"])) < NEAR
+    needs(there.any(), "stress holds no pressure near the load")
     yield "per the largest pressure", study["antisymmetric_near"].values.max()
-    yield "local", np.divide(odd, pressure, out=np.zeros_like(odd), where=there).max()
+    yield "local", (odd[there] / pressure[there]).max()
     yield "root mean squares", study["antisymmetric_near_mean"].values.max()
+
+
+@claim("S4a", "V.D, Fig. 15")
+def fits(data: Data) -> Numbers:
+    """The inclusion of friction does provide a better fit to the experimental results obtained in [18, 22] for the
+    monodisperse ordered packing: the force magnitudes vs. the horizontal coordinate at different depths in DEM
+    simulations with frictionless and frictional (µ = 1; for the particles used in the experiments, µ ≃ 0.94 [76]) are
+    shown in Fig. 15.
+
+    Short: Friction fits the measured force profiles better
+    """
+    needs(False, "the measured profiles of the experiments are not stored here")
+    yield
+
+
+@claim(
+    "S4b", "V.D, Fig. 15",
+    Ask("largest force below the load per largest at its depth, friction 0", lower_by("marked"), "%"),
+    Ask("smallest force below the load per largest at its depth, friction 1", at_least("marked"), "%"),
+    requires={"profiles.force": 150.0}
+)  # fmt: skip
+def chain(data: Data) -> Numbers:
+    """These are reproduced quite well by our DEM simulations with friction (see Sec. V).
+
+    Short: Simulations with friction have the chain of the experiments
+    Here: Directly below the load the incremental force under 150 mg is {1} of the largest at its depth at least at
+    friction 1, and {0} at most without friction.
+    Remark: The experiments have a vertical chain ("Such a chain is actually observed"). A chain is taken as half of the
+    largest force
+    """
+    name = "profiles.axis_magnitude"
+    yield data.value(GROUP, name, np.max, friction=0.0), data.value(GROUP, name, np.min, friction=1.0)

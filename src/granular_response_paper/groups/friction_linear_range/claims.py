@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import product
 
@@ -10,15 +11,33 @@ import numpy as np
 import xarray as xr
 
 from granular_response.state import OPEN, SLIDING, FloatArray
-from granular_response.studies import first_change, linear_end
-from granular_response_paper.claims import preparations
-from granular_response_paper.claims.claim import Data, Numbers, Quantity, at, needs, rise
-from granular_response_paper.claims.words import TOLERANCES
+from granular_response.studies import linear_end
+from granular_response_paper.claims.bounds import (
+    TOLERANCES,
+    about,
+    at_least,
+    at_most,
+    between,
+    higher_by,
+    less_than,
+    lower_by,
+    more_than,
+    order_of_magnitude,
+    sampled,
+)  # fmt: skip
+from granular_response_paper.claims.claim import ROBUSTNESS, Ask, Claims, Data, Numbers, at, rise
+from granular_response_paper.claims.numbers import Quantity, needs
 
 GROUP = "friction_linear_range"
+claim = Claims(GROUP, {"scene.contact.stiffness_ratio": 0.8, "scene.wall.friction": 0.0})
 
 #: Of the paper (Fig. 6, Sec. V.B).
 FRICTIONS = (0.0, 0.2, 1.0)
+#: "Near the point of application" of sliding contacts: half of the depth of the slab (mean radii).
+NEAR = 13.0
+#: Of the responses at large forces, from which symmetry is lost.
+ASYMMETRIC = 0.2
+LITERAL = "events_equal_rows"
 
 
 def _curve(data: Data, friction: float, name: str) -> xr.DataArray:
@@ -26,58 +45,170 @@ def _curve(data: Data, friction: float, name: str) -> xr.DataArray:
     return at(data.get(GROUP, "response"), friction=friction)[name].dropna("force")
 
 
-def _linear(data: Data, friction: float, tolerance: float) -> Quantity:
+def _at(data: Data, friction: float, force: float, name: str) -> Quantity:
+    return data.value(GROUP, f"response.{name}", friction=friction, force=force)
+
+
+def _linear(tolerance: float, data: Data, friction: float) -> Quantity:
     """The end of the linear range: located to 1 %, else between two stored forces."""
     if tolerance == TOLERANCES[0]:
-        return data.event(GROUP, "linear_range", friction=friction)
+        return data.event("linear_range", friction)
     curve = _curve(data, friction, "response_at_centre")
     return Quantity.bracket(*linear_end(curve["force"], curve, tolerance))
 
 
-def _frictions(data: Data) -> list[float]:
-    return np.unique(data.get(GROUP, "response")["friction"].values).tolist()
+def _event(name: str, data: Data, friction: float) -> Quantity:
+    return data.event(name, friction)
 
 
-def linear_range(data: Data) -> Numbers:
-    """R1, per that without friction."""
-
-    def ratios(data: Data, tolerance: float = TOLERANCES[0]) -> list[Quantity]:
-        without, *ends = (_linear(data, mu, tolerance) for mu in FRICTIONS)
-        return [end.per(without) for end in ends]
-
-    for part in TOLERANCES:
-        yield f"response {part:.0%} off", *ratios(data, part)
-    for way, found in preparations.along(data, ratios):
-        yield way, *found
+def _per(event, friction: float, other: float, data: Data) -> Quantity:
+    """An event's force at one friction per that at another one."""
+    return event(data, friction).per(event(data, other))
 
 
-def range_grows(data: Data) -> Numbers:  # A1
-    def grows(event: str, frictions: Sequence[float], data: Data) -> Quantity:
-        return rise(data.event(GROUP, event, friction=mu) for mu in frictions)
-
-    for name, frictions in (("frictions 0, 0.2 and 1", FRICTIONS), ("all frictions", _frictions(data))):
-        for part in TOLERANCES:
-            yield f"response {part:.0%} off, {name}", rise(_linear(data, mu, part) for mu in frictions)
-        yield f"first opening, {name}", grows("first_opening", frictions, data)
-    for event in ("first_opening", "linear_range"):
-        yield from preparations.along(data, partial(grows, event, FRICTIONS))
+def _rises(event, frictions: Sequence[float], data: Data) -> Quantity:
+    return rise(event(data, mu) for mu in frictions)
 
 
+@claim(
+    "A1", "abstract", Ask("range, smallest ratio of neighbours", more_than(1.0), paper=6.0 / 4.0),
+    primary="1 % off, frictions 0, 0.2 and 1", figures=[6]
+)  # fmt: skip
+def range_grows(data: Data) -> Numbers:
+    """The larger the coefficient of static friction, the more extended is the range of forces for which the response is
+    elastic and the smaller the anisotropy.
+
+    Short: The elastic range grows with friction
+    Here: Over the frictions 0, 0.2 and 1 the linear range grows by a factor of {0} at least from one to the next, the
+    force of the first opening by {first opening, frictions 0, 0.2 and 1|0}.
+    Remark: The range at x = 0 is longest near friction 0.2 to 0.5. At friction 1 it is still some eight times that
+    without friction. The paper's number is that of its first openings
+    """
+    every = np.unique(data.get(GROUP, "response")["friction"].values).tolist()
+    linear, opening = partial(_linear, TOLERANCES[0]), partial(_event, "first_opening")
+    yield "1 % off, frictions 0, 0.2 and 1", data.protocol(partial(_rises, linear, FRICTIONS))
+    for tolerance in TOLERANCES[1:]:
+        yield f"{tolerance:.0%} off, frictions 0, 0.2 and 1", _rises(partial(_linear, tolerance), FRICTIONS, data)
+    yield "first opening, frictions 0, 0.2 and 1", data.protocol(partial(_rises, opening, FRICTIONS))
+    yield "1% off, all frictions", _rises(linear, every, data)
+    yield "first opening, all frictions", _rises(opening, every, data)
+    yield from data.elsewhere(partial(_rises, linear, FRICTIONS))
+
+
+@claim(
+    "A2", "abstract", Ask("largest growth with friction", at_most("visible"), "%"),
+    Ask("fall over all frictions", at_least("marked"), "%"), primary="dip at x = 0", figures=[12],
+    requires={"friction_axis.force": 15.0}
+)  # fmt: skip
 def smaller_anisotropy(data: Data) -> Numbers:
-    """A2: growth and fall with friction."""
+    """As A1.
+
+    Short: Anisotropy decreases with friction
+    Here: Under 15 mg the dip at x = 0 disappears from friction 0 to 2. The difference from the elastic response falls
+    by {difference from the elastic response|1} and grows by up to {difference from the elastic response|0} between two
+    frictions.
+    Remark: Elastic is the response to the smallest force at the largest friction. Two peaks are the paper's sign of
+    anisotropy
+    """
     axis = data.get(GROUP, "friction_axis").sortby("friction")
-    elastic = _curve(data, _frictions(data)[-1], "floor_response").transpose("force", ...).values[0]
+    elastic = _curve(data, 1.0, "floor_response").transpose("force", ...).values[0]
     response = axis["floor_response"].transpose("friction", "floor_disk").values
     off = np.sqrt(((response - elastic) ** 2).sum(axis=1) / (elastic**2).sum())
     for case, size in (("dip at x = 0", axis["central_dip"].values), ("difference from the elastic response", off)):
         yield case, np.diff(size).max(), 1.0 - size[-1] / size[0]
 
 
-def elastic_without_friction(data: Data) -> Numbers:  # F11
+@claim("A4b", "abstract", Ask("dip at x = 0 per peak", at_least("marked"), "%"), figures=[3])
+def strongly_anisotropic(data: Data) -> Numbers:
+    """The results indicate that in large systems (typically considered by engineers), the response is close to that
+    predicted by isotropic elasticity whereas the response of small systems (or when sufficiently large forces are
+    applied) is strongly anisotropic.
+
+    Short: Small systems, or large forces: strongly anisotropic response
+    Here: In the slab of 15 layers under 15 mg without friction the response at x = 0 dips by {0} of the peaks.
+    Remark: The second half of the sentence; its first half is A4
+    """
+    response = at(data.get(GROUP, "response"), friction=0.0, force=15.0)
+    yield 1.0 - float(response["response_at_centre"]) / float(response["peak_height"])
+
+
+@claim(
+    "F1", "V.B", Ask("first opening at friction 0", sampled(0.75), "mg", 0.75),
+    Ask("first opening at friction 0.2", sampled(4.0), "mg", 4.0),
+    Ask("first opening at friction 1", sampled(6.0), "mg", 6.0), primary="central third", figures=[4, 6, 8, 9]
+)  # fmt: skip
+def openings(data: Data) -> Numbers:
+    """We first recall that such changes occur at significantly larger applied forces in the frictional case (by almost
+    an order of magnitude): the first contact is opened when F_ext = 0.75mg in the frictionless case, F_ext = 4mg for µ
+    = 0.2, and F_ext = 6mg for µ = 1.
+
+    Short: First contacts open at 0.75, 4 and 6 mg (friction 0, 0.2, 1)
+    Here: In the central third the first contact opens at {0} without friction, {1} at friction 0.2 and {2} at friction
+    1; anywhere in the slab at {any contact|0}, {any contact|1} and {any contact|2}.
+    Remark: Figs. 4, 8 and 9 show the central third. Near the upper corners contacts are hardly pressed and open earlier
+    """
+    events = [partial(_event, "first_opening", friction=mu) for mu in FRICTIONS]
+    own = [data.protocol(lambda one, mu=mu: one.event("first_opening", mu), "first_opening" if mu else "", mu) for mu in FRICTIONS]
+    yield "central third", *own
+    yield "any contact", *(data.event("first_opening_anywhere", mu) for mu in FRICTIONS)
+    yield "rows of 60", *(data.event("first_opening", mu, LITERAL) for mu in FRICTIONS)
+    yield "any contact, rows of 60", *(data.event("first_opening_anywhere", mu, LITERAL) for mu in FRICTIONS)
+    yield from data.elsewhere(*events)
+
+
+@claim(
+    "F2", "V.B", Ask("ratio at friction 0.2", order_of_magnitude(), paper=4.0 / 0.75),
+    Ask("ratio at friction 1", order_of_magnitude(), paper=6.0 / 0.75), primary="central third", figures=[6, 8, 9]
+)  # fmt: skip
+def openings_apart(data: Data) -> Numbers:
+    """As F1.
+
+    Short: Contacts open at almost ten times larger forces with friction
+    Here: The first contact opens at {0} times the frictionless force at friction 0.2, and at {1} times at friction 1.
+    """
+    ratios = [partial(_per, partial(_event, "first_opening"), mu, 0.0) for mu in FRICTIONS[1:]]
+    yield "central third", *(data.protocol(ratio) for ratio in ratios)
+    anywhere = partial(_event, "first_opening_anywhere")
+    yield "any contact", *(_per(anywhere, mu, 0.0, data) for mu in FRICTIONS[1:])
+    yield from data.elsewhere(*ratios)
+
+
+@claim(
+    "F11", "V.A, Fig. 6", Ask("change of the response before a contact opens", at_most("visible"), "%"), row="check"
+)  # fmt: skip
+def elastic_without_friction(data: Data) -> Numbers:
+    """A linear (elastic) range is observed for a sufficiently small applied forces even for frictionless particles, due
+    to the fact that the particles are slightly deformed by gravity, and a small force does not cause the contacts to
+    open.
+
+    Short: Without friction the response is linear until a contact opens
+    Here: Without friction the response at x = 0 changes by {0} up to the first opening in the central third.
+    """
     curve = _curve(data, 0.0, "response_at_centre")
-    before = curve.values[curve["force"].values <= data.event(GROUP, "first_opening", friction=0.0).low]
+    before = curve.values[curve["force"].values <= data.event("first_opening", 0.0).low]
     needs(before.size > 1, "response holds too few forces before the first opening")
-    yield "", np.ptp(before) / before[0]
+    yield np.ptp(before) / before[0]
+
+
+@claim(
+    "F12", "IV.A", Ask("size at friction 0.2 per that without", less_than(1.0), "%"),
+    Ask("size at friction 1 per that without", less_than(1.0), "%"), primary="width at 15 mg", figures=[4, 8, 9]
+)  # fmt: skip
+def teardrop_and_friction(data: Data) -> Numbers:
+    """As the force is increased, horizontal contacts are opened in a teardrop shaped region below the point of
+    application of the force, whose size increases with the force and decreases with friction.
+
+    Short: The open region shrinks with friction
+    Here: Under 15 mg the open region is {0} as wide at friction 0.2 as without friction, and {1} at friction 1.
+    Remark: The size is that of the connected region below the load (Fig. 5). Of all opened contacts of the central
+    third, friction 0.2 and 1 open more at 50 mg than without friction. From friction 0.5 to 1 the region grows again
+    """
+    for force, (name, variable) in product(
+        (15.0, 5.0, 30.0, 50.0),
+        {"width": "teardrop_width", "depth": "teardrop_depth", "opened contacts": "opened_contacts"}.items(),
+    ):
+        without, *others = (_at(data, mu, force, variable) for mu in FRICTIONS)
+        yield f"{name} at {force:g} mg", *(other.per(without) for other in others)
 
 
 def _slides(data: Data, force: float) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -90,87 +221,519 @@ def _slides(data: Data, force: float) -> tuple[FloatArray, FloatArray, FloatArra
     touching = one["contact_status"].values != OPEN
     away = 0.5 * (position[first] + position[second]) - position[int(one["loaded_disk"])]
     level = np.abs(position[first, 1] - position[second, 1]) < 0.5 * np.sqrt(3.0)
-    return (one["contact_status"].values == SLIDING)[touching], away[touching], level[touching]
+    needs(np.isfinite(away).all(), "states_mu_0.2 holds no positions")
+    slides = (one["contact_status"].values == SLIDING)[touching]
+    needs(slides.any(), f"states_mu_0.2 holds no sliding contact under {force:g} mg")
+    return slides, away[touching], level[touching]
 
 
-def far_from_the_load(data: Data) -> Numbers:  # I1
-    for force in (5.0, 15.0):
+@claim(
+    "I1", "I", Ask("sliding contacts far from the load", at_most("few per cent"), "%"),
+    primary="per contact there, 15 mg", figures=[8]
+)  # fmt: skip
+def far_from_the_load(data: Data) -> Numbers:
+    """Sufficiently far from the point of application the external force leads to practically no sliding or
+    rearrangement of the grains.
+
+    Short: Far from the load there is practically no sliding
+    Here: At friction 0.2 and 15 mg, {0} of the contacts farther than 20 radii from the load slide; of all sliding
+    contacts {per sliding contact, 15 mg|0} are there. At 5 mg these are {per contact there, 5 mg|0} and {per sliding
+    contact, 5 mg|0}.
+    Remark: Practically none is taken as a few per cent of the contacts there. The slab of 15 layers is 26 radii deep;
+    15 mg is the force of Figs. 10 to 14
+    """
+    for force in (15.0, 5.0):
         slides, away, _ = _slides(data, force)
         far = np.hypot(*away.T) > 20.0
         needs(far.any(), "states_mu_0.2 holds no contact farther than 20 radii from the load")
         yield f"per contact there, {force:g} mg", slides[far].mean()
-        yield f"per sliding contact, {force:g} mg", far[slides].sum() / max(slides.sum(), 1)
+        yield f"per sliding contact, {force:g} mg", far[slides].mean()
 
 
-def sliding_near(data: Data) -> Numbers:  # R12
-    for radius, force in product((6.0, 10.0, 15.0), (3.0, 5.0, 10.0, 15.0)):
-        slides, away, _ = _slides(data, force)
-        needs(slides.any(), f"states_mu_0.2 holds no sliding contact under {force:g} mg")
-        yield f"within {radius:g} R at {force:g} mg", (np.hypot(*away[slides].T) < radius).mean()
+@claim(
+    "I2", "I", Ask("sliding contacts at the larger friction per those at the smaller one", less_than(1.0), "%"),
+    primary="friction 1 per 0.2", requires={"friction_axis.force": 15.0}, figures=[12]
+)  # fmt: skip
+def rarer(data: Data) -> Numbers:
+    """The latter events are rarer the larger the friction and therefore, as shown below, the linearity and isotropy of
+    the response are enhanced by friction.
+
+    Short: Sliding is rarer the larger the friction
+    Here: Under 15 mg friction 1 has {0} of the sliding contacts of friction 0.2. Friction 1 has {friction 1 per 0.5|0}
+    of those of friction 0.5.
+    """
+    slides = data.get(GROUP, "friction_axis").sortby("friction")["sliding_contacts"]
+    number = dict(zip(slides["friction"].values.tolist(), slides.values.tolist(), strict=True))
+    frictions = [mu for mu in number if 0.0 < mu <= 1.0]
+    yield "friction 1 per 0.2", Quantity.exact(number[1.0]).per(Quantity.exact(number[0.2]))
+    for before, after in zip(frictions, frictions[1:], strict=False):
+        yield f"friction {after:g} per {before:g}", Quantity.exact(number[after]).per(Quantity.exact(number[before]))
 
 
-def spreads_downward(data: Data) -> Numbers:  # R13
-    found = (_slides(data, force) for force in (2.0, 5.0, 10.0, 15.0))
-    yield "", rise(Quantity.exact(-np.quantile(away[slides, 1], 0.1)) for slides, away, _ in found)
+@claim(
+    "R1", "V.A, Fig. 6", Ask("times longer at friction 0.2", order_of_magnitude()),
+    Ask("times longer at friction 1", order_of_magnitude()), primary="1 % off"
+)  # fmt: skip
+def linear_range(data: Data) -> Numbers:
+    """As shown in Fig. 6, friction has a significant effect on the linearity of the response: The extent of the linear
+    range is significantly larger (by almost an order of magnitude; notice the logarithmic scale on the horizontal axis
+    in Fig. 6) in frictional systems, so that elasticity is enhanced by friction.
+
+    Short: The linear range with friction is almost ten times longer
+    Here: The linear range (1 % departure) is {0} times longer at friction 0.2 than without friction, and {1} times at
+    friction 1.
+    Remark: The text does not say at which departure a response is no longer linear
+    """
+    for tolerance in TOLERANCES:
+        ratios = [partial(_per, partial(_linear, tolerance), mu, 0.0) for mu in FRICTIONS[1:]]
+        first = tolerance == TOLERANCES[0]
+        yield f"{100 * tolerance:g} % off", *(data.protocol(ratio) if first else ratio(data) for ratio in ratios)
+        if first:
+            yield from data.elsewhere(*ratios)
 
 
-def reorganized(data: Data) -> Numbers:
-    """R4c, in the region that has opened contacts: below the load, as far to each side as it is deep there."""
+@claim("R2a", "V.A, Fig. 7", Ask("force of the crossover to two peaks", more_than(50.0), "mg"))
+def one_peak(data: Data) -> Numbers:
+    """For µ = 1 no such crossover is observed even for the largest force shown, F_ext = 50mg (a different type of
+    crossover occurs for µ = 1 for large forces, as described in Sec. V E).
+
+    Short: At friction 1 one peak remains up to 50 mg
+    Here: At friction 1 the response has one peak up to 90 mg, the end of the load path.
+    """
+    crossover = partial(_event, "crossover", friction=1.0)
+    yield data.protocol(crossover)
+    yield from data.elsewhere(crossover)
+
+
+@claim(
+    "R2b", "V.B, Fig. 7",
+    Ask("full width at half maximum at 50 mg per that at the smallest force", lower_by("visible"), "%")
+)  # fmt: skip
+def sharper(data: Data) -> Numbers:
+    """In addition, for a larger coefficient of friction, the obtained response does not seem to be compatible with the
+    changes in the contact network: as mentioned above [see Fig. 7(b)], for µ = 1 the response remains single peaked
+    (and actually its shape becomes sharper) even for rather large forces (see however Sec. V E), while for the same
+    force, the response for µ = 0.2 is double peaked.
+
+    Short: At friction 1 the peak becomes sharper
+    Here: At friction 1 the peak under 50 mg has {0} of its width under the smallest force.
+    """
+    width = _curve(data, 1.0, "half_maximum_width")
+    yield _at(data, 1.0, 50.0, "half_maximum_width").per(Quantity.exact(float(width[0])))
+
+
+@claim(
+    "R3a", "V.E, Fig. 16a", Ask("force of the crossover to two peaks", about(20.0), "mg", 20.0),
+    primary="rows of 61 and 60", figures=[7, 16]
+)  # fmt: skip
+def crossover(data: Data) -> Numbers:
+    """For finite µ, this compensation is limited by the Coulomb condition, a limitation which becomes more significant
+    as the applied force is increased: for µ = 0.2, the region of open contacts (the "teardrop") reaches the floor for
+    F_ext ≃ 20mg, which in this case seems to be the crossover force [see Fig. 16(a)].
+
+    Short: At friction 0.2 two peaks appear at about 20 mg
+    Here: At friction 0.2 two peaks appear at {0}. Slabs of 121 disks a row have them from {121 disks a row|0}, rows of
+    60 disks from {rows of 60|0}.
+    """
+    force = partial(_event, "crossover", friction=0.2)
+    yield "rows of 61 and 60", data.protocol(force, "crossover", 0.2)
+    yield "rows of 60", data.event("crossover", 0.2, LITERAL)
+    yield from data.elsewhere(force)
+
+
+@claim(
+    "R3b", "V.E, Fig. 8", Ask("force at which the connected region reaches the lowest row", about(20.0), "mg", 20.0),
+    primary="rows of 61 and 60"
+)  # fmt: skip
+def reaches_floor(data: Data) -> Numbers:
+    """As R3a.
+
+    Short: At friction 0.2 the open region reaches the floor at about 20 mg
+    Here: At friction 0.2 the open region reaches the lowest row at {0}, in rows of 60 disks at {rows of 60|0}.
+    Remark: The region is connected. Single contacts of the lowest row open a little earlier, at 14.95 to 15 mg by an
+    independent simulation
+    """
+    force = partial(_event, "reaches_floor", friction=0.2)
+    yield "rows of 61 and 60", data.protocol(force)
+    yield "rows of 60", data.event("reaches_floor", 0.2, LITERAL)
+    yield from data.elsewhere(force)
+
+
+@claim(
+    "R4", "V.E, Fig. 16a", Ask("force from which there is a third peak", sampled(40.0), "mg", 40.0),
+    Ask("its prominence at 40 mg per largest response", at_most("small"), "%"),
+    Ask("fall of the horizontal part of the sliding contacts from 20 to 30 mg", at_least("nearly"), "%"),
+    primary="rows of 61 and 60"
+)  # fmt: skip
+def third_peak(data: Data) -> Numbers:
+    """For larger forces (F_ext ≳ 40mg), a small third peak appear at x = 0 (below the point of application), which
+    appears to be related to a reorganization of the sliding contacts within the "teardrop".
+
+    Short: A small third peak appears from about 40 mg
+    Here: At friction 0.2 a third peak appears at {0} and has {1} of the largest response at 40 mg. The horizontal part
+    of the sliding contacts in the open region falls by {2} from 20 to 30 mg.
+    Remark: The prominence grows with the force, to a third of the largest response at 80 mg. That the reorganization of
+    sliding contacts goes with the peak is no proof that it causes it
+    """
+    force = partial(_event, "third_peak", friction=0.2)
     parts = []
-    for force in (20.0, 30.0):
-        slides, away, level = _slides(data, force)
+    for at_force in (20.0, 30.0):  # below the load, as far to each side as the region is deep there
+        slides, away, level = _slides(data, at_force)
         below = np.abs(away[:, 0]) < -away[:, 1] / np.sqrt(3.0)
-        needs((slides & below).any(), f"states_mu_0.2 holds no sliding contact below the load at {force:g} mg")
+        needs((slides & below).any(), f"states_mu_0.2 holds no sliding contact below the load at {at_force:g} mg")
         parts.append(level[slides & below].mean())
-    yield "", parts[0], parts[1] / parts[0]
+    prominence = _at(data, 0.2, 40.0, "third_peak_prominence")
+    yield "rows of 61 and 60", data.protocol(force, "third_peak", 0.2), prominence, 1.0 - parts[1] / parts[0]
+    for case, found in data.elsewhere(force):
+        yield case, found, None, None
 
 
-def _jump(data: Data, asymmetric: float) -> tuple[xr.Dataset, xr.Dataset]:
-    """Of the dynamic runs at large forces the last one before the asymmetry exceeds this, and those after it."""
+def _jump(data: Data) -> tuple[xr.Dataset, xr.Dataset]:
+    """Of the dynamic runs at large forces the last one before symmetry is lost, and those after it."""
     runs = data.get(GROUP, "large_forces").sortby("force")
-    lost = np.flatnonzero(runs["asymmetry"].values > asymmetric)
+    asymmetry = runs["asymmetry"].values
+    needs(np.isfinite(asymmetry).all(), "large_forces holds no asymmetry")
+    lost = np.flatnonzero(asymmetry > ASYMMETRIC)
     needs(lost[:1].any(), "large_forces holds no forces on both sides of the loss of symmetry")
     return runs.isel(force=lost[0] - 1), runs.isel(force=slice(lost[0], None))
 
 
-def sharp(data: Data, asymmetric: float) -> Numbers:  # R5b
-    before, after = (runs["asymmetry"].values for runs in _jump(data, asymmetric))
-    yield "", after[0] - before
+@claim(
+    "R5b", "V.E, Fig. 16b", Ask("change between two forces per largest response", at_least("gradual")),
+    requires={"dynamics.friction": 1.0}
+)  # fmt: skip
+def sharp(data: Data) -> Numbers:
+    """However, when the force exceeds F_ext = 91mg, we obtain a sharp transition to a very different response shape
+    [see Fig. 16(b)], which is very asymmetric (unlike the symmetric double peaked response obtained for lower friction
+    at large forces).
+
+    Short: The transition to an asymmetric response is sharp
+    Here: From one force to the next, 1 mg larger, the asymmetry grows by {0} (0: symmetric, 2: all on one side).
+    """
+    before, after = (runs["asymmetry"].values for runs in _jump(data))
+    yield after[0] - before
 
 
-def network_changes(data: Data, asymmetric: float) -> Numbers:  # R6c
+@claim(
+    "R6", "V.E", Ask("contacts at the Coulomb limit after per before", lower_by("marked"), "part"),
+    Ask("contacts that open or close, per contacts opened by the force", at_least("marked"), "%"),
+    Ask("contacts without a mirror image before", at_most(0.0), "part"),
+    Ask("contacts without a mirror image after, smallest part", more_than(0.0), "%"),
+    primary="within 1 % of the limit, per opened contact", figures=[16], requires={"dynamics.friction": 1.0}
+)  # fmt: skip
+def transition(data: Data) -> Numbers:
+    """The transition to an asymmetric response is accompanied by a significant change in the contact network (which
+    becomes asymmetric), and by a marked reduction in the number of sliding contacts.
+
+    Short: It comes with changes in the network and much less sliding
+    Here: Beyond the transition {0} of the former sliding contacts are left. The number of contacts that open or close
+    is {1} of those that the force had opened; without a mirror image are {2} of the contacts before and {3} after it.
+    Remark: In equilibrium a contact that slid rests just below the limit, so that how near counts as sliding is a
+    choice. The change of the network is compared with what the force had changed before
+    """
+    before, after = _jump(data)
     states = data.get(GROUP, "large_force_states")
     states = states.assign_coords(force=states["force"])
-    forces = (float(runs["force"].values.flat[0]) for runs in _jump(data, asymmetric))
-    before, after = (at(states, force=force)["contact_status"].values != OPEN for force in forces)
-    yield "", (before != after).sum() / before.sum()
+    forces = [0.0, float(before["force"]), float(after["force"][0])]
+    rest, symmetric, lost = (at(states, force=force)["contact_status"].values != OPEN for force in forces)
+    changed, opened = float((symmetric != lost).sum()), float((rest & ~symmetric).sum())
+    needs(opened, "large_force_states holds no contact opened by the force")
+    mirror = float(before["network_asymmetry"]), float(after["network_asymmetry"].min())
+    for margin, (name, number) in product((0.01, 0.05), {"opened contact": opened, "contact": symmetric.sum()}.items()):
+        near = [float(at(one, margin=margin)["mobilised_contacts"]) for one in (before, after.isel(force=0))]
+        case = f"within {margin * 100:g} % of the limit, per {name}"
+        yield case, Quantity.exact(near[1]).per(Quantity.exact(near[0])), changed / number, *mirror
 
 
-def by_sliding(data: Data) -> Numbers:  # R6d
-    states = data.get(GROUP, "states_mu_1")
-    force, status = states["force"].values, states["contact_status"].values
-    rest, last = status[0], status[np.flatnonzero(force <= 90.0)[-1]]
-    opened = ((rest != OPEN) & (last == OPEN)).sum()
-    needs(opened > 0, "states_mu_1 holds no opened contact")
-    yield "", (last == SLIDING).sum() / opened
+@claim(
+    "R6d", "V.E", Ask("largest asymmetry without sliding", at_most(ASYMMETRIC)),
+    Ask("smallest asymmetry with sliding", at_least(ASYMMETRIC)),
+    Ask("opened contacts without sliding per those with it", at_least(1.0)), primary="95 mg", figures=[16]
+)  # fmt: skip
+def by_sliding(data: Data) -> Numbers:
+    """This instability at large µ appears to be dominated by sliding, rather than by changes in the contact network.
+
+    Short: The instability is dominated by sliding
+    Here: Without sliding (friction 10) the response under 95 mg stays symmetric: its asymmetry is {0} at most in kicked
+    packings. At friction 1 it is {1} at least. The contacts that 95 mg opens number {2} times as many at friction 10.
+    Remark: A control: at friction 10 no contact reaches the Coulomb limit, and more contacts open. Disks were displaced
+    by 1e-4 R before they fell
+    """
+    runs = data.get(ROBUSTNESS, "control")
+    for force in (95.0, 150.0, 300.0):
+        there = np.isclose(runs["force"].values, force)
+        one, ten = (runs.isel(run=there & np.isclose(runs["friction"].values, mu)) for mu in (1.0, 10.0))
+        needs(one.sizes["run"] and ten.sizes["run"], f"control holds no runs at {force:g} mg")
+        needs(not ten["sliding_contacts"].values.any(), "control holds sliding contacts at friction 10")
+        opened = [float(runs_["opened_contacts"].values.min()) for runs_ in (ten, one)]
+        opened = Quantity.exact(opened[0]).per(Quantity.exact(float(one["opened_contacts"].values.max())))
+        yield f"{force:g} mg", ten["asymmetry"].values.max(), one["asymmetry"].values.min(), opened
 
 
-def mirror_images(data: Data, asymmetric: float) -> Numbers:
-    """R7. The paper's pair lies between 91 and 95 mg."""
-    _, after = _jump(data, asymmetric)
-    response, force, sign = (after[name].values for name in ("floor_response", "force", "asymmetry_sign"))
-    apart = [
-        float(np.abs(response[a] - response[b][::-1]).max() / response[a].max())
-        for a, b in product(range(len(force)), repeat=2)
-        if sign[a] * sign[b] < 0 and 0.0 < force[b] - force[a] <= 4.0
-    ]
-    yield "", min(apart, default=1.0)
+@claim(
+    "R7", "V.E",
+    Ask("difference of one response and the mirrored other per largest response, median", at_most("holds"), "%"),
+    primary="95 mg", figures=[16]
+)  # fmt: skip
+def mirror_images(data: Data) -> Numbers:
+    """The sign of symmetry breaking appears to be related to the transient vibrations which are excited by the
+    application of the force; for some very close values of the force [e.g., F_ext = 95mg, shown in Fig. 16(b)] we
+    obtain almost exactly the same rescaled response reflected with respect to the vertical axis through x = 0.
+
+    Short: Some responses at nearly equal forces are mirror images
+    Here: Of ten copies displaced by 1e-9 R, some lean to each side under 95 mg. Those of opposite sides differ, one
+    mirrored, by {0} of the peak in the median.
+    """
+    runs = data.get(ROBUSTNESS, "copies")
+    lost = runs.isel(run=runs["asymmetry"].values > ASYMMETRIC)
+    needs(np.isfinite(runs["asymmetry"].values).all(), "copies holds no asymmetry")
+    for force in dict.fromkeys([95.0, *np.unique(lost["force"].values).tolist()]):
+        there = lost.isel(run=np.isclose(lost["force"].values, force))
+        response, sign = there["floor_response"].transpose("run", "floor_disk").values, there["asymmetry_sign"].values
+        pairs = product(np.flatnonzero(sign > 0.0), np.flatnonzero(sign < 0.0))
+        apart = [np.abs(response[a] - response[b][::-1]).max() / response[a].max() for a, b in pairs]
+        if apart or force == 95.0:
+            needs(apart, "no copies lean to opposite sides under 95 mg")
+            yield f"{force:g} mg", Quantity.exact(np.median(apart))
+            yield f"{force:g} mg, closest pair", Quantity.exact(np.min(apart))
 
 
-def crossover_rises(data: Data) -> Numbers:  # R9
-    curves = {mu: _curve(data, mu, "double_peaked") for mu in _frictions(data)}
-    own = {mu: Quantity.bracket(*first_change(one["force"].values, one.values > 0.0)) for mu, one in curves.items()}
-    yield "", rise(own.values())
-    yield from preparations.along(
-        data, lambda other: rise(other.event(GROUP, "crossover", friction=mu) if mu else own[mu] for mu in own)
-    )
+@claim(
+    "R7b", "V.E",
+    Ask("difference from the response just beyond the transition, rms, mirrored if it leans the other way",
+    at_most("similar"), "%"), primary="150 mg", figures=[16], requires={"dynamics.friction": 1.0}
+)  # fmt: skip
+def similar_shape(data: Data) -> Numbers:
+    """The shape remains qualitatively similar for much larger F_ext.
+
+    Short: The asymmetric shape stays similar for much larger forces
+    Here: The response under 150 mg differs from that just beyond the transition by {0} in root mean squares, under 300
+    mg by {300 mg|0} and under 500 mg by {500 mg|0}.
+    Remark: The response stays asymmetric, less and less so
+    """
+    _, after = _jump(data)
+    response = after["floor_response"].transpose("force", "floor_disk").values
+    sides, first = after["asymmetry_sign"].values, response[0]
+    for force in (150.0, 300.0, 500.0):
+        k = int(np.flatnonzero(np.isclose(after["force"].values, force))[0])
+        one = response[k] if sides[k] == sides[0] else response[k][::-1]
+        yield f"{force:g} mg", float(np.sqrt(((one - first) ** 2).sum() / (first**2).sum()))
+
+
+@claim(
+    "R8a", "V.B, Fig. 9", Ask("force at friction 1 per that at 0.2", less_than(1.0)), primary="rows of 61 and 60",
+    figures=[8, 9]
+)  # fmt: skip
+def earlier(data: Data) -> Numbers:
+    """While the region of open contacts does reach the floor (even for a smaller force than in the case of µ = 0.2),
+    the response remains single peaked.
+
+    Short: At friction 1 the open region reaches the floor earlier than at 0.2
+    Here: At friction 1 the connected open region reaches the floor at {0} times the force at friction 0.2, in rows of
+    60 disks at {rows of 60|0} times.
+    """
+    ratio = partial(_per, partial(_event, "reaches_floor"), 1.0, 0.2)
+    yield "rows of 61 and 60", data.protocol(ratio)
+    yield "rows of 60", data.event("reaches_floor", 1.0, LITERAL).per(data.event("reaches_floor", 0.2, LITERAL))
+    yield from data.elsewhere(ratio)
+
+
+@claim(
+    "R8b", "V.B, Fig. 9",
+    Ask("force of the crossover per force at which the region reaches the floor", more_than(1.0))
+)  # fmt: skip
+def stays_single(data: Data) -> Numbers:
+    """As R8a.
+
+    Short: There the response remains single peaked
+    Here: At friction 1 the response keeps one peak from the force at which the open region reaches the floor to the end
+    of the load path, more than eight times that force.
+    """
+    yield data.protocol(lambda one: one.event("crossover", 1.0).per(one.event("reaches_floor", 1.0)))
+
+
+@claim(
+    "R9", "V.A, Fig. 7", Ask("ratio of crossover forces", higher_by("marked"), paper=20.0 / 3.0),
+    primary="friction 0.2 per 0"
+)  # fmt: skip
+def crossover_rises(data: Data) -> Numbers:
+    """Notice that the force for which the crossover from a single peaked to a double peaked response occurs rapidly
+    increases with friction (this is also observed in Fig. 6), so that friction renders the response closer to that
+    expected from isotropic elasticity (this is further discussed below).
+
+    Short: The crossover force increases rapidly with friction
+    Here: From friction 0 to 0.2 the crossover force grows by a factor of {0}; from one of the frictions 0, 0.05, 0.1,
+    0.2 to the next by {smallest step up to friction 0.2|0} at least.
+    Remark: Rapidly is taken as a marked increase. The paper's number is 20 mg (Sec. V.E) per 3 mg (its Fig. 3)
+    """
+    event = partial(_event, "crossover")
+    ratio = partial(_per, event, 0.2, 0.0)
+    yield "friction 0.2 per 0", data.protocol(lambda one: _curve_ratio(one, 0.2, 0.0))
+    yield "smallest step up to friction 0.2", data.protocol(lambda one: rise(_two_peaks(one, mu) for mu in (0.0, 0.05, 0.1, 0.2)))
+    yield from data.elsewhere(ratio)
+
+
+def _two_peaks(data: Data, friction: float) -> Quantity:
+    """The crossover force: located, or between the stored forces of a friction whose events are not."""
+    if data.variant or data.prepared or friction in (0.0, 0.2, 1.0):
+        return data.event("crossover", friction)
+    found = replace(data, variant="as in the paper")
+    return found.event("crossover", friction)
+
+
+def _curve_ratio(data: Data, friction: float, other: float) -> Quantity:
+    return _two_peaks(data, friction).per(_two_peaks(data, other))
+
+
+@claim("R10", "V.B, Figs. 4, 8", Ask("opened contacts at friction 0.2 per those without", lower_by("marked"), "%"))
+def smaller_region(data: Data) -> Numbers:
+    """For the same force, the region of open contacts is considerably smaller in the frictional case than in the
+    frictionless case [compare Fig. 4(c) and Fig. 8(a)].
+
+    Short: Friction makes the open region considerably smaller
+    Here: Under 5 mg friction 0.2 opens {0} of the number of contacts that open without friction.
+    """
+    yield _at(data, 0.2, 5.0, "opened_contacts").per(_at(data, 0.0, 5.0, "opened_contacts"))
+
+
+@claim(
+    "R11", "V.B, Figs. 4, 8", Ask("force at friction 0.2 per that without", higher_by("marked")),
+    primary="rows of 61 and 60"
+)  # fmt: skip
+def later(data: Data) -> Numbers:
+    """In addition, this region reaches the floor only for a much larger force [compare Fig. 4(c) and Fig. 8(c)].
+
+    Short: With friction it reaches the floor only at a much larger force
+    Here: At friction 0.2 the open region reaches the floor at {0} times the force without friction.
+    """
+    ratio = partial(_per, partial(_event, "reaches_floor"), 0.2, 0.0)
+    yield "rows of 61 and 60", data.protocol(ratio)
+    yield "rows of 60", data.event("reaches_floor", 0.2, LITERAL).per(data.event("reaches_floor", 0.0, LITERAL))
+    yield from data.elsewhere(ratio)
+
+
+@claim(
+    "R12", "V.E", Ask("part of the sliding contacts near the load", at_least("marked"), "part"),
+    primary="within 13 R at 5 mg", figures=[8]
+)  # fmt: skip
+def sliding_near(data: Data) -> Numbers:
+    """Sliding does occur in the system (mainly near the point of application) even for smaller forces, and sliding
+    contacts spread gradually downward with increasing F_ext (possibly due to the fact that the displacements induced by
+    the applied force decay with the distance from it).
+
+    Short: Below the crossover sliding is mainly near the load
+    Here: At friction 0.2 and 5 mg, {0} of the sliding contacts lie within half of the slab's depth of the load; within
+    6 radii, {within 6 R at 5 mg|0}.
+    Remark: The text names no distance; half of the depth is taken. 5 mg is the force of Fig. 8(a)
+    """
+    for radius, force in product((NEAR, 6.0, 10.0), (5.0, 3.0, 10.0, 15.0)):
+        slides, away, _ = _slides(data, force)
+        yield f"within {radius:g} R at {force:g} mg", (np.hypot(*away[slides].T) < radius).mean()
+
+
+@claim(
+    "R13", "V.E", Ask("depth of the sliding contacts, smallest ratio of neighbouring forces", more_than(1.0)),
+    figures=[8]
+)  # fmt: skip
+def spreads_downward(data: Data) -> Numbers:
+    """As R12.
+
+    Short: Sliding contacts spread downward with the force
+    Here: At friction 0.2 the depth above which nine tenths of the sliding contacts lie grows by a factor of {0} at
+    least from each of the forces 2, 5, 10 and 15 mg to the next.
+    """
+    found = (_slides(data, force) for force in (2.0, 5.0, 10.0, 15.0))
+    yield rise(Quantity.exact(-np.quantile(away[slides, 1], 0.1)) for slides, away, _ in found)
+
+
+@claim(
+    "R14", "V.E", Ask("largest step at friction 0.2 per largest response", at_most("gradual"), "%"),
+    Ask("largest step at friction 0", at_most("gradual"), "%"), figures=[3, 7]
+)  # fmt: skip
+def gradual(data: Data) -> Numbers:
+    """As described above, for a relatively small coefficient of friction we observe a gradual crossover from a single
+    peaked to a double peaked response as a function of the magnitude of the externally applied force, much like in
+    frictionless systems, the main difference being that it occurs at larger values of the applied force [compare Figs.
+    3 and 7(a)], although the shape of the response is not identical.
+
+    Short: For small friction the crossover is gradual, as without friction
+    Here: Between neighbouring forces around the crossover the response at friction 0.2 changes by {0} of its peak at
+    most, without friction by {1}.
+    Remark: Largest change of the response of a floor disk away from the side walls, from half to twice the crossover
+    force
+    """
+    found = []
+    for mu in (0.2, 0.0):
+        curve = _curve(data, mu, "floor_response")
+        inside = data.get(GROUP, "response")["interior"].values > 0
+        force, middle = curve["force"].values, data.event("crossover", mu).low
+        near = (force > 0.5 * middle) & (force < 2.0 * middle)
+        values = curve.transpose("force", "floor_disk").values[near][:, inside]
+        needs(len(values) > 2, f"response holds too few forces around the crossover at friction {mu:g}")
+        found.append((np.abs(np.diff(values, axis=0)).max(axis=1) / values[:-1].max(axis=1)).max())
+    yield tuple(found)
+
+
+@claim(
+    "R15", "V.A", Ask("linear range beside rough walls per that beside smooth walls", less_than(1.0)), modal=True,
+    figures=[6]
+)  # fmt: skip
+def rough_walls(data: Data) -> Numbers:
+    """The results shown here were obtained with frictionless walls (µ^wall = 0; see Sec. III), since for weak applied
+    forces, frictional walls can support some of the force, inducing nonlinearity in the response at the floor.
+
+    Short: Rough walls can make the response nonlinear at small forces
+    Here: At friction 1 the linear range beside rough walls is {0} times that beside smooth walls: rough walls do not
+    shorten it.
+    Remark: One friction and one tolerance. The part of the force that the walls support is not looked at
+    """
+    labels = {"name": "linear_range", "friction": 1.0, "wall_friction": 1.0, "gravity": "at-once"}
+    rough = at(data.get("preparation", "events"), **labels)
+    yield Quantity.bracket(float(rough["low"]), float(rough["high"])).per(data.event("linear_range", 1.0))
+
+
+@claim(
+    "K4", "V.D, Fig. 12", Ask("friction at which two peaks turn into one", between(0.001, 0.2)),
+    requires={"friction_axis.force": 15.0}
+)  # fmt: skip
+def friction_crossover(data: Data) -> Numbers:
+    """This increases the anisotropy, since not all the tangential springs can exert forces as large as predicted by the
+    above model (in which µ = ∞) and leads to a crossover to a double peaked response.
+
+    Short: Too little friction leads to two peaks (15 mg)
+    Here: Under 15 mg two peaks turn into one at friction {0}.
+    Remark: At friction 0.2 the paper has one peak at 15 mg, since its crossover is at 20 mg
+    """
+    found = at(data.get(GROUP, "events"), name="friction_crossover")
+    yield Quantity.bracket(float(found["low"]), float(found["high"]))
+
+
+def _dashpots(data: Data, name: str, friction: float) -> Quantity:
+    """The largest change of an event's force with dashpots halved or doubled."""
+    own = data.event(name, friction)
+    changed = [replace(data, variant=f"dashpots {how}").event(name, friction) for how in ("halved", "doubled")]
+    needs(own.happens and all(one.happens for one in changed), f"{name} does not happen with other dashpots")
+    return Quantity.exact(max(abs(float(one.value) / float(own.value) - 1.0) for one in changed))
+
+
+@claim(
+    "N10", "III.A",
+    Ask("largest change of the force of an event with dashpots halved or doubled", at_most("nearly"), "%"),
+    primary="two peaks, friction 0.2", figures=[6, 7]
+)  # fmt: skip
+def dissipation(data: Data) -> Numbers:
+    """Since we focus on the static response and small deformations the results should not be sensitive to the precise
+    choice of dissipation mechanism.
+
+    Short: Results should not be sensitive to the dissipation
+    Here: At friction 0.2 dashpots of half or double strength move the crossover force by up to {0} and the end of the
+    linear range by up to {linear range, friction 0.2|0}.
+    Remark: The strength of the linear dashpots stands for the mechanism. Without friction nothing depends on it
+    """
+    yield "two peaks, friction 0.2", _dashpots(data, "crossover", 0.2)
+    yield "linear range, friction 0.2", _dashpots(data, "linear_range", 0.2)
+    yield "open region at the floor, friction 0.2", _dashpots(data, "reaches_floor", 0.2)
+    yield "third peak, friction 0.2", _dashpots(data, "third_peak", 0.2)
+    yield "linear range, friction 1", _dashpots(data, "linear_range", 1.0)
+    yield "first opening, friction 0.2", _dashpots(data, "first_opening", 0.2)
+    yield "first opening, friction 1", _dashpots(data, "first_opening", 1.0)

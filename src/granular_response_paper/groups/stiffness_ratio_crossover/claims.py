@@ -1,0 +1,103 @@
+"""Claims K1 and K5 to K7: large friction and the ratio of stiffnesses (Secs. V.B and V.C)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from granular_response_paper.claims.bounds import about, at_most, within
+from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers, at
+from granular_response_paper.claims.numbers import Quantity, needs
+
+GROUP = "stiffness_ratio_crossover"
+claim = Claims(GROUP, {"force": 15.0, "scene.contact.friction": 10.0})
+
+
+def _two_peaks_end(data: Data) -> Quantity:
+    found = at(data.get(GROUP, "events"), name="two_peaks_end")
+    return Quantity.bracket(float(found["low"]), float(found["high"]))
+
+
+@claim("K1a", "V.B, Fig. 10", Ask("ratio at which two peaks turn into one", about(0.3), paper=0.3))
+def ratio(data: Data) -> Numbers:
+    """A crossover from a single peaked to a double peaked response occurs with decreasing k_T/k_N (the crossover occurs
+    at k_T/k_N ≃ 0.3).
+
+    Short: k_T/k_N of about 0.3 separates two peaks from one
+    Here: At friction 10 two peaks first vanish at k_T/k_N = {0}. Up to 0.319 dips of at most 0.2 % come back.
+    """
+    yield _two_peaks_end(data)
+
+
+@claim(
+    "K1b", "V.B, Fig. 10", Ask("largest change of the response per largest response", at_most("nearly"), "%"),
+    primary="from 0.5 on"
+)  # fmt: skip
+def independent(data: Data) -> Numbers:
+    """For larger values of k_T/k_N, the response is nearly independent of k_T/k_N.
+
+    Short: Above it the response is nearly independent of the ratio
+    Here: Responses at k_T/k_N from 0.5 to 1 differ from that at 0.8 by up to {0} of the peak, from 0.4 to 1 by up to
+    {from 0.4 on|0}.
+    Remark: The text does not say from which ratio on; 0.5 is the smallest that the paper uses elsewhere (Sec. V.F).
+    Away from the side walls
+    """
+    study = data.get(GROUP, "response")
+    inside = study["interior"].values > 0
+    ratios, response = study["stiffness_ratio"].values, study["floor_response"].transpose("stiffness_ratio", ...).values
+    usual = at(study, stiffness_ratio=0.8)["floor_response"].values
+    for least in (0.5, 0.4):
+        there = ratios > least - 1e-9
+        needs(there.sum() > 1, f"response holds too few ratios above {least:g}")
+        yield f"from {least:g} on", float(np.abs(response[there] - usual)[:, inside].max() / usual.max())
+
+
+@claim(
+    "K5", "V.B", Ask("largest number of contacts at the Coulomb limit", at_most(0.0), "count"), figures=[10],
+    row="check"
+)  # fmt: skip
+def none_slides(data: Data) -> Numbers:
+    """In this case, the ratio of tangential to normal stiffness, k_T/k_N (see Sec. III A), determines the response:
+    Fig. 10 presents the response obtained with F_ext = 15mg for µ = 10 (which is practically equivalent to µ = ∞, as
+    used in [26], since no sliding occurs), with different values of k_T/k_N.
+
+    Short: At friction 10 no contact slides
+    Here: At friction 10 and every ratio above 0, {0} contact is at the Coulomb limit.
+    """
+    study = data.get(GROUP, "response")
+    yield study["sliding_contacts"].values[study["stiffness_ratio"].values > 0.001].max()
+
+
+@claim(
+    "K6", "V.C", Ask("root of the criterion per ratio of the slab", within("quite well"), paper=0.2915 / 0.3),
+    primary="rotations suppressed", figures=[10, 11]
+)  # fmt: skip
+def criterion(data: Data) -> Numbers:
+    """Nevertheless, the estimate obtained using this criterion fits our result for the finite slab quite well: for the
+    model used here (with no horizontal springs), r = (β² + 10β − 3)/(β² + 6β + 9), where β ≡ k_2^t/k_2^n.
+
+    Short: The half plane's criterion gives the slab's ratio quite well
+    Here: The root of the criterion is {0} times the ratio k_T/k_N at which two peaks of the slab turn into one; with
+    disks free to turn, {disks free to turn|0} times.
+    """
+    for case, rotations in (("rotations suppressed", "suppressed"), ("disks free to turn", "free")):
+        yield case, data.value(GROUP, "elastic.root", rotations=rotations).per(_two_peaks_end(data))
+
+
+@claim(
+    "K7", "V.B",
+    Ask("difference of the responses at friction 2 and 10 per largest response", at_most("nearly"), "%"),
+    figures=[10, 12]
+)  # fmt: skip
+def immaterial(data: Data) -> Numbers:
+    """When µ is sufficiently large (and F_ext sufficiently small), its value is essentially immaterial, since sliding
+    is never reached.
+
+    Short: Sufficiently large friction is immaterial
+    Here: From friction 2 to 10 the response under 15 mg changes by {0} of its peak.
+    Remark: Friction 10 starts from rest and has rough walls (Fig. 10), friction 2 follows the load path beside smooth
+    walls (Fig. 12)
+    """
+    ten, axis = (data.get(group, name) for group, name in ((GROUP, "response"), ("friction_linear_range", "friction_axis")))
+    values = at(ten, stiffness_ratio=0.8)["floor_response"].values
+    two = at(axis, friction=2.0, force=15.0)["floor_response"].values
+    yield float(np.abs(values - two)[ten["interior"].values > 0].max() / values.max())

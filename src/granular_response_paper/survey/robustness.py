@@ -1,0 +1,253 @@
+"""How far the events of the ordered slab move with what the text leaves open, and with what should not matter.
+
+Each event of Secs. V.A, V.B and V.E is looked for with the paper's protocol and with one thing changed: the *protocol*
+(dashpots halved and doubled, another integrator, a smaller time step, ten copies of the packing displaced by 1e-9 R, the
+duration of the load ramp), the *width* of the slab, or the *stiffness* of its disks. At large forces and friction 1 ten
+displaced copies under each force tell which way the response leans, and the same with friction 10, at which no contact
+reaches its limit, whether sliding or opening breaks the symmetry.
+
+The study takes some minutes and stands outside the pipeline of the figures; its dataset is part of the repository,
+``survey/data/robustness.nc``. ``python -m granular_response_paper.survey.robustness`` makes it anew, with the names of
+parts (paths, paths_between, dynamics, copies) only these. Units are reduced: mean radius, mean mass, g.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from granular_response import __version__, studies
+from granular_response.scene import Scene
+from granular_response.scene.lattice import SlabPacking
+from granular_response.state import FloatArray
+from granular_response.store import files as store
+from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response_paper import slab_response as slab
+from granular_response_paper.datasets import labelled
+from granular_response_paper.parameters import UNIT_LOAD
+from granular_response_paper.records import column, record, table, variables
+from granular_response_paper.tasks import computed
+
+OUTPUT = Path("survey") / "data" / "robustness.nc"
+
+#: The slab of Sec. V: k_T/k_N = 0.8, smooth walls.
+BASE = UNIT_LOAD.updated({"contact.stiffness_ratio": 0.8, "wall.friction": 0.0})
+
+#: Of Fig. 6; forces through which paths go, and the last one by friction.
+FRICTIONS = (0.0, 0.05, 0.1, 0.2, 0.5, 1.0)
+FORCES = (
+    *(0.1, 0.2, 0.3, 0.5, 0.6, 0.7, 0.8, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 11.0),
+    *(12.0, 15.0, 18.0, 20.0, 22.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0, 85.0, 90.0),
+)
+LAST = {0.0: 10.0, 0.05: 20.0, 0.1: 30.0, 0.2: 50.0, 0.5: 50.0, 1.0: 90.0}
+
+#: Size of displacements of copies: far below any length of the problem, far above rounding. And of the kicks of the
+#: control, which a stable symmetric branch forgets.
+DISPLACEMENT, KICK = 1e-9, 1e-4
+
+#: Copies at each force beyond the loss of symmetry, and of each load path, which is followed through all its events.
+COPIES, PATH_COPIES = 10, 3
+
+#: Asymmetry of the response from which symmetry is lost, as in Fig. 16; forces between which it is lost.
+ASYMMETRY, BETWEEN = 0.2, (70.0, 110.0)
+
+#: Between which forces events are looked for by dynamics from rest, by friction, and to which width.
+SOUGHT = {
+    0.2: {"first_opening": (2.0, 8.0), "linear_range": (4.0, 16.0), "crossover": (14.0, 26.0), "third_peak": (26.0, 46.0)},
+    1.0: {"first_opening": (3.0, 9.0), "linear_range": (4.0, 16.0)},
+}
+WIDTH = 0.2
+
+#: Durations of the load ramp, in sqrt(R/g): the text names none.
+RAMPS = (10.0, 20.0, 100.0)
+
+#: Forces beyond the loss of symmetry at which copies are made, and those of the control.
+BEYOND, CONTROL = (92.0, 93.0, 94.0, 95.0, 96.0, 100.0), (95.0, 150.0, 300.0)
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One change to the paper's slab or protocol."""
+
+    kind: str
+    name: str
+    changes: Mapping[str, Any]
+    seed: int = -1  #: of the displacement of a copy; -1 for none
+
+
+def variants() -> Iterator[Variant]:
+    """The paper's own first."""
+    yield Variant("reference", "as in the paper", {})
+    yield Variant("protocol", "dashpots halved", {"contact.damping_ratio": 0.25})
+    yield Variant("protocol", "dashpots doubled", {"contact.damping_ratio": 1.0})
+    yield Variant("protocol", "velocity Verlet", {"protocol.integrator": "verlet"})
+    yield Variant("protocol", "half of the time step", {"protocol.time_step": 2.5e-4})
+    yield Variant("protocol", "a quarter of the time step", {"protocol.time_step": 1.25e-4})
+    for seed in range(1, PATH_COPIES + 1):
+        yield Variant("protocol", f"displaced copy {seed}", {}, seed)
+    for disks in (121, 241):
+        yield Variant("width", f"{disks} disks a row", {"packing.disks_per_row": disks})
+    for stiffness in (1e4,):
+        step = 5e-4 * np.sqrt(3000.0 / stiffness)  # as far below its stability limit as the paper's
+        name = f"k_N = {stiffness:g} mg/R"
+        yield Variant("stiffness", name, {"contact.normal_stiffness": stiffness, "protocol.time_step": float(step)})
+
+
+@record
+class Found(slab.Event):
+    """An event of one variant."""
+
+    kind: str = column("what is changed: reference, protocol, width or stiffness")
+    variant: str = column("the change")
+    loading: str = column("path: along a load path; dynamics: from rest to each force")
+    ramp_time: float = column("duration of the load ramp in sqrt(radius/g); nan along a path")
+
+
+def load_path(scene: Scene, seed: int = -1, size: float = DISPLACEMENT) -> studies.LoadPath:
+    """Of the packing, or of a copy displaced at random by up to ``size`` along each axis."""
+    if seed < 0:
+        return studies.LoadPath.of(scene)
+    packing = SlabPacking.model_validate(scene.packing.model_dump()).build()
+    shift: FloatArray = np.random.default_rng(seed).uniform(-size, size, packing.position.shape)
+    return studies.LoadPath.of(scene, packing=replace(packing, position=packing.position + shift))
+
+
+def along_path(friction: float, variant: Variant) -> list[Found]:
+    """All events of the slab at one friction along a load path."""
+    path = load_path(BASE.updated({"contact.friction": friction, **variant.changes}), variant.seed)
+    forces = [force for force in FORCES if force <= LAST[friction]]
+    states, measures = path.through(forces), studies.Measures(path)
+    asked = studies.happenings(measures, states[0], ASYMMETRY)
+    asked["first_opening_anywhere"] = studies.first_opening(measures, anywhere=True)
+    return [_found(event, variant, "path") for event in slab.locate(path, forces, asked)]
+
+
+def _found(event: slab.Event, variant: Variant, loading: str, ramp: float = float("nan")) -> Found:
+    return Found(event.name, event.friction, event.low, event.high, event.definition, variant.kind, variant.name, loading, ramp)
+
+
+def from_rest(friction: float, variant: Variant, ramp: float, sought: Mapping[str, tuple[float, float]]) -> list[Found]:
+    """Events by dynamics from rest to each force, between the forces at which each is ``sought``."""
+    dynamics = {"protocol.method": "dynamics", "protocol.ramp_time": ramp}
+    path = load_path(BASE.updated({"contact.friction": friction, **dynamics, **variant.changes}), variant.seed)
+    measures = studies.Measures(path)
+    asked = studies.happenings(measures, path.at(0.5), ASYMMETRY)
+    found = []
+    for name, (low, high) in sought.items():
+        what, width = asked[name], 1.0 if name.startswith("loss") else WIDTH
+        ends = _bracket(lambda force, what=what: bool(what.happened(path.at(force))), low, high, width)
+        event = slab.Event(name, friction, *ends, f"{what.definition}, from rest to each force")
+        found.append(_found(event, variant, "dynamics", ramp))
+    return found
+
+
+def _bracket(happened: Callable[[float], bool], low: float, high: float, width: float) -> tuple[float, float]:
+    """Between two forces; (0, low) if it has happened at the lower one, (high, nan) if not at the upper one."""
+    if happened(low):
+        return 0.0, low
+    if not happened(high):
+        return high, float("nan")
+    while high - low > width:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if happened(middle) else (middle, high)
+    return low, high
+
+
+def copy_under(friction: float, force: float, seed: int, size: float = DISPLACEMENT) -> xr.Dataset:
+    """What is measured on a displaced copy by the paper's dynamics from rest to one force."""
+    changes = {"contact.friction": friction, "protocol.method": "dynamics", "protocol.ramp_time": 20.0}
+    path = load_path(BASE.updated(changes), seed, size)
+    return slab.measured(studies.Measures(path), [path.at(force)])
+
+
+def _stacked(done: Mapping[tuple[float, float, int], xr.Dataset]) -> xr.Dataset:
+    """Copies along ``run`` with what they are."""
+    columns = zip(*done, strict=True)
+    names = ("coefficient of friction", f"applied force {WEIGHTS}", "seed of the displacement; -1 for none")
+    given = {
+        name: variable("run", list(values), text)
+        for name, values, text in zip(("friction", "force", "seed"), columns, names, strict=True)
+    }
+    return slab.measured_along("run", list(done.values())).assign(given)
+
+
+def paths(frictions: Sequence[float]) -> dict[str, xr.Dataset]:
+    """Dataset ``events`` (event): all variants along load paths, of these frictions."""
+    tasks = {
+        (mu, k): partial(along_path, mu, one)
+        for mu in frictions
+        for k, one in enumerate(variants())
+        # without friction the equilibrium is one minimum; the widest slab takes ten times as long as others
+        if not (mu == 0.0 and one.seed > 0) and not (mu in (0.05, 0.1, 0.5) and "241" in one.name)
+    }
+    done = computed(tasks, "load paths", work=lambda place: place[1])
+    return {"events": table([event for one in done.values() for event in one], "event", kind=Found)}
+
+
+def dynamics() -> dict[str, xr.Dataset]:
+    """Dataset ``events_from_rest`` (event): ramps of the load, and the loss of symmetry with every variant."""
+    tasks: dict[Any, Any] = {}
+    for ramp in RAMPS:
+        variant = Variant("protocol", f"load ramp of {ramp:g} sqrt(R/g)", {})
+        tasks |= {(mu, ramp): partial(from_rest, mu, variant, ramp, sought) for mu, sought in SOUGHT.items()}
+        tasks["loss", ramp] = partial(from_rest, 1.0, variant, ramp, {"loss_of_symmetry_path": BETWEEN})
+    for k, variant in enumerate(variants()):
+        if variant.kind == "protocol" or variant.name == "121 disks a row":
+            tasks["loss", -k] = partial(from_rest, 1.0, variant, 20.0, {"loss_of_symmetry_path": BETWEEN})
+    done = computed(tasks, "events from rest")
+    found = table([event for one in done.values() for event in one], "event", kind=Found)
+    found["name"] = found["name"].copy(data=np.char.replace(found["name"].values.astype(str), "_path", ""))
+    return {"events_from_rest": found}
+
+
+def copies() -> dict[str, xr.Dataset]:
+    """Datasets ``copies`` (run) beyond the loss of symmetry at friction 1, and ``control`` (run) at frictions 1 and 10."""
+    done = computed(
+        {(1.0, force, seed): partial(copy_under, 1.0, force, seed) for force in BEYOND for seed in range(1, COPIES + 1)},
+        "displaced copies",
+    )
+    control = computed(
+        {
+            (mu, force, seed): partial(copy_under, mu, force, seed, KICK)
+            for mu in (1.0, 10.0)
+            for force in CONTROL
+            for seed in (-1, 1, 2, 3)
+        },
+        "control without sliding",
+    )
+    kick = variables(kick=("", KICK, f"largest displacement of the packing before it falls {RADII}"))
+    shift = variables(displacement=("", DISPLACEMENT, f"largest displacement of the packing before it falls {RADII}"))
+    return {"copies": _stacked(done).assign(shift), "control": _stacked(control).assign(kick)}
+
+
+#: Parts that are made one by one, each in a few minutes: the first two give the same dataset.
+PARTS: dict[str, Callable[[], dict[str, xr.Dataset]]] = {
+    "paths": partial(paths, (0.0, 0.2, 1.0)),
+    "paths_between": partial(paths, (0.05, 0.1, 0.5)),
+    "dynamics": dynamics,
+    "copies": copies,
+}
+
+
+def main(names: Sequence[str], output: Path = OUTPUT) -> None:
+    """Make the parts ``names``, all if none is named, and keep the others of the file as they are."""
+    datasets = store.read(output) if output.exists() else {}
+    for name in names or PARTS:
+        made = PARTS[name]()
+        if name.startswith("paths") and "events" in datasets:
+            found = made["events"]
+            others = ~np.isin(datasets["events"]["friction"].values, found["friction"].values)
+            made = {"events": xr.concat([datasets["events"].isel(event=others), found], "event")}
+        datasets |= labelled(made, BASE)
+    store.write(output, datasets, {"group": "robustness", "package_version": __version__, "parameters": BASE.to_yaml()})
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
