@@ -192,21 +192,24 @@ def _check(path: Path, group: str, dataset: xr.Dataset) -> None:
 
 
 def _made(path: Path, groups: Mapping[str, xr.Dataset]) -> bytes:
-    """The file as bytes."""
-    try:
-        with atomic.scratch() as folder:
-            made = folder / "made.nc"
-            try:
-                with netCDF4.Dataset(made, mode="w", format="NETCDF4") as file:
-                    _fill(file, path, groups)
-                return made.read_bytes()
-            except RuntimeError:
-                os.truncate(made, 0)  # HDF5 keeps it open, so its space would not be given back
-                raise
-    except StoreError:
-        raise
-    except (OSError, RuntimeError) as error:
-        raise _error(path, f"cannot be written: {error}; is there space in {tempfile.gettempdir()}?") from error
+    """The file as bytes, made in the folder for temporary files, or beside ``path`` where that has no place for it."""
+    failed: Exception | None = None
+    for beside in (None, path.parent):
+        try:
+            with atomic.scratch(beside) as folder:
+                made = folder / "made.nc"
+                try:
+                    with netCDF4.Dataset(made, mode="w", format="NETCDF4") as file:
+                        _fill(file, path, groups)
+                    return made.read_bytes()
+                except RuntimeError:
+                    os.truncate(made, 0)  # HDF5 keeps it open, so its space would not be given back
+                    raise
+        except StoreError:
+            raise
+        except (OSError, RuntimeError) as error:
+            failed = failed or error
+    raise _error(path, f"cannot be written: {failed}; is there space in {tempfile.gettempdir()}?") from failed
 
 
 def _fill(file: netCDF4.Dataset, path: Path, groups: Mapping[str, xr.Dataset]) -> None:
@@ -244,9 +247,8 @@ def _bytes(path: str | os.PathLike[str]) -> tuple[bytes, bool]:
     if not data:
         raise _error(path, "is empty")
     if not _SIGNATURE.startswith(data[: len(_SIGNATURE)]):
-        raise _error(
-            path, f"is not a netCDF-4 file, it {said}" if (said := foreign(data)) else "is not a netCDF-4 file"
-        )
+        said = foreign(data)
+        raise _error(path, f"is not a netCDF-4 file{', it ' * bool(said)}{said}")
     start = len(data) - len(_SEAL) - hashlib.sha256().digest_size
     has_seal = start > 0 and data[start : start + len(_SEAL)] == _SEAL
     # before the HDF5 library sees damaged bytes, which can end the process

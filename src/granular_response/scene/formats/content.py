@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import re
-
+#: Bytes of a file by which it is known.
+_HEAD = 4096
 #: Beginnings of files that hold no table of disks as they are.
 _BEGINNINGS = {
     b"\x1f\x8b": "is compressed (gzip), must be unpacked first",
@@ -33,11 +33,6 @@ _BEGINNINGS = {
 _GSD = (0x65DF65DF65DF65DF).to_bytes(8, "little")
 #: Place and mark within the first block of an archive.
 _TAR = (257, b"ustar")
-_YAML_DUMP = re.compile(rb"\A(?:---\s*\n)?(?:[^\n]*\n){0,3}creator:\s*LAMMPS|\A---\s*\n(?:time|timestep|natoms):")
-_DATA = re.compile(rb"\A[^\n]*\n(?:\s*(?:#[^\n]*)?\n)*\s*\d+\s+atoms\b")
-_XYZ = re.compile(rb"\A\s*\d+\s*\n[^\n]*(?:Lattice|Properties)=")
-_SPHERES = re.compile(rb"\A(?:#[^\n]*\n|\s*\n)*(?:\s*[-+.\deE]+){4,}\s*(?:\n|\Z)")
-_HEADER = re.compile(rb"\A(?:#[^\n]*\n|\s*\n)*\s*\"?[A-Za-z][^\n]*[,;][^\n]*[,;][^\n]*")
 
 
 def foreign(data: bytes) -> str:
@@ -49,23 +44,43 @@ def foreign(data: bytes) -> str:
     at, mark = _TAR
     if data[at : at + len(mark)] == mark:
         return "is a tar archive, must be unpacked first"
-    head = start[:4096].replace(b"\r\n", b"\n")
-    if _YAML_DUMP.search(head):
+    first, second, *_ = [*_lines(start), "", ""]
+    if any(line.startswith("creator: LAMMPS") for line in _lines(start)) or (
+        first == "---" and second.partition(":")[0] in ("time", "timestep", "natoms")
+    ):
         return "is a LAMMPS dump of style yaml, must be one of style custom"
-    if _XYZ.search(head):
+    if first.isdecimal() and ("Lattice=" in second or "Properties=" in second):
         return "is a file of extended XYZ, which is written and not read (.dump, .data and .csv are)"
     return ""
 
 
+def _lines(data: bytes) -> list[str]:
+    """The first lines of a text, without those that are empty."""
+    return [line for one in data[:_HEAD].decode("utf-8", "replace").splitlines() if (line := one.strip())]
+
+
 def recognised(data: bytes) -> str:
     """The format of ``formats.SUFFIXES`` that the content has, nothing where it cannot be told."""
-    start = data[:4096].removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")
-    if start.startswith(_GSD):
+    if data.startswith(_GSD):
         return "gsd"
-    if start.startswith(b"ITEM:"):
+    lines = _lines(data.removeprefix(b"\xef\xbb\xbf"))
+    rows = [line for line in lines if not line.startswith("#")]
+    if not rows:
+        return ""
+    words = rows[0].split()
+    if rows[0].startswith("ITEM:"):
         return "lammps-dump"
-    if _DATA.search(start):
+    if any(line.split()[1:] == ["atoms"] for line in lines[1:20]):
         return "lammps-data"
-    if start.startswith(b"#format") or _SPHERES.search(start):
+    if lines[0].startswith("#format") or (len(words) >= 4 and all(map(_is_number, words))):
         return "yade"
-    return "csv" if _HEADER.search(start) else ""
+    columns = max(rows[0].count(","), rows[0].count(";"))
+    return "csv" if columns >= 2 and rows[0].lstrip('"')[0].isalpha() else ""
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
