@@ -1,4 +1,4 @@
-"""DVC with a lock that is replaced in one step: ``python -m granular_response_paper.pipeline.dvc repro``.
+"""DVC with a lock that is replaced in one step, and with children that end with it.
 
 Around every stage DVC reads ``dvc.lock``, empties it and takes a third of a second to write it. A run that is killed
 meanwhile would lose the record of all stages. DVC also reads it in a way that keeps comments, of which a lock has none;
@@ -8,8 +8,10 @@ without that each stage costs half a second less, and the text is the same.
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -26,6 +28,32 @@ def modified(path: str | os.PathLike[str], fs: Any = None) -> Iterator[dict[str,
     content = parse_yaml(file.read_text(encoding="utf-8"), path) if file.exists() else {}
     yield content
     atomic.write_bytes(file, dumps_yaml(content).encode())
+
+
+#: Ends its process group when the process that holds its input is gone, however that ended.
+_GUARD = ["sh", "-c", "read -r nothing; kill -TERM 0"]
+
+
+@contextmanager
+def running(arguments: Sequence[str], folder: Path) -> Iterator[subprocess.Popen[str]]:
+    """DVC in a folder, with its output. It and all that it starts end with this process."""
+    command = [sys.executable, "-m", __spec__.name, *arguments]
+    environment = os.environ | {"PYTHONUNBUFFERED": "1"}
+    nothing, pipe = subprocess.DEVNULL, subprocess.PIPE
+    with (
+        subprocess.Popen(_GUARD, stdin=pipe, process_group=0) as guard,
+        subprocess.Popen(
+            command, cwd=folder, env=environment, stdin=nothing, stdout=pipe, text=True, process_group=guard.pid
+        ) as run,
+    ):
+        try:
+            yield run
+        except BaseException as error:  # an interruption by the terminal reaches this process alone
+            os.killpg(guard.pid, signal.SIGINT if isinstance(error, KeyboardInterrupt) else signal.SIGTERM)
+            raise
+        finally:
+            run.wait()
+            guard.kill()
 
 
 if __name__ == "__main__":
