@@ -39,7 +39,10 @@ def test_a_lifted_disk_stays_below_where_it_is_lifted(scene):
     assert abs(moved[0][1, 0]) < 1e-3 and moved[0][1, 1] == pytest.approx(0.05)
     last = found[0]
     assert last.certificate.stable and 1 in last.certificate.undetermined and len(last.events) < 20
-    assert "not determined" in str(last) and last.rest.certificate.undetermined == ()
+    assert "not determined" in str(last)
+    # between smooth walls two disks that stick to each other turn as gears
+    gears = scene.contact.friction > 0.0 and scene.resolved_wall.friction == 0.0 and not scene.contact.rolling_friction
+    assert last.rest.certificate.undetermined == ((0, 1) if gears else ())
     stored = gr.Result(dataset=last.to_dataset())
     assert stored.certificates == last.certificates
     assert stored.to_dataset()["undetermined"].values[-1, 1] == 1
