@@ -50,7 +50,7 @@ def test_a_smooth_pyramid_presses_its_walls(gap, force):
 
 
 def pyramid(friction: float, floor: float) -> gr.Result:
-    """Three disks on a rough floor, a tenth of a radius from the walls; the two lower ones are a hair apart and do not press each other."""
+    """Three disks on a rough floor, a tenth of a radius from the walls; the lower ones do not press each other."""
     a = math.asin(1.001 / 2.0)
     x, z = [1.1, 3.102, 2.101], [1.0, 1.0, 1.0 + 2.0 * math.cos(a)]
     return solved(x, z, 4.202, contact={"friction": friction}, wall={"friction": floor}, stiffness=1e4)
@@ -75,7 +75,7 @@ def test_thresholds_of_a_pyramid_without_walls(which, part, stands):
         assert at_floor[1] == pytest.approx(1.5, rel=1e-6)
 
 
-@pytest.mark.parametrize("degrees", [20.0, 35.0, 50.0])
+@pytest.mark.parametrize("degrees", [50.0, 60.0])
 def test_the_push_that_lifts_a_disk_over_a_curb(degrees):
     """A disk on the floor against a smaller one fast in the corner: it lifts off at P = tan(b), b between curb and
     vertical, since P acts through its centre: moments about the point of the curb, P cos(b) = sin(b).
@@ -89,7 +89,8 @@ def test_the_push_that_lifts_a_disk_over_a_curb(degrees):
     scene = gr.Scene.from_arrays(
         [small, x], [small, 1.0], [small, 1.0], width=40.0,
         scene={
-            "contact": {"friction": 0.0, "normal_stiffness": STIFF}, "protocol": {"time_step": "auto", "method": "path"},
+            "contact": {"friction": 0.0, "normal_stiffness": STIFF},
+            "protocol": {"time_step": "auto", "method": "path"},
             "loads": [{"disk": 1, "force": [-1.0, 0.0]}],
         },
     )  # fmt: skip
