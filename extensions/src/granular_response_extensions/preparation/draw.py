@@ -33,6 +33,7 @@ WAYS = {
 #: Of those whose dashpots are weaker or stronger than those of the first way.
 WEAKER, STRONGER = "P", "X"
 
+
 def draw(datasets: Datasets) -> dict[str, Figure]:
     return {"preparation": _onsets(datasets["events"])}
 
