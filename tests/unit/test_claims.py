@@ -74,7 +74,7 @@ def test_every_claim_has_its_texts_and_stands_at_its_section():
         assert claim.paper.endswith(".") and 3 <= len(claim.short.split()) <= 15, claim.id
         assert claim.here.endswith(".") or claim.id in NEVER, claim.id
         assert claim.place.startswith("beyond") == (claim.part == "extension")
-        assert claim.row in ("statement", "check", "derivation") and claim.finds in MEANINGS
+        assert claim.row in ("statement", "check", "derivation") and claim.finds in (*MEANINGS, "any")
     assert [claim.id for claim in EVERY if claim.part == "ordered"][0] == "A1"
 
 

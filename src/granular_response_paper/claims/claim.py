@@ -99,7 +99,7 @@ class Claim:
     """A sentence of the paper, or of whoever ``source`` says, and the function that measures it.
 
     ``here`` is our sentence, with {0}, {1} for numbers of the primary case, {case|1} for those of another one and {0:4} for
-    four digits. It is written for the verdict ``finds``; with any other one only the numbers are said. ``modal`` marks a
+    four digits. It is written for the verdict ``finds`` or for any; else only the numbers are said. ``modal`` marks a
     sentence that says what may be.
     """
 
@@ -118,7 +118,7 @@ class Claim:
     row: Literal["statement", "check", "derivation"] = "statement"
     modal: bool = False
     disorder: bool = False
-    finds: Kind = "supported"
+    finds: Kind | Literal["any"] = "supported"
     remark: str = ""
 
     @property
@@ -354,7 +354,7 @@ class Verdict:
             return text(test.found, test.ask.unit, int(field["digits"] or 0))
 
         with suppress(KeyError, IndexError):
-            if self.claim.finds == self.verdict:
+            if self.claim.finds in ("any", self.verdict):
                 return _NUMBER.sub(number, self.claim.here)
         found = "; ".join(f"{test.ask.what}: {text(test.found, test.ask.unit)}" for test in self.primary)
         return f"{found[0].upper()}{found[1:]}."
