@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from claims_data import dataset, everything, parameters, pile_study
+from claims_data import PILE, dataset, everything, parameters, pile_study
 from places import ROOT
 from refusals import refuses
 from scipy.stats import binom
@@ -560,8 +560,7 @@ def test_labels_are_found_exactly_and_together():
 
 
 def test_the_stored_table_is_the_one_file_of_verdicts(tmp_path):
-    given = "scene: {packing: {layers: 11}, contact: {friction: 0.94, stiffness_ratio: 0.5}, wall: {friction: 0.35}}"
-    store.write(tmp_path / "data" / "pile_dip.nc", pile_study(), {"parameters": given})
+    store.write(tmp_path / "data" / "pile_dip.nc", pile_study(), PILE)
     found = table.write(tmp_path / "claims.json", tmp_path / "data", tmp_path / "none.nc")
     stored = json.loads((tmp_path / "claims.json").read_text())
     assert stored == found == table.read(tmp_path / "claims.json")

@@ -74,7 +74,8 @@ def collect(folder: str | os.PathLike[str], others: str | os.PathLike[str], coll
     """
     paths = {path.stem: path for path in _paths(folder, collection) if path.exists()}
     groups = {name: store.read(path) for name, path in paths.items()}
-    parameters = {name: flat(yaml.read(store.read_attributes(path)["parameters"])) for name, path in paths.items()}
+    given = {name: store.read_attributes(path).get("parameters", "") for name, path in paths.items()}
+    parameters = {name: flat(yaml.read(one) or {}) for name, one in given.items()}
     for name, path in ((PREPARATION, Path(others)), (ROBUSTNESS, MOVES)):
         if path.exists():
             groups[name] = groups.get(name, {}) | store.read(path)
