@@ -20,7 +20,11 @@ def stored():
 
 def bracket(stored, name, variant, friction):
     events = stored["events"]
-    there = (events["name"].values == name) & (events["variant"].values == variant) & (events["friction"].values == friction)
+    there = (
+        (events["name"].values == name)
+        & (events["variant"].values == variant)
+        & (events["friction"].values == friction)
+    )
     return events["low"].values[there].item(), events["high"].values[there].item()
 
 

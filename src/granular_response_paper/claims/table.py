@@ -67,8 +67,8 @@ MOVES = Path("survey") / "data" / f"{ROBUSTNESS}.nc"
 
 
 def collect(folder: str | os.PathLike[str], others: str | os.PathLike[str], collection: Collection = PAPER) -> Data:
-    """The stored datasets that claims read with the parameters of each, the summary of ``others``, preparations that are
-    not the paper's, and the study ``robustness``.
+    """The stored datasets that claims read with the parameters of each, the summary of ``others``, preparations that
+    are not the paper's, and the study ``robustness``.
 
     A file that is not there is left out; raises StoreError if one cannot be read.
     """
@@ -231,7 +231,7 @@ def quoted(found: dict[str, Any]) -> str:
     whole = {name: sum(one["holds"] == one["of"] for one in found_) for name, found_ in tried.items()}
     lines.append(
         f"{starred} of these verdicts change if the threshold of a qualitative term is halved or doubled. With gravity "
-        f"applied in other ways {whole['gravity']} of {len(tried['gravity'])} statements keep holding in every way, from "
+        f"applied in other ways {whole['gravity']} of {len(tried['gravity'])} statements hold in every way, from "
         f"other initial lattices {whole['lattice']} of {len(tried['lattice'])}. Not counted: {rest}."
     )
     return "\n".join(lines)

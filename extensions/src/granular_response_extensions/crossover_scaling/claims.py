@@ -21,7 +21,9 @@ SERIES = {
 
 
 def _exponent(data: Data, series: str, event: str) -> Quantity:
-    return Quantity.over(at(data.get("crossover_scaling", "powers"), series=series, event=event)["exponent"].values.tolist())
+    return Quantity.over(
+        at(data.get("crossover_scaling", "powers"), series=series, event=event)["exponent"].values.tolist()
+    )
 
 
 @claim(

@@ -1,4 +1,6 @@
-"""Claims B19 to B26, beyond the paper: the experiments that it reviews, on packings like theirs (Secs. II.B and V.D)."""
+"""Claims B19 to B26, beyond the paper: the experiments that it reviews, on packings like theirs (Secs. II.B and
+V.D).
+"""
 
 from __future__ import annotations
 
@@ -48,7 +50,8 @@ def holds(data: Data) -> Numbers:
 
 
 @claim(
-    "B20", "beyond the paper, II.B", Ask("direction of the largest force beside the vertical, degrees", within("nearly", 60.0)),
+    "B20", "beyond the paper, II.B",
+    Ask("direction of the largest force beside the vertical, degrees", within("nearly", 60.0)),
     Ask("force at 60 degrees per that at 75", higher_by("marked")), primary="direction", figures=[15]
 )  # fmt: skip
 def chains(data: Data) -> Numbers:
@@ -83,7 +86,9 @@ def vertical(data: Data) -> Numbers:
 def _excess(data: Data, packing: str, force: float) -> Quantity:
     found = _mean(data, "contrast", packing, force)
     needs(found.value is not None, "means holds no contrast")
-    return Quantity(float(found.value or 0.0) - 1.0, found.low - 1.0, found.high - 1.0, "confidence", found.method, found.samples)
+    return Quantity(
+        float(found.value or 0.0) - 1.0, found.low - 1.0, found.high - 1.0, "confidence", found.method, found.samples
+    )
 
 
 @claim(
@@ -107,7 +112,8 @@ def fading(data: Data) -> Numbers:
 
 @claim(
     "B23", "beyond the paper, II.B", Ask("exponent of the width, half maximum", about(1.0)),
-    Ask("exponent of the width, half of the force", about(1.0)), Ask("dip at x = 0 per largest", at_most("few per cent"), "%")
+    Ask("exponent of the width, half of the force", about(1.0)),
+    Ask("dip at x = 0 per largest", at_most("few per cent"), "%")
 )  # fmt: skip
 def widens(data: Data) -> Numbers:
     """As B22.

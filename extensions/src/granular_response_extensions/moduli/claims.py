@@ -97,7 +97,8 @@ def incrementally_elastic(data: Data) -> Numbers:
     Short: The behavior can possibly be modeled as incrementally elastic
     Here: At friction 0.2, up to the crossover and with moduli averaged over two radii, the incremental response
     differs from that of an elastic slab with the measured incremental moduli by {0}.
-    Remark: Ranges over the loads to which moduli are fitted. Largest difference of all forces. Two radii is the width of Fig. 14
+    Remark: Ranges over the loads to which moduli are fitted. Largest difference of all forces. Two radii is the
+    width of Fig. 14
     """
     for name, slab in _slabs(data).items():
         crossover = Quantity.bracket(*slab["crossover"].values)
@@ -106,7 +107,10 @@ def incrementally_elastic(data: Data) -> Numbers:
         for part, inside in parts.items():
             for k, width in enumerate(slab["width"].values.tolist()) if inside.any() else ():
                 largest = slab["difference"].isel(width=k).values[inside].max(axis=0).ravel()
-                yield f"{name}, {part}, averages over {width:g} R", Quantity(None, float(largest.min()), float(largest.max()), "range")
+                yield (
+                    f"{name}, {part}, averages over {width:g} R",
+                    Quantity(None, float(largest.min()), float(largest.max()), "range"),
+                )
 
 
 @claim(

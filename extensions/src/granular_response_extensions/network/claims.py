@@ -22,7 +22,8 @@ def _mean(data: Data, name: str, state: str, delta: float, friction: float) -> Q
 
 
 @claim(
-    "B11", "beyond the paper, VI", Ask("coefficient of variation of the excess of normal forces", within("nearly", 1.0)),
+    "B11", "beyond the paper, VI",
+    Ask("coefficient of variation of the excess of normal forces", within("nearly", 1.0)),
     primary="rest, δ = 0.01, friction 0.2", source="literature", finds="not supported"
 )  # fmt: skip
 def exponential(data: Data) -> Numbers:
@@ -41,7 +42,8 @@ def exponential(data: Data) -> Numbers:
 
 @claim(
     "B12", "beyond the paper, VI", Ask("contacts per disk, friction 0", within("nearly", 4.0)),
-    Ask("contacts per disk, friction 1", within("nearly", 3.0)), primary="δ = 0.01", source="literature", finds="not supported"
+    Ask("contacts per disk, friction 1", within("nearly", 3.0)),
+    primary="δ = 0.01", source="literature", finds="not supported"
 )  # fmt: skip
 def isostatic(data: Data) -> Numbers:
     """Packings have the isostatic 4 contacts a disk without friction, and nearly the isostatic 3 at large friction.

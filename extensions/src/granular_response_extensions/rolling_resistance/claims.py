@@ -25,14 +25,16 @@ def _held(data: Data, rolling: int) -> Iterator[tuple[str, xr.Dataset]]:
 
 @claim(
     "B14", "beyond the paper, V.F", Ask("least friction that holds the core", at_least(0.94)),
-    Ask("disks that leave the pile", at_least(1.0), "count"), primary="every disk, 11 layers, gravity at once", figures=[17]
+    Ask("disks that leave the pile", at_least(1.0), "count"),
+    primary="every disk, 11 layers, gravity at once", figures=[17]
 )  # fmt: skip
 def without_resistance(data: Data) -> Numbers:
     """Therefore, the edges of the pile have to be supported by side walls (the construction of stable piles on an
     uncorrugated floor requires the introduction of rolling friction, or rolling resistance [87]).
 
     Short: Without rolling resistance a pile needs side walls
-    Here: The core of a pile of 11 layers holds from friction {the core, 11 layers, gravity at once|0} on; {0} disks at its toe roll away.
+    Here: The core of a pile of 11 layers holds from friction {the core, 11 layers, gravity at once|0} on; {0} disks
+    at its toe roll away.
     Remark: Asked for more than 0.94, the friction of the paper's pile. The toe disks roll away at constant speed and
     are stopped by hand. The pile is placed, not built disk by disk
     """
@@ -43,7 +45,8 @@ def without_resistance(data: Data) -> Numbers:
 
 
 @claim(
-    "B15", "beyond the paper, V.F", Ask("dip of the floor force under the apex per largest force", at_most("visible"), "%"),
+    "B15", "beyond the paper, V.F",
+    Ask("dip of the floor force under the apex per largest force", at_most("visible"), "%"),
     primary="friction of Fig. 17, 11 layers", figures=[17]
 )  # fmt: skip
 def no_dip(data: Data) -> Numbers:
@@ -81,11 +84,15 @@ def small_load(data: Data) -> Numbers:
     needs(others, "slabs holds one rolling friction, there is nothing to compare")
     for mu in slabs["friction"].values:
         least = without.sel(friction=mu)
-        yield f"friction {mu:g}", Quantity.over(float(abs(one.sel(friction=mu) - least).max() / least.max()) for one in others)
+        yield (
+            f"friction {mu:g}",
+            Quantity.over(float(abs(one.sel(friction=mu) - least).max() / least.max()) for one in others),
+        )
 
 
 @claim(
-    "B17", "beyond the paper, VIII", Ask("unexplained fraction of the squares of the couple stress", at_most("quite well"), "%"),
+    "B17", "beyond the paper, VIII",
+    Ask("unexplained fraction of the squares of the couple stress", at_most("quite well"), "%"),
     Ask("Cosserat length in radii", at_least(1.0)), primary="friction 0.2, 0.5 mg", modal=True, finds="not seen"
 )  # fmt: skip
 def cosserat(data: Data) -> Numbers:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 import xarray as xr
@@ -150,8 +150,8 @@ def openings(data: Data) -> Numbers:
     Remark: Figs. 4, 8 and 9 show the central third. Near the upper corners contacts are hardly pressed and open earlier
     """
     events = [partial(_event, "first_opening", friction=mu) for mu in FRICTIONS]
-    own = [data.protocol(lambda one, mu=mu: one.event("first_opening", mu), "first_opening" if mu else "", mu) for mu in FRICTIONS]
-    yield "central third", *own
+    from_rest = ["", "first_opening", "first_opening"]
+    yield "central third", *map(data.protocol, events, from_rest, FRICTIONS)
     yield "any contact", *(data.event("first_opening_anywhere", mu) for mu in FRICTIONS)
     yield "rows of 60", *(data.event("first_opening", mu, LITERAL) for mu in FRICTIONS)
     yield "any contact, rows of 60", *(data.event("first_opening_anywhere", mu, LITERAL) for mu in FRICTIONS)
@@ -269,7 +269,7 @@ def rarer(data: Data) -> Numbers:
     number = dict(zip(slides["friction"].values.tolist(), slides.values.tolist(), strict=True))
     frictions = [mu for mu in number if 0.0 < mu <= 1.0]
     yield "friction 1 per 0.2", Quantity.exact(number[1.0]).per(Quantity.exact(number[0.2]))
-    for before, after in zip(frictions, frictions[1:], strict=False):
+    for before, after in pairwise(frictions):
         yield f"friction {after:g} per {before:g}", Quantity.exact(number[after]).per(Quantity.exact(number[before]))
 
 
@@ -472,8 +472,8 @@ def by_sliding(data: Data) -> Numbers:
         one, ten = (runs.isel(run=there & np.isclose(runs["friction"].values, mu)) for mu in (1.0, 10.0))
         needs(one.sizes["run"] and ten.sizes["run"], f"control holds no runs at {force:g} mg")
         needs(not ten["sliding_contacts"].values.any(), "control holds sliding contacts at friction 10")
-        opened = [float(runs_["opened_contacts"].values.min()) for runs_ in (ten, one)]
-        opened = Quantity.exact(opened[0]).per(Quantity.exact(float(one["opened_contacts"].values.max())))
+        fewest, most = ten["opened_contacts"].values.min(), one["opened_contacts"].values.max()
+        opened = Quantity.exact(fewest).per(Quantity.exact(most))
         yield f"{force:g} mg", ten["asymmetry"].values.max(), one["asymmetry"].values.min(), opened
 
 
@@ -576,7 +576,10 @@ def crossover_rises(data: Data) -> Numbers:
     event = partial(_event, "crossover")
     ratio = partial(_per, event, 0.2, 0.0)
     yield "friction 0.2 per 0", data.protocol(lambda one: _curve_ratio(one, 0.2, 0.0))
-    yield "smallest step up to friction 0.2", data.protocol(lambda one: rise(_two_peaks(one, mu) for mu in (0.0, 0.05, 0.1, 0.2)))
+    yield (
+        "smallest step up to friction 0.2",
+        data.protocol(lambda one: rise(_two_peaks(one, mu) for mu in (0.0, 0.05, 0.1, 0.2))),
+    )
     yield from data.elsewhere(ratio)
 
 
@@ -694,8 +697,8 @@ def rough_walls(data: Data) -> Numbers:
     shorten it.
     Remark: One friction and one tolerance. The part of the force that the walls support is not looked at
     """
-    labels = {"name": "linear_range", "friction": 1.0, "wall_friction": 1.0, "gravity": "at-once"}
-    rough = at(data.get("preparation", "events"), **labels)
+    events = data.get("preparation", "events")
+    rough = at(events, name="linear_range", friction=1.0, wall_friction=1.0, gravity="at-once")
     yield Quantity.bracket(float(rough["low"]), float(rough["high"])).per(data.event("linear_range", 1.0))
 
 
@@ -720,7 +723,7 @@ def _dashpots(data: Data, name: str, friction: float) -> Quantity:
     own = data.event(name, friction)
     changed = [replace(data, variant=f"dashpots {how}").event(name, friction) for how in ("halved", "doubled")]
     needs(own.happens and all(one.happens for one in changed), f"{name} does not happen with other dashpots")
-    return Quantity.exact(max(abs(float(one.value) / float(own.value) - 1.0) for one in changed))
+    return Quantity.exact(max(abs(one.high / own.high - 1.0) for one in changed))
 
 
 @claim(

@@ -141,7 +141,10 @@ def teardrop_and_depth(data: Data) -> Numbers:
     thin = slabs.isel(slab=0)
     slabs = slabs.isel(force=(thin["reaches_floor"].values == 0) & (thin["teardrop_depth"].values > 2.0 * ROW))
     for k, layers in enumerate(slabs["layers"].values[1:], 1):
-        sizes = [[size_in_steps(slabs[f"teardrop_{name}"].values[slab], step) for slab in (0, k)] for name, step in (("depth", ROW), ("width", DISK))]
+        sizes = [
+            [size_in_steps(slabs[f"teardrop_{name}"].values[slab], step) for slab in (0, k)]
+            for name, step in (("depth", ROW), ("width", DISK))
+        ]
         yield f"{layers:g} layers", *(deep.per(shallow) for shallow, deep in sizes)
 
 
@@ -160,12 +163,17 @@ def deep_and_shallow(data: Data) -> Numbers:
     """
     for name in ("sizes", "widths"):
         study = data.get(GROUP, name).sortby("layers")
-        slabs = study.isel(slab=np.isclose(study["normal_stiffness"].values, 3000.0) & (study["open_at_rest"].values == 0))
+        slabs = study.isel(
+            slab=np.isclose(study["normal_stiffness"].values, 3000.0) & (study["open_at_rest"].values == 0)
+        )
         columns = (slabs[key].values.tolist() for key in ("layers", "disks_per_row", "crossover_bracket"))
         for (thin, few, shallow), (layers, row, deep) in combinations(zip(*columns, strict=True), 2):
             # of the first, the width grows with the depth; of the second, walls are at the same distance
             if thin == slabs["layers"].min() < layers and (name == "sizes" or abs(few - row) <= 1):
-                yield f"{layers:g} x {row:g} against {thin:g} x {few:g} disks", Quantity.bracket(*deep).per(Quantity.bracket(*shallow))
+                yield (
+                    f"{layers:g} x {row:g} against {thin:g} x {few:g} disks",
+                    Quantity.bracket(*deep).per(Quantity.bracket(*shallow)),
+                )
 
 
 def _between(data: Data) -> xr.Dataset:

@@ -99,7 +99,10 @@ def acceleration(data: Data) -> Numbers:
     slab, and {stop as soon as the energy is small|0} g if a run stops as soon as it is below.
     Remark: The kinetic energy first falls below the limit at a turning point, where the acceleration is largest
     """
-    for case, rule in (("stop when the energy stays small", "envelope"), ("stop as soon as the energy is small", "instantaneous")):
+    for case, rule in (
+        ("stop when the energy stays small", "envelope"),
+        ("stop as soon as the energy is small", "instantaneous"),
+    ):
         yield case, data.value(GROUP, "swing.mean_acceleration", np.mean, stop_rule=rule)
 
 

@@ -1,6 +1,7 @@
 """Claims on disordered slabs (abstract, Secs. VI to VIII), by the survey's one definition of two peaks.
 
-The text starts from a lattice with twice the mean radius as its constant, in which disks of unequal size overlap. Packings
+The text starts from a lattice with twice the mean radius as its constant, in which disks of unequal size overlap.
+Packings
 from it have more contacts than the paper prints (claim D7a), and those of a start in which the largest disks touch have
 its number. That start is primary in every claim here; the literal one and those between and beyond are others.
 """
@@ -58,7 +59,9 @@ class Slab(NamedTuple):
     def of(self, data: Data, name: str, **labels: float) -> xr.Dataset:
         """The case in a dataset. Raises NotMeasured if there is none."""
         study = data.get(GROUP, name)
-        return at(study, polydispersity=self.polydispersity, friction=self.friction, lattice_constant=self.start, **labels)
+        return at(
+            study, polydispersity=self.polydispersity, friction=self.friction, lattice_constant=self.start, **labels
+        )
 
     @property
     def lattice(self) -> Slab:
@@ -387,7 +390,10 @@ def asymmetric(data: Data) -> Numbers:
     """
     for slab in _slabs(data):
         if slab.start == USUAL and slab.friction > 0.0:
-            yield slab.case(WHOLE), over_realizations(slab.of(data, "realizations", width=WIDE)["asymmetry"].isel(step=0))
+            yield (
+                slab.case(WHOLE),
+                over_realizations(slab.of(data, "realizations", width=WIDE)["asymmetry"].isel(step=0)),
+            )
 
 
 #: What is counted as contacts of a disk.
@@ -472,7 +478,9 @@ def resembles(data: Data) -> Numbers:
             typical["below"] += off.values[below].tolist()
             typical["above"] += off.values[above].tolist()
         found = [
-            replace(over_realizations(values), method="bootstrap of the median over cases and forces") if len(values) > 2 else None
+            replace(over_realizations(values), method="bootstrap of the median over cases and forces")
+            if len(values) > 2
+            else None
             for values in typical.values()
         ]
         if found[0] or found[1]:

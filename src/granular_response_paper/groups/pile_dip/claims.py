@@ -6,7 +6,15 @@ from granular_response_paper.claims.bounds import at_least, at_most, higher_by, 
 from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers
 
 GROUP = "pile_dip"
-claim = Claims(GROUP, {"scene.packing.layers": 11, "scene.contact.friction": 0.94, "scene.wall.friction": 0.35, "scene.contact.stiffness_ratio": 0.5})
+claim = Claims(
+    GROUP,
+    {
+        "scene.packing.layers": 11,
+        "scene.contact.friction": 0.94,
+        "scene.wall.friction": 0.35,
+        "scene.contact.stiffness_ratio": 0.5,
+    },
+)
 
 
 @claim(

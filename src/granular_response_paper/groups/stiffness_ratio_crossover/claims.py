@@ -97,7 +97,9 @@ def immaterial(data: Data) -> Numbers:
     Remark: Friction 10 starts from rest and has rough walls (Fig. 10), friction 2 follows the load path beside smooth
     walls (Fig. 12)
     """
-    ten, axis = (data.get(group, name) for group, name in ((GROUP, "response"), ("friction_linear_range", "friction_axis")))
+    ten, axis = (
+        data.get(group, name) for group, name in ((GROUP, "response"), ("friction_linear_range", "friction_axis"))
+    )
     values = at(ten, stiffness_ratio=0.8)["floor_response"].values
     two = at(axis, friction=2.0, force=15.0)["floor_response"].values
     yield float(np.abs(values - two)[ten["interior"].values > 0].max() / values.max())

@@ -9,7 +9,9 @@ from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers
 from granular_response_paper.claims.numbers import needs
 
 GROUP = "torque"
-claim = Claims(GROUP, {"force": 10.0, "angle": 30.0, "scene.contact.friction": 0.5, "scene.packing.polydispersity": 0.001})
+claim = Claims(
+    GROUP, {"force": 10.0, "angle": 30.0, "scene.contact.friction": 0.5, "scene.packing.polydispersity": 0.001}
+)
 
 #: "Close to the load" and beyond (mean radii).
 NEAR, FAR = 6.0, 9.0
