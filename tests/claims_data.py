@@ -214,7 +214,8 @@ def fields_study():
 
 #: Attributes of a file with the study of the paper's pile.
 PILE = {
-    "parameters": "scene: {packing: {layers: 11}, contact: {friction: 0.94, stiffness_ratio: 0.5}, wall: {friction: 0.35}}"
+    "parameters": "scene: {packing: {layers: 11}, contact: {friction: 0.94, stiffness_ratio: 0.5}, "
+    "wall: {friction: 0.35}}"
 }
 
 

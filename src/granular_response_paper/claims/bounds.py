@@ -25,7 +25,7 @@ WORDS: dict[str, tuple[float, str]] = {
     ),
     "almost": (
         math.log10(2.0),
-        "Almost an order of magnitude is within a factor of two of ten, on the logarithmic scale to which the paper points.",
+        "Almost an order of magnitude is within a factor of two of ten, on the paper's logarithmic scale.",
     ),
     "slightly": (0.25, "Slightly smaller, a little below, is at most a quarter less."),
     "small": (0.25, "Small is at most a quarter of what it is compared with."),
