@@ -27,12 +27,10 @@ EVENTS = {"linear_range": "end of the linear range", "first_opening": "first ope
 )  # fmt: skip
 def mobilized(data: Data) -> Numbers:
     """The fraction of fully mobilized contacts in the initial equilibrium determines the response.
-
     Short: Fully mobilized contacts in the initial equilibrium decide the response
     Here: At friction 0.2 the rank correlation of the linear range with the fraction of fully mobilized contacts is {0}
     (-1: it always falls); without such contacts its largest force is {1} times its smallest.
-    Remark: Over preparations of one ordered slab
-    """
+    Remark: Over preparations of one ordered slab"""
     study = data.get("preparation", "mobilized")
     study = study.isel(case=study["polydispersity"].values == 0.0)
     slabs = alike(study, "case", "wall_friction", "friction").items()
