@@ -283,7 +283,7 @@ def one_peak(data: Data) -> Numbers:
     """For µ = 1 no such crossover is observed even for the largest force shown, F_ext = 50mg (a different type of
     crossover occurs for µ = 1 for large forces, as described in Sec. V E).
     Short: At friction 1 one peak remains up to 50 mg
-    Here: At friction 1 the response has one peak up to 90 mg, the end of the load path."""
+    Here: At friction 1 the response has one peak along the whole load path; a crossover would be {0}."""
     crossover = partial(_event, "crossover", friction=1.0)
     yield data.protocol(crossover)
     yield from data.elsewhere(crossover)
@@ -331,8 +331,7 @@ def reaches_floor(data: Data) -> Numbers:
     """As R3a.
     Short: At friction 0.2 the open region reaches the floor at about 20 mg
     Here: At friction 0.2 the open region reaches the lowest row at {0:3}, in rows of 60 disks at {rows of 60|0}.
-    Remark: The region is connected. Single contacts of the lowest row open a little earlier, at 14.95 to 15 mg by an
-    independent simulation"""
+    Remark: The region is connected. Single contacts of the lowest row open a little earlier"""
     force = partial(_event, "reaches_floor", friction=0.2)
     yield "rows of 61 and 60", data.protocol(force)
     yield "rows of 60", data.event("reaches_floor", 0.2, LITERAL)
@@ -513,7 +512,7 @@ def stays_single(data: Data) -> Numbers:
     """As R8a.
     Short: There the response remains single peaked
     Here: At friction 1 the response keeps one peak from the force at which the open region reaches the floor to the end
-    of the load path, more than eight times that force."""
+    of the load path; a crossover would come {0} times that force."""
     yield data.protocol(lambda one: one.event("crossover", 1.0).per(one.event("reaches_floor", 1.0)))
 
 

@@ -44,9 +44,8 @@ def accurate(data: Data) -> Numbers:
 def needed(data: Data) -> Numbers:
     """As N1.
     Short: ... and this small energy is needed
-    Here: Stopped at 1e-11 mgR per disk, the response without friction is off by {response, friction 0, 1e-11|0}, at the
-    bound of 1 %, and the floor forces by {floor forces, friction 0, 1e-11|0}; at 1e-9 by {0} and {floor forces,
-    friction 0, 1e-9|0}.
+    Here: Stopped at 1e-11 mgR per disk, the response without friction is off by {response, friction 0, 1e-11|0} and the
+    floor forces by {floor forces, friction 0, 1e-11|0}; at 1e-9 by {0} and {floor forces, friction 0, 1e-9|0}.
     Remark: N1 asks whether the energy is enough, this one whether it has to be so small. The paper compares with 2e-8;
     the nearest energy here is 1e-9. Only powers of a hundred were tried"""
     for energy in (1e-9, 1e-11):

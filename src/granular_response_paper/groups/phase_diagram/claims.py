@@ -276,8 +276,8 @@ def below_lattice(data: Data) -> Numbers:
     """The same behavior is observed in polydisperse systems, which is the typical case in nature, although in
     polydisperse systems the forces at which induced anisotropy becomes large are smaller.
     Short: The anisotropy becomes large at smaller forces in disorder
-    Here: At polydispersity 0.01 and friction 0.2 the crossover force is {0} times that of the lattice. Without friction
-    two peaks are there at the smallest force of 0.01 mg (lattice: 3.4 mg).
+    Here: At polydispersity 0.01 and friction 0.2 the crossover force is {0} times that of the lattice. At friction 0.05
+    it is {polydispersity 0.01, friction 0.05|0} times.
     Remark: The lattice is treated as disorder is, smoothed with w = 6 and beside rough walls, so that its crossover
     forces are 3.4 and 37.6 mg at friction 0 and 0.2 and not the 3 and 20 mg of Figs. 3 and 16"""
     for slab in _slabs(data):
@@ -295,8 +295,8 @@ def preparation(data: Data) -> Numbers:
     """In any case, it is likely that the crossover does not depend on the polydispersity alone but also on the
     preparation method (as observed in experiments on granular piles [15] and slabs [20]).
     Short: The crossover is likely to depend on the preparation too
-    Here: At friction 0.2 the crossover force from the lattice constant 2 is above {friction 0.2|0} times that from
-    touching largest disks; without friction it is above 40 mg, from below 0.01 mg.
+    Here: At friction 0.2 the crossover force from the lattice constant 2 is {friction 0.2|0} times that from touching
+    largest disks.
     Remark: A sentence on what is likely could hardly fail"""
     for mu in (0.0, 0.2):
         usual, literal = (crossover(data, Slab(0.01, start, mu)) for start in (USUAL, LITERAL))
@@ -311,9 +311,9 @@ def like_the_lattice(data: Data) -> Numbers:
     """In general, we find that polydisperse systems exhibit qualitatively similar behavior to the ordered systems
     described in Sec. V.
     Short: Disordered systems behave as ordered ones
-    Here: At polydispersity 0.01 and friction 0.2 one peak turns into two at {0}, as in the lattice. Without friction
-    there are two peaks under the smallest force already.
-    Remark: At frictions at which the lattice has one peak and then two, within the simulated forces"""
+    Here: At polydispersity 0.01 and friction 0.2 one peak turns into two at {0}, as in the lattice.
+    Remark: At frictions at which the lattice has one peak and then two, within the simulated forces. Without friction
+    there are two peaks under the smallest force already"""
     for slab in _slabs(data):
         if crossover(data, slab.lattice).kind == FOUND:
             found = crossover(data, slab).found
@@ -569,7 +569,7 @@ def shorter(ends: FloatArray, lattice: FloatArray) -> Quantity:
 
 def linear_end(ends: FloatArray) -> Quantity:
     """The median force at which realizations (r, 2) leave their linear range; a lattice has one, without scatter."""
-    each = [Quantity.bracket(low, high) for low, high in ends.tolist()]
+    each = [Quantity.exact(low) if low == high else Quantity.bracket(low, high) for low, high in ends.tolist()]
     return over_brackets(each, partial(np.quantile, q=0.5, method="inverted_cdf"))
 
 

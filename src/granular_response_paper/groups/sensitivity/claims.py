@@ -26,8 +26,8 @@ def linear_forces(data: Data) -> Numbers:
     good description [65], which further justifies our choice of modeling the normal force as that exerted by a linear
     spring with the above mentioned effective spring constant.
     Short: Linear normal forces describe the 3/2 law quite well
-    Here: With the power 3/2 in place of linear normal forces the response differs by {0} of its peak at friction 0.2,
-    close to the bound of a fifth, and by {friction 1|0} at friction 1.
+    Here: With the power 3/2 in place of linear normal forces the response differs by {0} of its peak at friction 0.2
+    and by {friction 1|0} at friction 1.
     Remark: The sentence is about measured contacts; here it is asked of the response under 15 mg. The laws have the
     same stiffness at the mean contact force at rest"""
     for mu in (0.2, 1.0):

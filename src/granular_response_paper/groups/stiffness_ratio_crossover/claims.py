@@ -22,7 +22,8 @@ def ratio(data: Data) -> Numbers:
     """A crossover from a single peaked to a double peaked response occurs with decreasing k_T/k_N (the crossover occurs
     at k_T/k_N ≃ 0.3).
     Short: k_T/k_N of about 0.3 separates two peaks from one
-    Here: At friction 10 two peaks first vanish at k_T/k_N = {0}. Up to 0.319 dips of at most 0.2 % come back."""
+    Here: At friction 10 two peaks first vanish at k_T/k_N = {0}.
+    Remark: Above this ratio a dip of some tenths of a per cent may return, until the response is largest at x = 0"""
     yield _two_peaks_end(data)
 
 
