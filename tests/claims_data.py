@@ -212,6 +212,13 @@ def fields_study():
     }
 
 
+#: Attributes of a file with the study of the paper's pile.
+PILE = {
+    "parameters": "scene: {packing: {layers: 11}, contact: {friction: 0.94, stiffness_ratio: 0.5}, "
+    "wall: {friction: 0.35}}"
+}
+
+
 def pile_study():
     cases = {"case": ["frictionless", "mirrored", "frictional"]}
     return {
@@ -576,7 +583,9 @@ def robustness_study():
     """Events that hardly move with the protocol, width and stiffness; copies that lean to both sides, and a control."""
     changes = [("reference", "as in the paper"), ("protocol", "dashpots halved"), ("protocol", "dashpots doubled")]
     changes += [("protocol", "displaced copy 1"), ("width", "121 disks a row"), ("stiffness", "k_N = 10000 mg/R")]
-    comes = {name: {**by, 0.05: mean(by[0.0], by[0.2], 0.3), 0.1: mean(by[0.0], by[0.2], 0.6)} for name, by in COMES.items()}
+    comes = {
+        name: {**by, 0.05: mean(by[0.0], by[0.2], 0.3), 0.1: mean(by[0.0], by[0.2], 0.6)} for name, by in COMES.items()
+    }
     comes["loss_of_symmetry_path"] = {1.0: (91.2, 92.0)}
     comes["first_opening_anywhere"] = {0.0: (0.66, 0.68), 0.2: (3.8, 3.82), 1.0: (5.5, 5.52)}
     rows = [
@@ -586,7 +595,11 @@ def robustness_study():
         for mu, ends in by_friction.items()
         if not (mu == 0.0 and change[1].startswith("displaced"))
     ]
-    rest = [("loss_of_symmetry", 1.0, 91.2, 92.0), ("loss_of_symmetry", 1.0, 92.0, 93.0), ("crossover", 0.2, 19.8, 20.0)]
+    rest = [
+        ("loss_of_symmetry", 1.0, 91.2, 92.0),
+        ("loss_of_symmetry", 1.0, 92.0, 93.0),
+        ("crossover", 0.2, 19.8, 20.0),
+    ]
     rest += [("first_opening", 0.2, 3.8, 4.0), ("first_opening", 1.0, 5.5, 5.7), ("third_peak", 0.2, 37.0, 38.0)]
     rest = [(*row, "protocol", "load ramp of 10 sqrt(R/g)") for row in rest]
     rest.append(("loss_of_symmetry", 1.0, 91.2, 92.0, "width", "121 disks a row"))

@@ -14,7 +14,6 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 # modules that new processes import find the helpers of tests, as here
 _paths = str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, _paths))
-os.environ.pop("DASK_SCHEDULER_ADDRESS", None)  # a sweep in a test runs where the test says
 
 
 def pytest_sessionstart(session):

@@ -179,7 +179,7 @@ def values(given: Value) -> str:
     """One value or several in words: ``4, 10 and 20``; of many the number and the ends, ``none`` of none."""
     if isinstance(given, str):
         return given
-    many = [given] if isinstance(given, float | int) else list(given)
+    many: list[float | str] = [given] if isinstance(given, float | int) else list(given)
     if not many:
         return "none"
     texts = [value if isinstance(value, str) else _number(value) for value in many]

@@ -65,10 +65,6 @@ def simulate(
 
     loaded()
     checkout.check(collection_of(group))
-    if before := simulation.finished(group, output):
-        commands.say(
-            f"{group}: {before} finished tasks are kept; those of this code and these parameters are not run again"
-        )
     try:
         with TerminalProgress() as progress:
             path = simulation.simulate(group, output, parameter_file=params, workers=workers, progress=progress)

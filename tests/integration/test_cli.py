@@ -17,7 +17,7 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
-from claims_data import pile_study
+from claims_data import PILE, pile_study
 from commands import LIBRARY, PAPER, SCENE, call, process, python, refused, succeeded
 from places import DATA, ROOT
 
@@ -83,17 +83,17 @@ def test_run_and_show(folder):
 
 
 def test_stored_claims_are_listed_and_not_judged_anew(tmp_path):
-    store.write(tmp_path / "data" / "pile_dip.nc", pile_study())
+    store.write(tmp_path / "data" / "pile_dip.nc", pile_study(), PILE)
     table = tmp_path / "figures" / "claims.json"
-    assert succeeded("claims", folder=tmp_path).startswith("figures/claims.json: Of ")
+    assert succeeded("claims", folder=tmp_path).startswith("figures/claims.json: ")
     before = table.read_bytes()
     lines = succeeded("claims", "--list", folder=tmp_path).splitlines()
     assert table.read_bytes() == before
     rows = json.loads(before)["table"]
     assert re.match(r"A1   [a-z ]+ +\S", lines[0])
-    said = [text for row in rows for text in (row["here"], row["paper"], row["cases"], row["preparations"]) if text]
+    said = [text for row in rows for text in (row["here"], row["paper"], row["cases"]) if text]
     assert len(lines) == len(said) + 3 and all(text in line for text, line in zip(said, lines, strict=False))
-    assert re.search(r"Of \d+ statements on ordered slabs", lines[-3]) and "halved or doubled" in lines[-1]
+    assert re.search(r"4 of \d+ statements on ordered slabs", lines[-3]) and "halved or doubled" in lines[-1]
     drawn = succeeded("claims", "--list", "--figure", 7, folder=tmp_path).splitlines()
     listed = [row["id"] for row in rows if 7 in row["figures"]]
     assert [line.split()[0] for line in drawn[:-3] if line[0] != " "] == listed != []
@@ -134,7 +134,7 @@ def test_claims_without_datasets_leave_the_table_alone(tmp_path):
 
 def test_claims_without_some_datasets_keep_the_verdicts_on_them(tmp_path):
     """A clone has the whole table, and the datasets alone that somebody has made."""
-    store.write(tmp_path / "data" / "pile_dip.nc", pile_study())
+    store.write(tmp_path / "data" / "pile_dip.nc", pile_study(), PILE)
     succeeded("claims", folder=tmp_path)
     table = tmp_path / "figures" / "claims.json"
     before = table.read_bytes()

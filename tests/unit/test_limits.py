@@ -107,9 +107,9 @@ def test_maximum_steps_is_the_most_that_a_stage_takes(monkeypatch):
     ("light", "contact", "steps"),
     [
         # on the tip of the first one: its own force tips it over, a hundred-thousandth of any other stiffness
-        ((2.0, 2.974999995, 1e-7), {"normal_stiffness": 30.0, "damping_ratio": 0.002}, 400_000),
-        # in mid-air: out of balance by its whole weight, which is less than any rounding of the others
-        ((4.0, 5.0, 1e-12), {"normal_stiffness": 30.0, "damping_ratio": 0.0}, 200_000),
+        ((2.0, 2.974999995, 1e-6), {"normal_stiffness": 30.0, "damping_ratio": 0.002}, 400_000),
+        # in mid-air: out of balance by its whole weight, which is next to nothing beside the others
+        ((4.0, 5.0, 1e-6), {"normal_stiffness": 30.0, "damping_ratio": 0.0}, 200_000),
     ],
     ids=["on a tip", "in mid-air"],
 )

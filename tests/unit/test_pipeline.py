@@ -223,23 +223,24 @@ def test_a_run_that_is_killed_ends_its_children_and_keeps_its_lock(tmp_path, num
     assert list(yaml.load((tmp_path / "dvc.lock").read_text(), LOADER)["stages"]) == ["first"]
 
 
-def test_a_lock_is_whole_while_dvc_writes_it(tmp_path):
-    """Whenever it is killed: the file is replaced in one step, and DVC calls the function that does so."""
-    lock, seen = tmp_path / "dvc.lock", []
-    lock.write_text("before")
+@pytest.mark.parametrize("collection", COLLECTIONS, **IDS)
+def test_a_lock_is_whole_at_any_moment_and_as_dvc_writes_it(tmp_path, collection, monkeypatch):
+    """It is replaced in one step."""
+    lock, text, seen = tmp_path / "dvc.lock", (ROOT / collection.folder / "dvc.lock").read_text(), []
+    lock.write_text(text)
+    write = dvc.atomic.write_bytes
+    monkeypatch.setattr(dvc.atomic, "write_bytes", lambda *given: (seen.append(lock.read_text()), write(*given)))
+    with dvc.modified(lock) as content:
+        content["stages"]["new"] = {"cmd": "true"}
+    assert seen == [text] and lock.read_text() == text + "  new:\n    cmd: 'true'\n"
 
-    def dumper(data, stream):
-        stream.write(data)
-        seen.append(lock.read_text())
 
-    dvc.dump(lock, "after", dumper)
-    assert seen == ["before"] and lock.read_text() == "after"
+def test_dvc_calls_it(tmp_path):
     environment = in_pipeline(tmp_path, "stages: {one: {cmd: 'true'}}\n")
     script = "import sys, runpy, granular_response.store.atomic as one; one.write_bytes = lambda path, _: print(path);"
     script += f"sys.argv = ['dvc', 'repro']; runpy.run_module('{dvc.__name__}', run_name='__main__')"
-    lock.unlink()
     run = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True)
-    assert run.returncode == 0 and "dvc.lock\n" in run.stdout and not lock.exists(), run.stderr
+    assert run.returncode == 0 and "dvc.lock\n" in run.stdout and not (tmp_path / "dvc.lock").exists(), run.stderr
 
 
 PACKAGES = ("granular_response", "granular_response_paper")

@@ -17,8 +17,7 @@ from refusals import refuses
 from granular_response.store import files as store
 from granular_response_paper import report
 from granular_response_paper.claims import table as claims
-from granular_response_paper.claims.claim import ClaimsError, Data
-from granular_response_paper.claims.verdict import judge
+from granular_response_paper.claims.claim import ClaimsError, Data, judge
 from granular_response_paper.groups.sensitivity import simulate as sensitivity
 from granular_response_paper.registry import PAPER
 from granular_response_paper.report import against, explorer, readings
@@ -339,7 +338,7 @@ def test_a_browser_shows_all_of_it(judged, opened, width, scheme):
     assert tab.run("getComputedStyle(document.body).backgroundColor") == (
         "rgb(255, 255, 255)" if scheme == "light" else "rgb(20, 24, 29)"
     )
-    for kind in ("not measured", "derivation", "in part"):
+    for kind in ("not measured", "supported"):
         tab.run(f"document.getElementById('only-{kind.replace(' ', '_')}').click()")
         rows = "Array.from(document.querySelectorAll('tr.claim')).filter(row => row.offsetHeight).length"
         assert tab.run(rows) == sum(row["verdict"] == kind for row in judged["table"])

@@ -412,9 +412,10 @@ def tangents(q, q0, overlap0, follow, listed, out, tangent):
     n, size = listed.radius.size, overlap0.size
     for c in range(size):
         status, xi = out.status[c], out.overlap[c]
-        tangent[c, :, :] = 0.0
         if status == 0.0:
+            tangent[c, :, :] = 0.0
             continue
+        tangent[c, 3:, :] = 0.0
         i, j, nx, nz, _, k = contact_at(c, q, listed)
         law, normal, share = law_of(listed, c), out.normal[c], _closed_part(overlap0[c], xi)
         stiff, slip_n, slides, inverse = law.tangential_stiffness * share, 0.0, 0.0, 0.0
@@ -493,7 +494,7 @@ def _elastic_energies(overlap, shape, law, out):
         out[c] = energy(law, overlap[c], take(shape, c, 0.0)) if overlap[c] > 0.0 else 0.0
 
 
-@kernel
+@kernel(forceinline=True)
 def _add_block(data, base, stride, g, row_sign, row_arm, col_sign, col_arm, freedoms):
     """Add -L G Z to the block at ``data[base]``; L = diag(s, s, -R), Z = diag(s, s, R)."""
     for b in range(freedoms):

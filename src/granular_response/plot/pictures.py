@@ -32,7 +32,8 @@ from ..store import atomic
 from . import network, style
 from .field import draw_field, root_norm
 from .photoelastic import photoelastic
-from .shown import HasDataset, PictureError, Shown, aspect_of, check_positive, draw_loads, new_axes, new_figure, written
+from .shown import HasDataset, Shown, aspect_of, check_positive, draw_loads, new_axes, new_figure, written
+from .shown import PictureError as PictureError
 
 Scale = Literal["linear", "sqrt", "percentile"]
 

@@ -97,7 +97,7 @@ class Protocol(Description):
         default=None,
         description="auto: 0.6 of the stability limit. null: the paper's 5e-4 if that is stable, otherwise auto; in "
         "packings of more than 2,000 disks a fall under gravity goes on with leapfrog and up to three times the step "
-        "after four periods of its vertical oscillation; a motion resolves its collisions.",
+        "after seven periods of its vertical oscillation; a motion resolves its collisions.",
     )
     ramp_time: NonNegative = Field(default=20.0, description="Time over which the loads grow linearly to their values.")
     stop_kinetic_energy: Positive = Field(

@@ -89,7 +89,8 @@ class Trial:
     @property
     def borne(self) -> FloatArray:
         """Normal force beside each status of :attr:`sense`."""
-        return np.tile(self.normal, 1 + (len(self.contacts.status) > len(self.normal)))
+        rows = len(self.contacts.status) > len(self.normal)
+        return np.concatenate([self.normal, self.normal]) if rows else self.normal
 
 
 def signed_status(status: np.ndarray, tangential: FloatArray) -> np.ndarray:

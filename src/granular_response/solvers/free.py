@@ -26,8 +26,8 @@ class FreeOptions:
     #: Displacement per force, in units of the inverse normal stiffness, from which on a step may go along a null
     #: direction: the softest directions of packings have up to 1e5, a null direction 1e10.
     soft: float = 1e7
-    #: Normal force (mean weights) up to which a contact bears nothing, as of ``PathOptions.passing``: it is no tie, as it
-    #: may open.
+    #: Normal force (mean weights) up to which a contact bears nothing, as of ``PathOptions.passing``: it is no tie,
+    #: as it may open.
     bare: float = 1e-8
     #: Random vectors, and times that the tangent's inverse takes from them what some stiffness resists: a direction of
     #: 1e-4 mean weights per mean radius keeps 3e-8 of itself, a null direction all.

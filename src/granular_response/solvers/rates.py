@@ -117,6 +117,7 @@ class RateProblem:
         self.system, self.direction, self.force = system, direction, force
         self.negligible = negligible * system.problem.load_size
         self._right = system.interleave(direction * system.problem.load_vector)
+        self.lifts = bool((system.problem.held.axis == 1).any())  #: whether a load holds the height of a disk
         #: (dof,) rates of what loads hold
         self._held = np.zeros(system.dof)
         self._held[system.held] = direction * system.problem.held.travel
@@ -186,8 +187,11 @@ class RateProblem:
     def _let_go(self, trial: Trial, rates: Rates) -> Rates:
         """The same with less motion, where contacts open that bear nothing and go on so.
 
-        A disk that nothing resists could follow another one at such a contact for ever. It stays.
+        A disk that nothing resists could follow another one at such a contact for ever. It stays. Only a disk whose
+        height a load holds can bear nothing; rattlers bear their weight.
         """
+        if not self.lifts:
+            return rates
         sense, velocity, known = rates.sense, rates.velocity, trial.configuration
         closed = sense[: len(trial.normal)] != OPEN
         bare = np.flatnonzero((trial.normal <= OPTIONS.bare) & closed)

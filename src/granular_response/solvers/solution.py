@@ -34,6 +34,10 @@ MOST_BORNE = 4.0
 #: Longest step of a displaced disk between two minimisations (mean radii).
 LONGEST_WAY = 0.1
 
+#: Displacement from a minimum to the next, beyond the way of what is held, from which on the packing has snapped (mean
+#: radii); the elastic displacements of the paper's loads are below some hundredths.
+SNAPPED = 0.1
+
 #: Part of a response that may be rounding, from which on that is said.
 ROUNDED = 1e-3
 
@@ -327,17 +331,19 @@ def loaded_states(
 
 
 def _by_minimisation(problem: Problem, before: State, factor: float, progress: Progress | None) -> State:
+    start = before
     way = float(np.abs(problem.held.travel).max(initial=0.0)) * abs(factor - before.load_factor)
     try:
         # what is held goes its way in short steps, so that it meets what is on it
         for part in np.linspace(before.load_factor, factor, math.ceil(way / LONGEST_WAY) + 1)[1:-1]:
             before = problem.relisted(minimise(problem, before, load_factor=float(part)))
         found = minimise(problem, before, load_factor=factor)
-        if not found.reached.escapes:
+        moved = found.position - start.position
+        snapped = float(np.hypot(*moved.T).max()) > SNAPPED + way
+        if not (found.reached.escapes or snapped):
             return found
-        moved = found.position - before.position
-        reason = f"unstable, to the {side(moved)}"
-        left = lost("bifurcation", before.load_factor, factor, before.position, moved, reason)
+        kind, why = ("bifurcation", "unstable") if found.reached.escapes else ("jump", "the minimum has moved far")
+        left = lost(kind, start.load_factor, factor, start.position, moved, f"{why}, to the {side(moved)}")
         return replace(found, reached=replace(found.reached, events=(left,)))
     except EquilibriumError:
         # the packing collapses or rearranges here: its motion decides where it comes to rest

@@ -1,7 +1,7 @@
 """What a sentence asks of a number, and the thresholds of the paper's qualitative terms: one table for every claim.
 
-The thresholds are our interpretations, written when an earlier table of values was known; none is chosen for one claim. A
-star beside a verdict says that it changes with one of them halved or doubled.
+The thresholds are our interpretations, written when an earlier table of values was known; none is chosen for one
+claim. A star beside a verdict says that it changes with one of them halved or doubled.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ WORDS: dict[str, tuple[float, str]] = {
     ),
     "almost": (
         math.log10(2.0),
-        "Almost an order of magnitude, on the logarithmic scale to which the paper points, is within a factor of two of ten.",
+        "Almost an order of magnitude is within a factor of two of ten, on the paper's logarithmic scale.",
     ),
     "slightly": (0.25, "Slightly smaller, a little below, is at most a quarter less."),
     "small": (0.25, "Small is at most a quarter of what it is compared with."),

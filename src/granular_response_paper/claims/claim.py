@@ -12,8 +12,8 @@
         yield data.value("pile_dip", "stress.dip", case="frictional")
 
 A function yields, for each case, its name (left out for the only one) and a number for each :class:`Ask`. One case,
-``primary``, decides; the others say how far the sentence holds. The mapping beside the group's name has the parameters of
-the paper: on other data nothing is measured.
+``primary``, decides; the others say how far the sentence holds. The mapping beside the group's name has the
+parameters of the paper: on other data nothing is measured.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ SCHEME = (
     "otherwise the data cannot tell. What may be, and was not found, is not seen.",
     "The interval is the 95 % confidence over packings, or for ordered slabs the range over what the text leaves open: "
     "dashpots, time step, integrator, duration of the load ramp and displacements by 10⁻⁹ radii.",
-    "Every other case says for what the sentence holds, fails or is open; so do other ways of applying gravity and other "
-    "initial lattices.",
+    "Every other case says for what the sentence holds, fails or is open; so do other ways of applying gravity "
+    "and other initial lattices.",
     "A star marks a verdict that changes if the threshold of a qualitative term is halved or doubled.",
 )
 
@@ -84,7 +84,9 @@ class Ask(NamedTuple):
 
 
 class Case(NamedTuple):
-    """A case by its name; ``prepared`` is gravity or lattice if the packing is prepared in another way than the paper's."""
+    """A case by its name; ``prepared`` is gravity or lattice if the packing is prepared in another way than the
+    paper's.
+    """
 
     name: str = ""
     prepared: Literal["", "gravity", "lattice"] = ""
@@ -98,8 +100,9 @@ Numbers = Iterator[Any]
 class Claim:
     """A sentence of the paper, or of whoever ``source`` says, and the function that measures it.
 
-    ``here`` is our sentence, with {0}, {1} for numbers of the primary case, {case|1} for those of another one and {0:4} for
-    four digits. It is written for the verdict ``finds``; with any other one only the numbers are said. ``modal`` marks a
+    ``here`` is our sentence, with {0}, {1} for numbers of the primary case, {case|1} for those of another one and
+    {0:4} for
+    four digits. It is written for the verdict ``finds`` or for any; else only the numbers are said. ``modal`` marks a
     sentence that says what may be.
     """
 
@@ -118,7 +121,7 @@ class Claim:
     row: Literal["statement", "check", "derivation"] = "statement"
     modal: bool = False
     disorder: bool = False
-    finds: Kind = "supported"
+    finds: Kind | Literal["any"] = "supported"
     remark: str = ""
 
     @property
@@ -128,7 +131,9 @@ class Claim:
 
 
 class Claims:
-    """The claims of a figure group, in the order in which they are declared; ``requires`` are the paper's parameters."""
+    """The claims of a figure group, in the order in which they are declared; ``requires`` are the paper's
+    parameters.
+    """
 
     def __init__(self, group: str, requires: Mapping[str, Any] | None = None) -> None:
         self.group, self.requires, self.rows = group, requires or {}, list[Claim]()
@@ -142,7 +147,8 @@ class Claims:
         requires: Mapping[str, Any] | None = None,
         **said: Any,
     ) -> Callable[[Callable[[Data], Numbers]], Callable[[Data], Numbers]]:
-        """Declare a claim by the function below and its docstring: the sentence, or "As R3a." for that of another claim of
+        """Declare a claim by the function below and its docstring: the sentence, or "As R3a." for that of another
+        claim of
         the group, then Short, Here and Remark. Figures are those of the place; ``requires`` are further parameters.
         """
         if figures is None:
@@ -154,8 +160,8 @@ class Claims:
                 paper = next(row.paper for row in self.rows if row.id == other[1])
             parts = {name.lower(): text for name, _, text in (one.partition(": ") for one in texts)}
             needed = {**self.requires, **(requires or {})}
-            about = {"group": self.group, "figures": figures, "requires": needed} | said
-            self.rows.append(Claim(id, place, paper, asks, function, **about, **parts))
+            about: dict[str, Any] = {"group": self.group, "figures": figures, "requires": needed, **said, **parts}
+            self.rows.append(Claim(id, place, paper, asks, function, **about))
             return function
 
         return declare
@@ -190,13 +196,16 @@ class Data:
         return Quantity.exact(values.item())
 
     def event(self, name: str, friction: float, table: str = "events") -> Quantity:
-        """The bracket of an event of the ordered slab. Without friction there is one equilibrium, whatever came before."""
-        group, labels = ORDERED, {"name": name, "friction": friction}
+        """The bracket of an event of the ordered slab. Without friction there is one equilibrium, whatever came
+        before.
+        """
+        group: str = ORDERED
+        labels: dict[str, Any] = {"name": name, "friction": friction}
         if self.variant:
             copy = friction == 0.0 and self.variant.startswith("displaced")
             group, labels["variant"] = ROBUSTNESS, "as in the paper" if copy else self.variant
         elif self.prepared and friction > 0.0:
-            group, labels = PREPARATION, labels | self.prepared
+            group, labels = PREPARATION, {**labels, **self.prepared}
         found = at(self.get(group, table), **labels)
         return Quantity.bracket(float(found["low"]), float(found["high"]))
 
@@ -272,7 +281,9 @@ def rise(values: Iterable[Quantity]) -> Quantity:
 
 
 def steps(values: xr.DataArray, along: str, least: float, most: float, falls: bool = False) -> Quantity:
-    """:func:`rise` of numbers along a dimension whose labels lie between two values, or with ``falls`` of their fall."""
+    """:func:`rise` of numbers along a dimension whose labels lie between two values, or with ``falls`` of their
+    fall.
+    """
     part = values.sortby(along, ascending=not falls)
     part = part.isel({along: (part[along].values >= least) & (part[along].values <= most)})
     return rise(Quantity.exact(value) for value in part.values.tolist())
@@ -332,17 +343,21 @@ class Verdict:
             return "not measured"
         outcome = together(test.outcome for test in self.primary)
         failed: Kind = "not seen" if self.claim.modal else "not supported"
-        return {"yes": "supported", "no": failed, "cannot tell": "cannot tell"}[outcome]  # type: ignore[return-value]
+        return {"yes": "supported", "no": failed, "cannot tell": "cannot tell"}[outcome]
 
     def others(self, prepared: str = "") -> dict[str, Outcome]:
         """The outcomes of the other cases, or of those that are ``prepared`` in another way."""
-        chosen = [test for test in self.tests if test.case.prepared == prepared and test.case != Case(self.claim.primary)]
+        chosen = [
+            test for test in self.tests if test.case.prepared == prepared and test.case != Case(self.claim.primary)
+        ]
         names = dict.fromkeys(test.case.name for test in chosen)
         return {name: together(test.outcome for test in chosen if test.case.name == name) for name in names}
 
     @property
     def here(self) -> str:
-        """What was measured, in a sentence: the claim's own if it is written for this verdict, and all its numbers are there."""
+        """What was measured, in a sentence: the claim's own if it is written for this verdict, and all its
+        numbers are there.
+        """
         if self.missing:
             return self.missing
         by_case: dict[str, list[Test]] = {}
@@ -354,7 +369,7 @@ class Verdict:
             return text(test.found, test.ask.unit, int(field["digits"] or 0))
 
         with suppress(KeyError, IndexError):
-            if self.claim.finds == self.verdict:
+            if self.claim.finds in ("any", self.verdict):
                 return _NUMBER.sub(number, self.claim.here)
         found = "; ".join(f"{test.ask.what}: {text(test.found, test.ask.unit)}" for test in self.primary)
         return f"{found[0].upper()}{found[1:]}."

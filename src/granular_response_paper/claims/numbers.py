@@ -9,7 +9,8 @@ from typing import Literal
 
 from granular_response.errors import GranularError
 
-#: What an interval means: none (one deterministic run); the event lies inside; 95 % confidence over packings; smallest to
+#: What an interval means: none (one deterministic run); the event lies inside; 95 % confidence over packings;
+#: smallest to
 #: largest value over what the text leaves open in the protocol; smallest to largest of several measures or places.
 Kind = Literal["none", "bracket", "confidence", "protocol", "range"]
 
@@ -28,8 +29,8 @@ def needs(there: object, what: str) -> None:
 class Quantity:
     """A number and the interval in which it lies; ``high`` is inf for a lower bound, which has no ``value``.
 
-    ``method`` names the statistic behind the interval, ``samples`` the number of packings. Raises NotMeasured for a number
-    or an end that is nan, so that what is absent can become no quantity.
+    ``method`` names the statistic behind the interval, ``samples`` the number of packings. Raises NotMeasured for a
+    number or an end that is nan, so that what is absent can become no quantity.
     """
 
     value: float | None
@@ -49,7 +50,9 @@ class Quantity:
 
     @classmethod
     def bracket(cls, low: float, high: float) -> Quantity:
-        """An event above ``low`` and not above ``high``; ``high`` nan or inf means that it does not happen up to ``low``."""
+        """An event above ``low`` and not above ``high``; ``high`` nan or inf means that it does not happen up
+        to ``low``.
+        """
         if not math.isfinite(high):
             return cls(None, float(low), math.inf, "bracket")
         return cls(0.5 * float(low + high), float(low), float(high), "bracket")
@@ -98,7 +101,7 @@ def shown(value: float, unit: str = "", number: int = 2) -> str:
     the words none and all, and ``count`` a whole number, in words up to six and two digits beyond a thousand.
     """
     if unit == "count":
-        whole = int(round(value))
+        whole = round(value)
         return _WORDS.get(whole) or (str(whole) if whole < 1000 else f"{round(whole, 2 - len(str(whole))):,}")
     if unit == "part" and value in (0.0, 1.0):
         return "none" if value == 0.0 else "all"
@@ -108,10 +111,11 @@ def shown(value: float, unit: str = "", number: int = 2) -> str:
 
 
 def text(found: Quantity, unit: str = "", number: int = 0) -> str:
-    """A quantity for readers, in ``number`` digits; for 0 in three if its interval is narrower than a twentieth of it, else two.
+    """A quantity for readers, in ``number`` digits; for 0 in three if its interval is narrower than a twentieth of
+    it, else two.
 
-    The ends of an interval stand in brackets behind the value, or alone where there is none. A hundredth of the number is
-    no interval that a reader needs.
+    The ends of an interval stand in brackets behind the value, or alone where there is none. A hundredth of the
+    number is no interval that a reader needs.
     """
     middle = found.low if found.value is None else found.value
     width = (found.high - found.low) / abs(middle) if middle else math.inf

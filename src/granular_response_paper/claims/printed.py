@@ -1,8 +1,11 @@
-"""The quantities for which the paper prints a number, beside ours: the data of one picture of the whole reproduction."""
+"""The quantities for which the paper prints a number, beside ours: the data of one picture of the whole
+reproduction.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -44,22 +47,22 @@ SUPERPOSED = Printed("linear range, δ = 0.01, friction 0.05", 0.4, "mg", "")
 
 
 def quantities(entries: Sequence[Verdict], data: Data) -> list[dict[str, Any]]:
-    """One entry for each, of those that are measured: the paper's number, ours with its interval and what that is of, and
-    the numbers of other cases (``others``): geometry, width, stiffness, other gravity and initial lattices.
+    """One entry for each, of those that are measured: the paper's number, ours with its interval and what that is
+    of, and the numbers of other cases (``others``): geometry, width, stiffness, other gravity and initial lattices.
     """
     by_id = {entry.claim.id: entry for entry in entries}
     found = []
     for printed in QUANTITIES:
         entry = by_id[printed.claim]
         own = [test.found for test in entry.primary if test.ask == entry.claim.asks[printed.ask]]
-        others = [test for test in entry.tests if test.ask == entry.claim.asks[printed.ask] and test not in entry.primary]
+        others = [
+            test for test in entry.tests if test.ask == entry.claim.asks[printed.ask] and test not in entry.primary
+        ]
         if own:
             pale = [{"case": test.case.name, "prepared": test.case.prepared, **_point(test.found)} for test in others]
             found.append(_entry(printed, own[0], pale))
-    try:
+    with suppress(NotMeasured):
         found.append(_entry(SUPERPOSED, superposed(data), []))
-    except NotMeasured:
-        pass
     return found
 
 

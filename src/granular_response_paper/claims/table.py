@@ -67,14 +67,15 @@ MOVES = Path("survey") / "data" / f"{ROBUSTNESS}.nc"
 
 
 def collect(folder: str | os.PathLike[str], others: str | os.PathLike[str], collection: Collection = PAPER) -> Data:
-    """The stored datasets that claims read with the parameters of each, the summary of ``others``, preparations that are
-    not the paper's, and the study ``robustness``.
+    """The stored datasets that claims read with the parameters of each, the summary of ``others``, preparations that
+    are not the paper's, and the study ``robustness``.
 
     A file that is not there is left out; raises StoreError if one cannot be read.
     """
     paths = {path.stem: path for path in _paths(folder, collection) if path.exists()}
     groups = {name: store.read(path) for name, path in paths.items()}
-    parameters = {name: flat(yaml.read(store.read_attributes(path)["parameters"])) for name, path in paths.items()}
+    given = {name: store.read_attributes(path).get("parameters", "") for name, path in paths.items()}
+    parameters = {name: flat(yaml.read(one) or {}) for name, one in given.items()}
     for name, path in ((PREPARATION, Path(others)), (ROBUSTNESS, MOVES)):
         if path.exists():
             groups[name] = groups.get(name, {}) | store.read(path)
@@ -230,7 +231,7 @@ def quoted(found: dict[str, Any]) -> str:
     whole = {name: sum(one["holds"] == one["of"] for one in found_) for name, found_ in tried.items()}
     lines.append(
         f"{starred} of these verdicts change if the threshold of a qualitative term is halved or doubled. With gravity "
-        f"applied in other ways {whole['gravity']} of {len(tried['gravity'])} statements keep holding in every way, from "
+        f"applied in other ways {whole['gravity']} of {len(tried['gravity'])} statements hold in every way, from "
         f"other initial lattices {whole['lattice']} of {len(tried['lattice'])}. Not counted: {rest}."
     )
     return "\n".join(lines)

@@ -5,20 +5,16 @@
 
 from __future__ import annotations
 
-import os
 import re
-import signal
-import subprocess
-import sys
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from granular_response.inputs import read_text
 from granular_response.scene import text
 from granular_response_paper import checkout
+from granular_response_paper.pipeline import dvc
 from granular_response_paper.registry import Collection
 
 #: What DVC prints where a stage begins, and where it need not run.
@@ -28,36 +24,12 @@ _SKIPPED = re.compile(r"^Stage '(?:.*:)?([\w@]+)' (?:didn't change, skipping|is 
 #: Lines of a stage that are shown if it fails.
 _KEPT = 40
 
-#: Ends its process group when the process that holds its input is gone, however that ended.
-_GUARD = ["sh", "-c", "read -r nothing; kill -TERM 0"]
-
 
 def stage_names(collection: Collection, root: Path) -> list[str]:
     """Every stage of a collection, as its pipeline names them."""
     stages = text.read(read_text(root / collection.folder / "dvc.yaml"))["stages"]
     of = {kind: collection.groups if "foreach" in one else () for kind, one in stages.items()}
     return [name for kind, groups in of.items() for name in ([f"{kind}@{one}" for one in groups] or [kind])]
-
-
-@contextmanager
-def _running(command: Sequence[str], folder: Path) -> Iterator[subprocess.Popen[str]]:
-    """A command with its output. It and all that it starts end with this process."""
-    environment = os.environ | {"PYTHONUNBUFFERED": "1"}
-    nothing, pipe = subprocess.DEVNULL, subprocess.PIPE
-    with (
-        subprocess.Popen(_GUARD, stdin=pipe, process_group=0) as guard,
-        subprocess.Popen(
-            command, cwd=folder, env=environment, stdin=nothing, stdout=pipe, text=True, process_group=guard.pid
-        ) as run,
-    ):
-        try:
-            yield run
-        except KeyboardInterrupt:  # of the terminal, which tells this process alone
-            os.killpg(guard.pid, signal.SIGINT)
-            raise
-        finally:
-            run.wait()
-            guard.kill()
 
 
 def reproduce(
@@ -79,8 +51,7 @@ def reproduce(
             say(f"{done:3} of {number}  {current:36} {now - begun:6.1f} s   {_clock(now - start)} gone")
             current = ""
 
-    command = [sys.executable, "-m", "granular_response_paper.pipeline.dvc", "repro", *arguments]
-    with _running(command, root / collection.folder) as run:
+    with dvc.running(["repro", *arguments], root / collection.folder) as run:
         assert run.stdout is not None
         for line in run.stdout:
             last.append(line.rstrip("\n"))

@@ -1,7 +1,8 @@
 """How far the events of the ordered slab move with what the text leaves open, and with what should not matter.
 
 Each event of Secs. V.A, V.B and V.E is looked for with the paper's protocol and with one thing changed: the *protocol*
-(dashpots halved and doubled, another integrator, a smaller time step, ten copies of the packing displaced by 1e-9 R, the
+(dashpots halved and doubled, another integrator, a smaller time step, ten copies of the packing displaced by 1e-9 R,
+the
 duration of the load ramp), the *width* of the slab, or the *stiffness* of its disks. At large forces and friction 1 ten
 displaced copies under each force tell which way the response leans, and the same with friction 10, at which no contact
 reaches its limit, whether sliding or opening breaks the symmetry.
@@ -60,7 +61,12 @@ ASYMMETRY, BETWEEN = 0.2, (70.0, 110.0)
 
 #: Between which forces events are looked for by dynamics from rest, by friction, and to which width.
 SOUGHT = {
-    0.2: {"first_opening": (2.0, 8.0), "linear_range": (4.0, 16.0), "crossover": (14.0, 26.0), "third_peak": (26.0, 46.0)},
+    0.2: {
+        "first_opening": (2.0, 8.0),
+        "linear_range": (4.0, 16.0),
+        "crossover": (14.0, 26.0),
+        "third_peak": (26.0, 46.0),
+    },
     1.0: {"first_opening": (3.0, 9.0), "linear_range": (4.0, 16.0)},
 }
 WIDTH = 0.2
@@ -130,7 +136,9 @@ def along_path(friction: float, variant: Variant) -> list[Found]:
 
 
 def _found(event: slab.Event, variant: Variant, loading: str, ramp: float = float("nan")) -> Found:
-    return Found(event.name, event.friction, event.low, event.high, event.definition, variant.kind, variant.name, loading, ramp)
+    return Found(
+        event.name, event.friction, event.low, event.high, event.definition, variant.kind, variant.name, loading, ramp
+    )
 
 
 def from_rest(friction: float, variant: Variant, ramp: float, sought: Mapping[str, tuple[float, float]]) -> list[Found]:
@@ -142,10 +150,14 @@ def from_rest(friction: float, variant: Variant, ramp: float, sought: Mapping[st
     found = []
     for name, (low, high) in sought.items():
         what, width = asked[name], 1.0 if name.startswith("loss") else WIDTH
-        ends = _bracket(lambda force, what=what: bool(what.happened(path.at(force))), low, high, width)
+        ends = _bracket(partial(_happened, path, what), low, high, width)
         event = slab.Event(name, friction, *ends, f"{what.definition}, from rest to each force")
         found.append(_found(event, variant, "dynamics", ramp))
     return found
+
+
+def _happened(path: studies.LoadPath, what: studies.Happening, force: float) -> bool:
+    return bool(what.happened(path.at(force)))
 
 
 def _bracket(happened: Callable[[float], bool], low: float, high: float, width: float) -> tuple[float, float]:
@@ -208,9 +220,15 @@ def dynamics() -> dict[str, xr.Dataset]:
 
 
 def copies() -> dict[str, xr.Dataset]:
-    """Datasets ``copies`` (run) beyond the loss of symmetry at friction 1, and ``control`` (run) at frictions 1 and 10."""
+    """Datasets ``copies`` (run) beyond the loss of symmetry at friction 1, and ``control`` (run) at frictions 1
+    and 10.
+    """
     done = computed(
-        {(1.0, force, seed): partial(copy_under, 1.0, force, seed) for force in BEYOND for seed in range(1, COPIES + 1)},
+        {
+            (1.0, force, seed): partial(copy_under, 1.0, force, seed)
+            for force in BEYOND
+            for seed in range(1, COPIES + 1)
+        },
         "displaced copies",
     )
     control = computed(

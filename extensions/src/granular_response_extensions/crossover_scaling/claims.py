@@ -21,7 +21,9 @@ SERIES = {
 
 
 def _exponent(data: Data, series: str, event: str) -> Quantity:
-    return Quantity.over(at(data.get("crossover_scaling", "powers"), series=series, event=event)["exponent"].values.tolist())
+    return Quantity.over(
+        at(data.get("crossover_scaling", "powers"), series=series, event=event)["exponent"].values.tolist()
+    )
 
 
 @claim(
@@ -31,7 +33,6 @@ def _exponent(data: Data, series: str, event: str) -> Quantity:
 def grows(data: Data) -> Numbers:
     """For identical external loads, very deep systems should exhibit a single peaked response whereas relatively
     shallow ones, as studied in some experiments (Sec. II B), should exhibit two peaks.
-
     Short: Deep slabs have one peak under a load that gives shallow ones two
     Here: Without friction and between walls the crossover force grows with the number of layers with the exponent {0}.
     """
@@ -48,14 +49,12 @@ def as_the_weight(data: Data) -> Numbers:
     tensile (excess) forces due to the applied force, and is therefore determined directly by the stress, rather than
     the strain (which does depend on the particle stiffness, of course), provided that the geometry is not significantly
     affected by the applied force (as it would for particles which are sufficiently soft to allow significant overlap).
-
     Short: Contacts open by the stress, so forces grow as the weight above
     Here: Without friction and between walls the force at which the open region reaches the floor grows with the number
     of layers with the exponent {0}; 2 is that of the weight above a line.
     Remark: The weight above a line grows as the square of the layers, in two dimensions. Without friction horizontal
     contacts carry the lateral prestress, not the weight above. Sides that press as the weight does have its power by
-    choice and are left out
-    """
+    choice and are left out"""
     for event, text in (("reaches_floor", "open region at the floor"), ("crossover", "two peaks")):
         for series, name in SERIES.items():
             if series != "confined as weight":

@@ -25,8 +25,9 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     means = datasets["means"]
     known, largest, oblique = _cases(means)
     figure, ((straight, turned, widths),) = style.figure(1, 3, height=2.9)
-    # of the two most unlike packings: nearly equal disks, and the last one
-    _directions(straight, means, largest[:: max(1, len(largest) - 1)][:2])
+    # of one packing under its largest and its smallest force
+    alike = [case for case in known if means["packing"].values[case] == means["packing"].values[known[0]]]
+    _directions(straight, means, list(dict.fromkeys([*alike[:1], *alike[-1:]])))
     _directions(turned, means, oblique)
     for angle in np.unique(means["angle_applied"].values[oblique]):
         turned.axvline(angle, color=style.FAINT, linewidth=3.0, zorder=0.4)
@@ -65,8 +66,6 @@ def _findings(means: xr.Dataset) -> dict[str, str]:
     return {"experiments": f"Widths grow with the depth to the power of {values(said)}." if said else ""}
 
 
-
-
 def _name(data: xr.Dataset, case: int) -> str:
     one = data.isel(case=case)
     angle = f", {float(one['angle_applied']):g}°" if one["angle_applied"] != 90.0 else ""
@@ -95,7 +94,8 @@ def _widths(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
     for power, text in ((1.0, r"$\propto z$"), (0.5, r"$\propto \sqrt{z}$")):
         ends = 2.4 * (depth / depth[0]) ** power
         axes.plot(depth, ends, **DOTS)
-        note(axes, text, (depth[1], ends[1]), (-2.0, 4.0), ha="right", va="bottom", fontsize=8)
+        side, gap = ("bottom", 4.0) if power == 1.0 else ("top", -6.0)
+        note(axes, text, (depth[1], ends[1]), (2.0, gap), fontsize=8, ha="right", va=side)
     ticks = [2, 5, 10, 20, 40]
     axes.set(xlabel=style.DEPTH, ylabel=rf"half width$\,/\,{style.RADIUS}$", xscale="log", yscale="log")
     axes.set(xticks=ticks, xticklabels=ticks, yticks=ticks, yticklabels=ticks, ylim=(0.8, 80.0))

@@ -18,12 +18,10 @@ claim = Claims("hysteresis")
 )  # fmt: skip
 def ranges(data: Data) -> Numbers:
     """What is nonlinear is irreversible, and what is linear is reversible.
-
     Short: What is nonlinear is irreversible, and the reverse
     Here: In the lattice at friction 0.2 the reversible range is {0} times the linear range.
     Remark: Reversible: a loop leaves no floor force changed by more than 1 % of the largest change under the load.
-    Linear: the response at x = 0 changes by less than 1 %. The paper writes "Nonlinear/irreversible effects" (I)
-    """
+    Linear: the response at x = 0 changes by less than 1 %. The paper writes "Nonlinear/irreversible effects" (I)"""
     for name, one in materials(data.get("hysteresis", "events")):
         events = one.sel(event=["linear_range", "reversible_range"])[["low", "high"]].to_array()
         brackets = events.transpose("realization", "event", "variable").values
@@ -39,12 +37,10 @@ def ranges(data: Data) -> Numbers:
 def repeated(data: Data) -> Numbers:
     """If the particle positions do not change significantly, so that only the contact network is modified in response
     to the applied stress, the behavior can possibly be modeled as "incrementally elastic".
-
     Short: The behavior can possibly be modeled as incrementally elastic
     Here: In the lattice without friction {0} of the work is dissipated in the second loading, and the response changes
     by {1}.
-    Remark: From the largest force to none and back. Elastic is taken as dissipating less than 1 % of the work
-    """
+    Remark: From the largest force to none and back. Elastic is taken as dissipating less than 1 % of the work"""
     for name, case in materials(data.get("hysteresis", "loops")):
         one = case.isel(turn=int(np.flatnonzero(np.isfinite(case["force"].values))[-1]))
         lost = (one["slid_again"] + one["crossed_again"]).values / one["work"].values

@@ -20,6 +20,7 @@ REACH = 30.0
 #: How points of the second loading are drawn.
 DOTS: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 2.6}
 
+
 def draw(datasets: Datasets) -> dict[str, Figure]:
     return {"hysteresis_loops": _loops(datasets["curves"], datasets["floor"])}
 

@@ -24,13 +24,11 @@ def decays(data: Data) -> Numbers:
     system) that the difference in stresses and strains in the interior of an elastic body due to two separate but
     statically equivalent systems of surface tractions (same overall force and torque), are negligible sufficiently far
     from the area where the loads are applied.
-
     Short: Statically equivalent loads act alike far away in packings too
     Here: In the lattice without friction the difference on the floor decays with the exponent {0}; 2 is that of an
     elastic body.
     Remark: The sentence is a theorem on elastic bodies; that packings follow it is our hypothesis. Small loads on the
-    disks of every row, in the initial equilibrium
-    """
+    disks of every row, in the initial equilibrium"""
     for delta, mu in CASES:
         study = at(data.get("influence", "saint_venant"), polydispersity=delta, friction=mu)
         exponent = study["exponent"].isel(separation=0).transpose("realization", "fit").values

@@ -30,13 +30,11 @@ def elastic(data: Data) -> Numbers:
     """More specifically, large systems subject to "small" applied forces (which is likely to be the case in many
     engineering applications), can be described by isotropic elasticity except in the near vicinity of the point of
     application of the force (where one expects strong induced anisotropy and irreversible rearrangements).
-
     Short: Large systems under small forces are elastic slabs
     Here: At friction 0.2 and polydispersity 0.01 the response differs from that of the elastic slab with the packings'
     own moduli by {0} of the largest pressure.
     Remark: Mean over the small loads on the top disks of a packing, smoothed with w = 3, in the highest packings; no
-    parameter is fitted
-    """
+    parameter is fitted"""
     yield from _described(data, "free")
 
 
@@ -46,13 +44,11 @@ def elastic(data: Data) -> Numbers:
 )  # fmt: skip
 def isotropic(data: Data) -> Numbers:
     """As B4.
-
     Short: ... and isotropic ones
     Here: At friction 0.2 and polydispersity 0.01 the response differs from that of the nearest isotropic slab by {0} of
     the largest pressure.
     Remark: Mean over the small loads on the top disks of a packing, smoothed with w = 3, in the highest packings; no
-    parameter is fitted
-    """
+    parameter is fitted"""
     yield from _described(data, "isotropic")
 
 
@@ -70,11 +66,9 @@ def _slabs(data: Data) -> dict[str, xr.Dataset]:
 def reach(data: Data) -> Numbers:
     """They found a criterion for the elastic moduli at which a crossover occurs from a single peaked response to a
     double peaked one [36]: two peaks are expected for r ≡ (1/bd)[ab − c(d + c)] < 0.
-
     Short: Two peaks are expected for r < 0
     Here: Without friction the region of r < 0 reaches the floor at {0} times the crossover force.
-    Remark: Ranges over the averages, the loads to which moduli are fitted and the forces between which it happens
-    """
+    Remark: Ranges over the averages, the loads to which moduli are fitted and the forces between which it happens"""
     for name, slab in _slabs(data).items():
         crossover = Quantity.bracket(*slab["crossover"].values)
         reached = slab["reach"].values.reshape(slab.sizes["step"], -1) >= 1.0
@@ -93,12 +87,11 @@ def reach(data: Data) -> Numbers:
 def incrementally_elastic(data: Data) -> Numbers:
     """If the particle positions do not change significantly, so that only the contact network is modified in response
     to the applied stress, the behavior can possibly be modeled as "incrementally elastic".
-
     Short: The behavior can possibly be modeled as incrementally elastic
     Here: At friction 0.2, up to the crossover and with moduli averaged over two radii, the incremental response
     differs from that of an elastic slab with the measured incremental moduli by {0}.
-    Remark: Ranges over the loads to which moduli are fitted. Largest difference of all forces. Two radii is the width of Fig. 14
-    """
+    Remark: Ranges over the loads to which moduli are fitted. Largest difference of all forces. Two radii is the
+    width of Fig. 14"""
     for name, slab in _slabs(data).items():
         crossover = Quantity.bracket(*slab["crossover"].values)
         below = slab["force"].values <= crossover.low
@@ -106,7 +99,10 @@ def incrementally_elastic(data: Data) -> Numbers:
         for part, inside in parts.items():
             for k, width in enumerate(slab["width"].values.tolist()) if inside.any() else ():
                 largest = slab["difference"].isel(width=k).values[inside].max(axis=0).ravel()
-                yield f"{name}, {part}, averages over {width:g} R", Quantity(None, float(largest.min()), float(largest.max()), "range")
+                yield (
+                    f"{name}, {part}, averages over {width:g} R",
+                    Quantity(None, float(largest.min()), float(largest.max()), "range"),
+                )
 
 
 @claim(
@@ -115,11 +111,9 @@ def incrementally_elastic(data: Data) -> Numbers:
 )  # fmt: skip
 def peaks(data: Data) -> Numbers:
     """As B28.
-
     Short: The behavior can possibly be modeled as incrementally elastic
     Here: Without friction the number of forces under which the elastic slab has another number of peaks is {0}.
-    Remark: Ranges over the averages and the loads to which moduli are fitted
-    """
+    Remark: Ranges over the averages and the loads to which moduli are fitted"""
     for name, slab in _slabs(data).items():
         needs(slab[["predicted_two_peaks", "two_peaks"]].to_array().notnull().all(), f"{name}: no number of peaks")
         wrong = (slab["predicted_two_peaks"] != slab["two_peaks"]).sum("step")

@@ -79,7 +79,7 @@ def _moduli(data: xr.Dataset) -> Figure:
         ends.append((name, float(across), float(relaxed[0]), colour))
     axes.set(xlabel="coordination number $z$", ylabel=r"shear modulus$\,/\,k_N$", ylim=(0.0, None))
     left, right = axes.get_xlim()
-    axes.set_xlim(left, right + 0.25 * (right - left))
+    axes.set(xlim=(left, right + 0.25 * (right - left)), ylim=(0.0, 1.2 * axes.get_ylim()[1]))
     label_ends(axes, ends)
     plain: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": style.BLACK, "markersize": 5.5}
     keys = [Line2D([], [], markerfacecolor="white", **plain), Line2D([], [], **plain)]

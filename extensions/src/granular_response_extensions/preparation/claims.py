@@ -22,16 +22,15 @@ EVENTS = {"linear_range": "end of the linear range", "first_opening": "first ope
 @claim(
     "B18", "beyond the paper, V", Ask("rank correlation", at_most("nearly", plus=-1.0)),
     Ask("largest per smallest force without mobilized contacts", within("similar")),
-    primary="end of the linear range, contacts within 1% of the limit, friction 0.2", source="hypothesis", finds="not supported"
+    primary="end of the linear range, contacts within 1% of the limit, friction 0.2",
+    source="hypothesis", finds="not supported"
 )  # fmt: skip
 def mobilized(data: Data) -> Numbers:
     """The fraction of fully mobilized contacts in the initial equilibrium determines the response.
-
     Short: Fully mobilized contacts in the initial equilibrium decide the response
     Here: At friction 0.2 the rank correlation of the linear range with the fraction of fully mobilized contacts is {0}
     (-1: it always falls); without such contacts its largest force is {1} times its smallest.
-    Remark: Over preparations of one ordered slab
-    """
+    Remark: Over preparations of one ordered slab"""
     study = data.get("preparation", "mobilized")
     study = study.isel(case=study["polydispersity"].values == 0.0)
     slabs = alike(study, "case", "wall_friction", "friction").items()

@@ -33,6 +33,7 @@ WAYS = {
 #: Of those whose dashpots are weaker or stronger than those of the first way.
 WEAKER, STRONGER = "P", "X"
 
+
 def draw(datasets: Datasets) -> dict[str, Figure]:
     return {"preparation": _onsets(datasets["events"])}
 
@@ -47,6 +48,7 @@ def _onsets(events: xr.Dataset) -> Figure:
         _event(axes, events.isel(event=np.flatnonzero(events["name"].values == name)), slabs)
         axes.set_xscale("log")
         axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter("")
         axes.set_ylim(len(slabs) - 0.5, -0.5)
     names = [f"${style.FRICTION} = {mu:g}$" + (", rough walls" if wall else "") for wall, mu in slabs]
     panels[0, 0].set_yticks(range(len(slabs)), names)
@@ -82,7 +84,7 @@ def _event(axes: Axes, events: xr.Dataset, slabs: list[tuple[float, float]]) -> 
     """A row for each slab: the onset force by every way to prepare it, and how far they lie apart."""
     usual = float(events["damping_ratio"][0])
     ramps = sorted(set(events["ramp_time"].values[events["gravity"].values == "slow"].tolist()))
-    shades = style.ordered_colours(max(1, len(ramps)), of="polydispersity")  # of one hue, dark: fast
+    shades = style.ordered_colours(len(ramps) + 1, of="polydispersity")[1:]  # of one hue, dark: fast
     for row, (wall, friction) in enumerate(slabs):
         mine = events.isel(event=(events["wall_friction"].values == wall) & (events["friction"].values == friction))
         low, high = mine["low"].values, mine["high"].values

@@ -28,12 +28,10 @@ def closer(data: Data) -> Numbers:
     """In addition, friction, which is present in all real granular systems, increases the range of linearity in the
     applied force and further reduces the effect of stress-induced anisotropy, rendering the response even closer to
     that predicted by isotropic elasticity.
-
     Short: Friction brings the response closer to isotropic elasticity
     Here: Farther than 6 radii from the load, the difference of the stress from that of the isotropic lattice falls by a
     factor of {0} at least from each of the frictions 0, 0.2 and 1 to the next.
-    Remark: The first half of the sentence, on the range of linearity, is R1
-    """
+    Remark: The first half of the sentence, on the range of linearity, is R1"""
     yield rise(_stress(data, "distance_to_lattice", mu) for mu in (1.0, 0.2, 0.0))
 
 
@@ -43,11 +41,9 @@ def closer(data: Data) -> Numbers:
 )  # fmt: skip
 def two_sided(data: Data) -> Numbers:
     """The stress distribution obtained for unilateral springs [29] is anisotropic, and shows two peaks at the floor.
-
     Short: With one-sided contacts the stress has two peaks at the floor
     Here: With one-sided contacts the stress above the floor dips by {0} at x = 0. In the isotropic lattice of two-sided
-    springs it has one peak.
-    """
+    springs it has one peak."""
     study = at(data.get(GROUP, "stress"), friction=0.0).sortby("z").isel(z=0)
     x = study["x"].values
     inside = np.abs(x) < np.abs(x).max() - 10.0
@@ -62,10 +58,8 @@ def aligned(data: Data) -> Numbers:
     """The most prominent effect of friction on the force chains (Fig. 13) is that the forces (and hence the chains) no
     longer need to be aligned with the (here, triangular) lattice direction, as they are in the absence of tangential
     forces.
-
     Short: Without friction forces are along the lattice, with it not
-    Here: Without friction the incremental forces are along the contact lines to {0} degrees.
-    """
+    Here: Without friction the incremental forces are along the contact lines to {0} degrees."""
     yield _stress(data, "misalignment", 0.0)
 
 
@@ -75,12 +69,10 @@ def aligned(data: Data) -> Numbers:
 )  # fmt: skip
 def vertical(data: Data) -> Numbers:
     """In particular, a vertical force chain is evident for µ = 1.
-
     Short: At friction 1 a vertical force chain is evident
     Here: At friction 1 the forces below the load are {0} degrees off the vertical and carry {1} times the share of the
     load that they carry without friction.
-    Remark: 15 degrees: nearer to the vertical than to a lattice line, 30 degrees off it
-    """
+    Remark: 15 degrees: nearer to the vertical than to a lattice line, 30 degrees off it"""
     share = [_stress(data, "axis_share", mu) for mu in (1.0, 0.0)]
     yield _stress(data, "axis_angle", 1.0), share[0].per(share[1])
 
@@ -92,11 +84,9 @@ def vertical(data: Data) -> Numbers:
 def isotropic(data: Data) -> Numbers:
     """In particular, the reduced anisotropy is apparent in the stress field (the stress field for µ = 1 is quite
     similar to that obtained in the case of an isotropic harmonic lattice [29]).
-
     Short: The stress at friction 1 is that of an isotropic lattice
     Here: Farther than 6 radii from the load, the stress at friction 1 differs from that of the harmonic lattice by {0}
-    in root mean squares, which is {1} of the difference without friction.
-    """
+    in root mean squares, which is {1} of the difference without friction."""
     off = [_stress(data, "distance_to_lattice", mu) for mu in (1.0, 0.0)]
     yield off[0], off[0].per(off[1])
 
@@ -108,12 +98,10 @@ def isotropic(data: Data) -> Numbers:
 def antisymmetric(data: Data) -> Numbers:
     """We verified (in the DEM simulations) that they are very small, even near the point of application of the external
     force, where the magnitude of the antisymmetric part of the stress is only a few percent of the pressure.
-
     Short: The antisymmetric stress is a few per cent of the pressure
     Here: Within 6 radii of the load the antisymmetric part of the stress is {0} of the largest pressure, {local|0} of
     the local pressure and {root mean squares|0} in root mean squares.
-    Remark: The largest local ratio is where the pressure itself is small, a tenth of its maximum or little more
-    """
+    Remark: The largest local ratio is where the pressure itself is small, a tenth of its maximum or little more"""
     study = data.get(GROUP, "stress")
     study = study.sel(friction=study["friction"] > 0.0)
     x, z = np.meshgrid(study["x"].values, study["z"].values)
@@ -133,9 +121,7 @@ def fits(data: Data) -> Numbers:
     monodisperse ordered packing: the force magnitudes vs. the horizontal coordinate at different depths in DEM
     simulations with frictionless and frictional (µ = 1; for the particles used in the experiments, µ ≃ 0.94 [76]) are
     shown in Fig. 15.
-
-    Short: Friction fits the measured force profiles better
-    """
+    Short: Friction fits the measured force profiles better"""
     needs(False, "the measured profiles of the experiments are not stored here")
     yield
 
@@ -148,12 +134,10 @@ def fits(data: Data) -> Numbers:
 )  # fmt: skip
 def chain(data: Data) -> Numbers:
     """These are reproduced quite well by our DEM simulations with friction (see Sec. V).
-
     Short: Simulations with friction have the chain of the experiments
     Here: Directly below the load the incremental force under 150 mg is {1} of the largest at its depth at least at
     friction 1, and {0} at most without friction.
     Remark: The experiments have a vertical chain ("Such a chain is actually observed"). A chain is taken as half of the
-    largest force
-    """
+    largest force"""
     name = "profiles.axis_magnitude"
     yield data.value(GROUP, name, np.max, friction=0.0), data.value(GROUP, name, np.min, friction=1.0)

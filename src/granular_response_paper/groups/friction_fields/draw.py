@@ -173,8 +173,8 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
         bar.set_ticks(ticks)
         bar.ax.xaxis.set_major_formatter("{x:g}")
         bar.ax.tick_params(which="minor", size=0)
-    for x, side, text in ((0.05, "left", "smaller than (a)"), (0.95, "right", "larger than (a)")):
-        empty.text(x, 0.27, text, transform=empty.transAxes, ha=side, va="bottom", fontsize=8)
+    for at, side, text in ((0.05, "left", "smaller than (a)"), (0.95, "right", "larger than (a)")):
+        empty.text(at, 0.27, text, transform=empty.transAxes, ha=side, va="bottom", fontsize=8)
     return figure
 
 

@@ -115,7 +115,7 @@ def _findings(datasets: Datasets) -> dict[str, str]:
             else "One peak at every friction."
         ),
     }  # fmt: skip
-    counts = []
+    counts: list[str] = []
     for friction in PROFILE_FRICTIONS:
         if friction in response["friction"].values:
             one = response.sel(friction=friction).dropna("force", subset=["peak_count"])

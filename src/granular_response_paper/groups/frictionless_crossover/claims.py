@@ -38,10 +38,8 @@ def _event(data: Data, name: str) -> Quantity:
 )  # fmt: skip
 def crossover(data: Data) -> Numbers:
     """A crossover from a single peaked to a double peaked response occurs as the applied force is increased.
-
     Short: Without friction one peak turns into two as the force grows
-    Here: Without friction two peaks appear at {0}, in rows of 60 disks at {rows of 60|0}.
-    """
+    Here: Without friction two peaks appear at {0}, in rows of 60 disks at {rows of 60|0}."""
     yield "rows of 61 and 60", _event(data, "crossover")
     yield "rows of 60", data.event("crossover", 0.0, "events_equal_rows")
     for case, found in data.elsewhere(lambda one: one.event("crossover", 0.0)):
@@ -58,10 +56,8 @@ def near_the_floor(data: Data) -> Numbers:
     """Otherwise, the anisotropy induced by the external force reaches the floor (Fig. 4(c), inducing a double peaked
     response (the crossover actually occurs at slightly smaller forces, at which the "teardrop" almost reaches the
     floor).
-
     Short: The crossover comes as the open region nears the floor
-    Here: Without friction two peaks appear at {0} of the force at which the open region reaches the floor.
-    """
+    Here: Without friction two peaks appear at {0} of the force at which the open region reaches the floor."""
     ratio = _event(data, "crossover").per(_event(data, "teardrop_reaches_floor"))
     yield "rows of 61 and 60", ratio, ratio
     literal = (data.event(name, 0.0, "events_equal_rows") for name in ("crossover", "reaches_floor"))
@@ -80,11 +76,9 @@ def _before_the_floor(data: Data) -> xr.Dataset:
 def horizontal(data: Data) -> Numbers:
     """As the force is increased, horizontal contacts are opened in a teardrop shaped region below the point of
     application of the force, whose size increases with the force and decreases with friction.
-
     Short: The contacts that open are horizontal
     Here: Until the open region reaches the floor, {0} of its contacts are horizontal.
-    Remark: At larger forces oblique contacts open too, close below the load; the text describes none
-    """
+    Remark: At larger forces oblique contacts open too, close below the load; the text describes none"""
     states = _before_the_floor(data)
     yield states["teardrop_horizontal"].values[states["teardrop"].values.any(axis=1)].min()
 
@@ -96,10 +90,8 @@ def horizontal(data: Data) -> Numbers:
 )  # fmt: skip
 def teardrop(data: Data) -> Numbers:
     """As F5a.
-
     Short: Their region is a teardrop that grows with the force
-    Here: The region is widest between its ends, {0} times its wider end, and grows by {2} rows.
-    """
+    Here: The region is widest between its ends, {0} times its wider end, and grows by {2} rows."""
     last = _before_the_floor(data).isel(force=-1)
     height = last["position"].values[:, 1]
     middle = 0.5 * (height[last["contact_disk"].values] + height[last["contact_partner"].values])
@@ -128,20 +120,21 @@ def size_in_steps(size: FloatArray, step: float) -> Quantity:
 def teardrop_and_depth(data: Data) -> Numbers:
     """However, Fig. 5 clearly demonstrates that the size of the "teardrop" only slightly decreases as the depth of the
     slab increases.
-
     Short: The open region shrinks only slightly in deeper slabs
     Here: In slabs of 20, 30 and 40 layers the open region is {0}, {30 layers|0} and {40 layers|0} times as deep as in
     15 layers.
     Remark: Means over evenly spaced forces at which the region of 15 layers has not reached its floor. The text does
     not name its sizes; 20 layers is the least change. In deep slabs gravity presses horizontal contacts together, which
-    open later; the symmetric equilibria of 30 and 40 layers may have others beside them
-    """
+    open later; the symmetric equilibria of 30 and 40 layers may have others beside them"""
     study = data.get(GROUP, "regions").sortby("layers")
     slabs = study.isel(slab=np.isclose(study["normal_stiffness"].values, 3000.0))
     thin = slabs.isel(slab=0)
     slabs = slabs.isel(force=(thin["reaches_floor"].values == 0) & (thin["teardrop_depth"].values > 2.0 * ROW))
     for k, layers in enumerate(slabs["layers"].values[1:], 1):
-        sizes = [[size_in_steps(slabs[f"teardrop_{name}"].values[slab], step) for slab in (0, k)] for name, step in (("depth", ROW), ("width", DISK))]
+        sizes = [
+            [size_in_steps(slabs[f"teardrop_{name}"].values[slab], step) for slab in (0, k)]
+            for name, step in (("depth", ROW), ("width", DISK))
+        ]
         yield f"{layers:g} layers", *(deep.per(shallow) for shallow, deep in sizes)
 
 
@@ -152,20 +145,23 @@ def teardrop_and_depth(data: Data) -> Numbers:
 def deep_and_shallow(data: Data) -> Numbers:
     """For identical external loads, very deep systems should exhibit a single peaked response whereas relatively
     shallow ones, as studied in some experiments (Sec. II B), should exhibit two peaks.
-
     Short: Deep slabs have one peak under a load that gives shallow ones two
     Here: In a slab of 20 layers and 82 disks a row the crossover force is {0} times that in 15 layers and 61 disks.
     Remark: Sec. IV.C asks for contacts that are still closed in the horizontal direction; slabs that have lost some of
-    them at rest are left out
-    """
+    them at rest are left out"""
     for name in ("sizes", "widths"):
         study = data.get(GROUP, name).sortby("layers")
-        slabs = study.isel(slab=np.isclose(study["normal_stiffness"].values, 3000.0) & (study["open_at_rest"].values == 0))
+        slabs = study.isel(
+            slab=np.isclose(study["normal_stiffness"].values, 3000.0) & (study["open_at_rest"].values == 0)
+        )
         columns = (slabs[key].values.tolist() for key in ("layers", "disks_per_row", "crossover_bracket"))
         for (thin, few, shallow), (layers, row, deep) in combinations(zip(*columns, strict=True), 2):
             # of the first, the width grows with the depth; of the second, walls are at the same distance
             if thin == slabs["layers"].min() < layers and (name == "sizes" or abs(few - row) <= 1):
-                yield f"{layers:g} x {row:g} against {thin:g} x {few:g} disks", Quantity.bracket(*deep).per(Quantity.bracket(*shallow))
+                yield (
+                    f"{layers:g} x {row:g} against {thin:g} x {few:g} disks",
+                    Quantity.bracket(*deep).per(Quantity.bracket(*shallow)),
+                )
 
 
 def _between(data: Data) -> xr.Dataset:
@@ -183,13 +179,11 @@ def _between(data: Data) -> xr.Dataset:
 def stiffness_response(data: Data) -> Numbers:
     """The response is also quite insensitive to the choice of stiffness for k_N ≳ 1000mg/R: at x = 0, it only changes
     by about 2% in the range 1000mg/R < k_N < 10⁵mg/R.
-
     Short: The response at x = 0 depends on k_N by only about 2 %
     Here: For k_N from 1000 to 1e5 mg/R the response at x = 0 changes by {0} under 1 mg and by {3 mg|0} under 3 mg, the
     crossover.
     Remark: The text does not name the force. About 2 % is at most a quarter more than 2 %. The linear response (1 mg
-    and less) is primary
-    """
+    and less) is primary"""
     study = _between(data)
     by_force = study["response_at_centre"].transpose("force", ...).values
     for force, values in zip(study["force"].values, by_force, strict=True):
@@ -204,11 +198,9 @@ def stiffness_response(data: Data) -> Numbers:
 def stiffness_teardrop(data: Data) -> Numbers:
     """We performed simulations with different values of k_N, and found that the size of the "teardrop" did increase
     with the stiffness of the particles, but appeared to saturate for k_N ≳ 2000mg/R.
-
     Short: The open region grows with k_N and saturates from 2000 mg/R on
     Here: From 2000 mg/R on the depth of the open region changes by {0} and its width by {1}; from the softest disks on
-    the depth grows by {2} rows.
-    """
+    the depth grows by {2} rows."""
     study = data.get(GROUP, "stiffness").sortby("normal_stiffness")
     high = study["normal_stiffness"].values >= 2000.0
     needs(high.sum() > 1 and not high.all(), "stiffness holds too few stiffnesses to compare")
@@ -226,11 +218,9 @@ def crossover_and_stiffness(data: Data) -> Numbers:
     """We conclude that the crossover from a single peaked to a double peaked response is essentially independent of the
     particle rigidity (provided that the particles are sufficiently stiff; otherwise the particle "overlaps" may be
     appreciable and the localized force would lead to significant rearrangements of the particles).
-
     Short: The crossover is independent of the stiffness
     Here: The crossover force at k_N = 1000 mg/R is {0} times that at 1e5.
-    Remark: This lies at the bound of 1.1, so that what counts as two peaks decides
-    """
+    Remark: This lies at the bound of 1.1, so that what counts as two peaks decides"""
     study = _between(data)
     definitions = {"two peaks, each above the response at x = 0": study["crossover_bracket"].values}
     definitions |= {f"a dip above {dip:.1%}": study["crossovers"].sel(dip=dip).values for dip in study["dip"].values}

@@ -33,11 +33,9 @@ def accurate(data: Data) -> Numbers:
     which are used here to define the response of the system to a localized force, the system has to be relaxed to a
     kinetic energy of E_k^stop = 10⁻¹³ mgR per particle, which is significantly smaller than that used in previous
     studies (e.g., in [77], the systems are relaxed to E_k^stop = 2·10⁻⁸ mgR per particle).
-
     Short: Stopping at 1e-13 gives floor forces to 1 %
     Here: Stopped at 1e-13 mgR per disk, floor forces are off by {0} without friction and by {friction 0.2|0} at
-    friction 0.2.
-    """
+    friction 0.2."""
     for mu in (0.0, 0.2):
         yield f"friction {mu:g}", _stopped(data, ENERGY, mu, "rest_error", "loaded_error")
 
@@ -45,14 +43,11 @@ def accurate(data: Data) -> Numbers:
 @claim("N8", "III.C", Ask("error with a larger energy", more_than(0.01), "%"), primary="response, friction 0, 1e-9")
 def needed(data: Data) -> Numbers:
     """As N1.
-
     Short: ... and this small energy is needed
-    Here: Stopped at 1e-11 mgR per disk, the response without friction is off by {response, friction 0, 1e-11|0}, at the
-    bound of 1 %, and the floor forces by {floor forces, friction 0, 1e-11|0}; at 1e-9 by {0} and {floor forces,
-    friction 0, 1e-9|0}.
+    Here: Stopped at 1e-11 mgR per disk, the response without friction is off by {response, friction 0, 1e-11|0} and the
+    floor forces by {floor forces, friction 0, 1e-11|0}; at 1e-9 by {0} and {floor forces, friction 0, 1e-9|0}.
     Remark: N1 asks whether the energy is enough, this one whether it has to be so small. The paper compares with 2e-8;
-    the nearest energy here is 1e-9. Only powers of a hundred were tried
-    """
+    the nearest energy here is 1e-9. Only powers of a hundred were tried"""
     for energy in (1e-9, 1e-11):
         for mu in (0.0, 0.2):
             name = f"friction {mu:g}, 1e{round(np.log10(energy))}"
@@ -64,10 +59,8 @@ def needed(data: Data) -> Numbers:
 def stays(data: Data) -> Numbers:
     """The typical kinetic energy obtained when using the resulting configuration as an initial configuration for the
     full DEM simulation was less than E_k = 10⁻²² mgR per particle.
-
     Short: A finished state has a kinetic energy below 1e-22
-    Here: When statically finished states go on by dynamics, the kinetic energy per disk is {0} mgR at most.
-    """
+    Here: When statically finished states go on by dynamics, the kinetic energy per disk is {0} mgR at most."""
     yield data.value(GROUP, "restart.kinetic_energy", np.max)
 
 
@@ -79,13 +72,11 @@ def criteria(data: Data) -> Numbers:
     """We verified that several other criteria for static equilibrium (see [78]) were satisfied: the contact network was
     fixed for at least several hundred time steps (and each particle had at least two contacts), there were no sliding
     contacts, and the mean particle acceleration was less than 10⁻⁵ mg.
-
     Short: At the end the network is fixed and no contact slides
     Here: When a run stops at friction 0.2 and 15 mg, the network has not changed for {0} steps, {1} contact slides and
     {2} disk has fewer than two contacts.
     Remark: Several hundred is at least three hundred. In the asymmetric states of Fig. 16(b) one disk of the floor has
-    a single contact, with the floor
-    """
+    a single contact, with the floor"""
     names = ("network_fixed_steps", "sliding_contacts", "loose_disks")
     yield tuple(data.value(GROUP, f"at_rest.{name}") for name in names)
 
@@ -93,24 +84,23 @@ def criteria(data: Data) -> Numbers:
 @claim("N3b", "III.C", Ask("mean acceleration in g", less_than(1.0e-5)), primary="stop when the energy stays small")
 def acceleration(data: Data) -> Numbers:
     """As N3a.
-
     Short: ... and the mean acceleration is below 1e-5
     Here: The mean acceleration is {0} g if the kinetic energy has to stay below 1e-13 for some oscillations of the
     slab, and {stop as soon as the energy is small|0} g if a run stops as soon as it is below.
-    Remark: The kinetic energy first falls below the limit at a turning point, where the acceleration is largest
-    """
-    for case, rule in (("stop when the energy stays small", "envelope"), ("stop as soon as the energy is small", "instantaneous")):
+    Remark: The kinetic energy first falls below the limit at a turning point, where the acceleration is largest"""
+    for case, rule in (
+        ("stop when the energy stays small", "envelope"),
+        ("stop as soon as the energy is small", "instantaneous"),
+    ):
         yield case, data.value(GROUP, "swing.mean_acceleration", np.mean, stop_rule=rule)
 
 
 @claim("N4", "III.B", Ask("difference per largest response", at_most("visible"), "%"))
 def time_step(data: Data) -> Numbers:
     """We verified that decreasing the time step did not affect the results of the simulations.
-
     Short: A smaller time step gives the same results
     Here: With half of the time step the response differs by {0} of its largest value.
-    Remark: At rest the events of the load path move with the step as in the ranges over the protocol
-    """
+    Remark: At rest the events of the load path move with the step as in the ranges over the protocol"""
     yield data.value(GROUP, "time_step.difference", time_step=2.5e-4)
 
 
@@ -118,10 +108,8 @@ def time_step(data: Data) -> Numbers:
 def gear(data: Data) -> Numbers:
     """We verified that the use of a Gear 5-value predictor-corrector algorithm [48] does not result in any significant
     changes in the results.
-
     Short: Gear's method gives the same results
-    Here: By Gear's method the response differs by {0} of its largest value, with the same time step.
-    """
+    Here: By Gear's method the response differs by {0} of its largest value, with the same time step."""
     yield data.value(GROUP, "integrators.difference", integrator="gear")
 
 
@@ -132,14 +120,12 @@ def gear(data: Data) -> Numbers:
 def damping(data: Data) -> Numbers:
     """This value was found to produce the fastest relaxation of the system towards static equilibrium and is irrelevant
     in the state of mechanical equilibrium itself.
-
     Short: Half of critical damping relaxes fastest
     Here: Of the dampings at which Beeman's method is stable with the paper's step, half of critical takes {0} times the
     shortest time. With smaller steps more damping settles sooner: half of critical takes {any step|0} times as long as
     the fastest.
     Remark: Gravity at friction 0.2; times are those of velocity Verlet with half of the step. The second half of the
-    sentence is N11
-    """
+    sentence is N11"""
     study = data.get(GROUP, "damping").sortby("damping_ratio")
     settled = study.isel(damping_ratio=study["settled"].values > 0)
     time = settled["relaxation_time"].values
@@ -154,11 +140,9 @@ def damping(data: Data) -> Numbers:
 @claim("N7", "III.C", Ask("error of the mean response", at_most(0.01), "%"))
 def disorder(data: Data) -> Numbers:
     """In this case, sufficient accuracy was obtained with E_k^stop = 10⁻⁹ mgR.
-
     Short: For averages over disorder 1e-9 is enough
     Here: Stopping at 1e-9 mgR per disk changes the mean response of disordered packings by {0} of its largest value.
-    Remark: Sufficient is taken as 1 %, as for floor forces
-    """
+    Remark: Sufficient is taken as 1 %, as for floor forces"""
     study = data.get(GROUP, "disorder")
     stopped, finished = (study[name].transpose("realization", ...).values for name in ("stopped", "finished"))
     needs(np.isfinite(stopped).all() and np.isfinite(finished).all(), "disorder holds responses without numbers")

@@ -6,7 +6,15 @@ from granular_response_paper.claims.bounds import at_least, at_most, higher_by, 
 from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers
 
 GROUP = "pile_dip"
-claim = Claims(GROUP, {"scene.packing.layers": 11, "scene.contact.friction": 0.94, "scene.wall.friction": 0.35, "scene.contact.stiffness_ratio": 0.5})
+claim = Claims(
+    GROUP,
+    {
+        "scene.packing.layers": 11,
+        "scene.contact.friction": 0.94,
+        "scene.wall.friction": 0.35,
+        "scene.contact.stiffness_ratio": 0.5,
+    },
+)
 
 
 @claim(
@@ -16,10 +24,8 @@ claim = Claims(GROUP, {"scene.packing.layers": 11, "scene.contact.friction": 0.9
 def dip(data: Data) -> Numbers:
     """In particular, as shown in Figs. 17(c),(d), the pile of frictionless disks exhibits a dip in the stress under the
     apex, but the pile of frictional disks does not.
-
     Short: Piles have a dip without friction
-    Here: Without friction the stress dips by {0} under the apex.
-    """
+    Here: Without friction the stress dips by {0} under the apex."""
     yield data.value(GROUP, "stress.dip", case="frictionless")
 
 
@@ -29,10 +35,8 @@ def dip(data: Data) -> Numbers:
 )  # fmt: skip
 def no_dip(data: Data) -> Numbers:
     """As P1.
-
     Short: ... and none with friction
-    Here: With friction the stress is largest under the apex: there is no dip.
-    """
+    Here: With friction the stress is largest under the apex: there is no dip."""
     yield data.value(GROUP, "stress.dip", case="frictional")
 
 
@@ -43,11 +47,9 @@ def no_dip(data: Data) -> Numbers:
 def regions(data: Data) -> Numbers:
     """In the frictional case, the size of the region of open contacts in the central region of the pile is quite
     similar, but its shape is different [Figs. 17(e),(f)].
-
     Short: The open region has a similar size but another shape with friction
     Here: With friction the open region has {0} times the contacts, and its ratio of width to height differs by a factor
-    of {1}.
-    """
+    of {1}."""
     study = data.get(GROUP, "piles")
     full, without = (study.sel(case=case, drop=True) for case in ("frictional", "frictionless"))
     contacts, height, width = (float((full / without)[f"central_{n}"]) for n in ("open_contacts", "height", "width"))
@@ -62,9 +64,7 @@ def regions(data: Data) -> Numbers:
 def open_contacts(data: Data) -> Numbers:
     """The dip in the frictionless case is due to the open horizontal contacts in the central region of the pile; see
     Fig. 17(e).
-
     Short: The dip is due to the open horizontal contacts
     Here: Without friction the floor force under the apex dips by {0}. If contacts cannot open, it is largest there.
-    Remark: Glued contacts are two-sided springs between all neighbours of the lattice
-    """
+    Remark: Glued contacts are two-sided springs between all neighbours of the lattice"""
     yield data.value(GROUP, "piles.floor_dip", case="frictionless"), data.value(GROUP, "glued.floor_dip")

@@ -117,12 +117,13 @@ def _findings(datasets: Datasets) -> dict[str, str]:
         dips.append(f"{100.0 * central_dip(x, even):.2g} % at µ = {friction:g}")
     grown, total = 0, 0
     w = smoothed_by(averages)
-    for case in np.flatnonzero((averages["polydispersity"].values > 0.0) & (averages["friction"].values > 0.0)):
-        one = averages.isel(case=case, width=w)
+    rubbed = (averages["polydispersity"].values > 0.0) & (averages["friction"].values > 0.0)
+    for index in np.flatnonzero(rubbed).tolist():
+        one = averages.isel(case=index, width=w)
         usable = np.flatnonzero((one["count_at_rest"].values >= 2) & np.isfinite(one["force"].values))
-        if usable.size and case in _shown(averages):
+        if usable.size and index in _shown(averages):
             total += 1
-            grown += not is_double_peaked(averages["x"].values, one["mean"].values[usable[0]])
+            grown += int(not is_double_peaked(averages["x"].values, one["mean"].values[usable[0]]))
     data = datasets["linear_range"]
     shorter, compared = 0, 0
     for friction in different(data["friction"]):

@@ -25,13 +25,11 @@ def linear_forces(data: Data) -> Numbers:
     """For the typical deformations obtained in the experiments, a linear fit to the particle force law provides quite a
     good description [65], which further justifies our choice of modeling the normal force as that exerted by a linear
     spring with the above mentioned effective spring constant.
-
     Short: Linear normal forces describe the 3/2 law quite well
-    Here: With the power 3/2 in place of linear normal forces the response differs by {0} of its peak at friction 0.2,
-    close to the bound of a fifth, and by {friction 1|0} at friction 1.
+    Here: With the power 3/2 in place of linear normal forces the response differs by {0} of its peak at friction 0.2
+    and by {friction 1|0} at friction 1.
     Remark: The sentence is about measured contacts; here it is asked of the response under 15 mg. The laws have the
-    same stiffness at the mean contact force at rest
-    """
+    same stiffness at the mean contact force at rest"""
     for mu in (0.2, 1.0):
         yield f"friction {mu:g}", _difference(data, mu, "hertz")
 
@@ -43,12 +41,10 @@ def linear_forces(data: Data) -> Numbers:
 def irrelevant(data: Data) -> Numbers:
     """This value was found to produce the fastest relaxation of the system towards static equilibrium and is irrelevant
     in the state of mechanical equilibrium itself.
-
     Short: Damping is irrelevant in mechanical equilibrium
     Here: With dashpots of half the strength the response under 15 mg differs by {0} of its peak at friction 0.2 and by
     {friction 1|0} at friction 1: which equilibrium is reached depends on them.
     Remark: No dashpot acts in an equilibrium, but with friction the one that is reached depends on the motion before.
-    The first half of the sentence is N6
-    """
+    The first half of the sentence is N6"""
     for mu in (0.2, 1.0):
         yield f"friction {mu:g}", _difference(data, mu, "damping_halved")

@@ -18,13 +18,11 @@ def large_systems(data: Data) -> Numbers:
     """The results indicate that in large systems (typically considered by engineers), the response is close to that
     predicted by isotropic elasticity whereas the response of small systems (or when sufficiently large forces are
     applied) is strongly anisotropic.
-
     Short: In large systems the response is close to isotropic elasticity
     Here: Without friction the response of the deepest slab differs from that of the elastic slab by {0}.
     Remark: Force of 0.01 mg, under which no contact opens, so that a lattice of springs tends to its continuum: this
-    could hardly fail. The height of the slab is that to the top of the loaded disk; to its centre the difference is 1.2
-    %. In 15 layers, where gravity opens a row of contacts, it is 5 %. The second half of the sentence is A4b
-    """
+    could hardly fail. The height of the slab is that to the top of the loaded disk. In 15 layers, where gravity opens a
+    row of contacts, it is 5 %. The second half of the sentence is A4b"""
     cases = alike(data.get("slab_comparison", "slabs"), "slab", "friction", "floor", "gravity", "disks_per_layer")
     for (mu, floor, gravity, wide), slabs in cases.items():
         thin, *_, deep = slabs.sortby("layers")["distance"].values

@@ -50,11 +50,11 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     )
     slabs = datasets["slabs"].isel(slab=datasets["slabs"]["friction"].values == 0.0)
     slabs = slabs.isel(slab=slabs["disks_per_layer"].values == slabs["disks_per_layer"].values.max())
-    layers, off = slabs["layers"].values, 100.0 * slabs["distance"].values
+    count, off = slabs["layers"].values, 100.0 * slabs["distance"].values
     finding = (
-        f"Without friction the difference from the elastic slab is {off[layers.argmin()]:.2g} % of the peak in "
-        f"{layers.min():g} layers and {off[layers.argmax()]:.2g} % in {layers.max():g}."
-        if layers.size
+        f"Without friction the difference from the elastic slab is {off[count.argmin()]:.2g} % of the peak in "
+        f"{count.min():g} layers and {off[count.argmax()]:.2g} % in {count.max():g}."
+        if count.size
         else ""
     )
     wide = float(datasets["slabs"]["disks_per_layer"].max())

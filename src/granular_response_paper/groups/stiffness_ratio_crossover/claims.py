@@ -21,10 +21,9 @@ def _two_peaks_end(data: Data) -> Quantity:
 def ratio(data: Data) -> Numbers:
     """A crossover from a single peaked to a double peaked response occurs with decreasing k_T/k_N (the crossover occurs
     at k_T/k_N ≃ 0.3).
-
     Short: k_T/k_N of about 0.3 separates two peaks from one
-    Here: At friction 10 two peaks first vanish at k_T/k_N = {0}. Up to 0.319 dips of at most 0.2 % come back.
-    """
+    Here: At friction 10 two peaks first vanish at k_T/k_N = {0}.
+    Remark: Above this ratio a dip of some tenths of a per cent may return, until the response is largest at x = 0"""
     yield _two_peaks_end(data)
 
 
@@ -34,13 +33,11 @@ def ratio(data: Data) -> Numbers:
 )  # fmt: skip
 def independent(data: Data) -> Numbers:
     """For larger values of k_T/k_N, the response is nearly independent of k_T/k_N.
-
     Short: Above it the response is nearly independent of the ratio
     Here: Responses at k_T/k_N from 0.5 to 1 differ from that at 0.8 by up to {0} of the peak, from 0.4 to 1 by up to
     {from 0.4 on|0}.
     Remark: The text does not say from which ratio on; 0.5 is the smallest that the paper uses elsewhere (Sec. V.F).
-    Away from the side walls
-    """
+    Away from the side walls"""
     study = data.get(GROUP, "response")
     inside = study["interior"].values > 0
     ratios, response = study["stiffness_ratio"].values, study["floor_response"].transpose("stiffness_ratio", ...).values
@@ -59,10 +56,8 @@ def none_slides(data: Data) -> Numbers:
     """In this case, the ratio of tangential to normal stiffness, k_T/k_N (see Sec. III A), determines the response:
     Fig. 10 presents the response obtained with F_ext = 15mg for µ = 10 (which is practically equivalent to µ = ∞, as
     used in [26], since no sliding occurs), with different values of k_T/k_N.
-
     Short: At friction 10 no contact slides
-    Here: At friction 10 and every ratio above 0, {0} contact is at the Coulomb limit.
-    """
+    Here: At friction 10 and every ratio above 0, {0} contact is at the Coulomb limit."""
     study = data.get(GROUP, "response")
     yield study["sliding_contacts"].values[study["stiffness_ratio"].values > 0.001].max()
 
@@ -74,11 +69,9 @@ def none_slides(data: Data) -> Numbers:
 def criterion(data: Data) -> Numbers:
     """Nevertheless, the estimate obtained using this criterion fits our result for the finite slab quite well: for the
     model used here (with no horizontal springs), r = (β² + 10β − 3)/(β² + 6β + 9), where β ≡ k_2^t/k_2^n.
-
     Short: The half plane's criterion gives the slab's ratio quite well
     Here: The root of the criterion is {0} times the ratio k_T/k_N at which two peaks of the slab turn into one; with
-    disks free to turn, {disks free to turn|0} times.
-    """
+    disks free to turn, {disks free to turn|0} times."""
     for case, rotations in (("rotations suppressed", "suppressed"), ("disks free to turn", "free")):
         yield case, data.value(GROUP, "elastic.root", rotations=rotations).per(_two_peaks_end(data))
 
@@ -91,13 +84,13 @@ def criterion(data: Data) -> Numbers:
 def immaterial(data: Data) -> Numbers:
     """When µ is sufficiently large (and F_ext sufficiently small), its value is essentially immaterial, since sliding
     is never reached.
-
     Short: Sufficiently large friction is immaterial
     Here: From friction 2 to 10 the response under 15 mg changes by {0} of its peak.
     Remark: Friction 10 starts from rest and has rough walls (Fig. 10), friction 2 follows the load path beside smooth
-    walls (Fig. 12)
-    """
-    ten, axis = (data.get(group, name) for group, name in ((GROUP, "response"), ("friction_linear_range", "friction_axis")))
+    walls (Fig. 12)"""
+    ten, axis = (
+        data.get(group, name) for group, name in ((GROUP, "response"), ("friction_linear_range", "friction_axis"))
+    )
     values = at(ten, stiffness_ratio=0.8)["floor_response"].values
     two = at(axis, friction=2.0, force=15.0)["floor_response"].values
     yield float(np.abs(values - two)[ten["interior"].values > 0].max() / values.max())

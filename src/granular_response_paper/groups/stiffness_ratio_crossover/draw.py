@@ -37,8 +37,17 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
         bodies.plot(elastic["x"], solid, **looks[ratio])
         for axes, one in ((simulated, curve), (bodies, solid)):
             middle = float(one.values[np.argmin(np.abs(one["x"].values))])
-            note(axes, f"{ratio:g}", (0.0, middle), (0.0, 2.5), ha="center", fontsize=8, color=looks[ratio]["color"],
-                 path_effects=[withStroke(linewidth=2.0, foreground="white")], zorder=5)
+            note(
+                axes,
+                f"{ratio:g}",
+                (0.0, middle),
+                (0.0, 2.5),
+                ha="center",
+                fontsize=8,
+                color=looks[ratio]["color"],
+                path_effects=[withStroke(linewidth=2.0, foreground="white")],
+                zorder=5,
+            )
     _draw_dips(dips, response, elastic, events)
     load = f"simulation, {style.equals(style.F_EXT, force, style.WEIGHT)}"
     titles((simulated, bodies, dips), (load, "elastic slab", "depth of the dip"))
@@ -85,10 +94,10 @@ def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr
     axes.plot(fine, dip.sel(body="smooth floor"), **style.line(2), label="elastic slab")
     axes.plot(ratio, response["central_dip"], **{**style.marked_line(0), "color": style.BLACK}, label="simulation")
     axes.set(xlabel=f"${style.STIFFNESS_RATIO}$", ylabel="relative depth of the dip at $x = 0$", xlim=NEAR)
-    drawn = np.concatenate([line.get_xydata()[(line.get_xdata() >= NEAR[0]) & (line.get_xdata() <= NEAR[1])]
-                            for line in axes.get_lines() if len(line.get_xdata()) > 2])  # fmt: skip
-    if len(drawn):
-        axes.set_ylim(min(-0.012, 1.1 * drawn[:, 1].min()), 1.1 * drawn[:, 1].max())
+    seen = [np.asarray(line.get_xydata()) for line in axes.get_lines()[1:]]
+    drawn = np.concatenate([curve[(curve[:, 0] >= NEAR[0]) & (curve[:, 0] <= NEAR[1]), 1] for curve in seen])
+    if drawn.size:
+        axes.set_ylim(min(-0.012, 1.1 * drawn.min()), 1.1 * drawn.max())
     axes.legend(loc="upper right", borderaxespad=0.3)
-    for value, text, side in zip(PAPER, ("half plane", "paper"), ("before", "behind"), strict=True):
-        style.paper_value(axes, value, f"{text} {value:g}", side=side, at=0.62)
+    style.paper_value(axes, PAPER[0], f"half plane {PAPER[0]:g}", at=0.62)
+    style.paper_value(axes, PAPER[1], f"paper {PAPER[1]:g}", side="behind", at=0.62)

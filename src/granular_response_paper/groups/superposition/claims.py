@@ -31,13 +31,11 @@ def _hold(data: Data, force: float, word: str) -> Numbers:
 def holds(data: Data) -> Numbers:
     """As shown in Fig. 23, superposition holds even on the microscopic scale, i.e., for individual forces without
     coarse graining.
-
     Short: Superposition holds for individual forces
     Here: In the paper's test, floor forces at 0.2 mg, superposition holds within 5 % in {0} of the packings. For all
     contact forces it holds in {all contact forces|0}, so that one packing is possible but not typical.
     Remark: The paper shows one packing, so that what is asked is only that such a one is not rare: more than one in
-    forty. At all distances of the loads
-    """
+    forty. At all distances of the loads"""
     yield from _hold(data, 0.2, "holds")
 
 
@@ -49,13 +47,11 @@ def holds(data: Data) -> Numbers:
 def quite_well(data: Data) -> Numbers:
     """Interestingly, we find that superposition holds quite well even beyond the linear regime, as shown in Fig. 24
     (for F_ext = mg).
-
     Short: It holds quite well beyond the linear range
     Here: At 1 mg superposition holds within a fifth for the floor forces in {0} of the packings, and for all contact
     forces in {all contact forces|0}.
     Remark: The paper shows one packing, so that what is asked is only that such a one is not rare: more than one in
-    forty. At all distances of the loads
-    """
+    forty. At all distances of the loads"""
     yield from _hold(data, 1.0, "quite well")
 
 
@@ -66,13 +62,11 @@ def quite_well(data: Data) -> Numbers:
 def falls_with_depth(data: Data) -> Numbers:
     """The validity of superposition beyond the linear elastic regime indicates that sufficiently far from the applied
     load, the system responds (nearly) elastically even though it is not elastic everywhere.
-
     Short: Superposition holds far from the loads
     Here: At 1 mg and for the nearest loads, the deviation from superposition in the deepest row is {0} of the largest
     in any row.
     Remark: Each deviation is per force in its row. It falls with the distance of the loads from each other far more
-    than with the depth below them
-    """
+    than with the depth below them"""
     study = at(data.get(GROUP, "errors"), force=1.0).sortby("gap")
     error = study["row_error"].transpose("distance", "realization", "gap").values
     needs(error.shape[2] > 1, "errors holds one depth")

@@ -17,20 +17,19 @@ def _lost(data: Data, table: str, **labels: float) -> Quantity:
 
 @claim(
     "R5a", "V.E, Fig. 16b", Ask("force at which the response loses its symmetry", between(91.0, 95.0), "mg", 91.0),
-    primary="over the protocol"
+    primary="over the protocol",
+    finds="any"
 )  # fmt: skip
 def loss_of_symmetry(data: Data) -> Numbers:
     """However, when the force exceeds F_ext = 91mg, we obtain a sharp transition to a very different response shape
     [see Fig. 16(b)], which is very asymmetric (unlike the symmetric double peaked response obtained for lower friction
     at large forces).
-
     Short: At friction 1 symmetry is lost beyond 91 mg
     Here: Symmetry is lost at {load ramp of 20 sqrt(R/g)|0} with a load ramp of 20 √(R/g), at {load ramp of 100
     sqrt(R/g)|0} with one of 100 √(R/g) and at {rows of 60 disks|0} in rows of 60 disks. Over the ramps, dashpots, steps
     and displaced copies it is lost at {0}.
     Remark: The text does not say how long the force grows. The next force that it names is 95 mg, at which symmetry is
-    lost. The number 91 speaks for rows of 61 and 60 disks
-    """
+    lost. The number 91 speaks for rows of 61 and 60 disks"""
     runs = data.get(ROBUSTNESS, "events_from_rest")
     there = (runs["name"].values.astype(str) == "loss_of_symmetry") & (runs["kind"].values.astype(str) == "protocol")
     ends = zip(runs["low"].values[there].tolist(), runs["high"].values[there].tolist(), strict=True)

@@ -26,6 +26,7 @@ REACH = 30.0
 #: The force at which the paper sees the symmetry lost, in mean disk weights (Sec. V.E).
 PAPER = 91.0
 
+
 def draw(datasets: Datasets) -> dict[str, Figure]:
     states, copies = datasets["states"], datasets["copies"]
     with_states = states.sizes["state"] == 3
@@ -81,9 +82,8 @@ def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset, equal_rows: xr.D
     panel.set(xlabel=style.FORCE, ylim=(len(rows) - 0.4, -0.9))
     panel.tick_params(axis="y", which="both", length=0.0)
     style.paper_value(panel, PAPER, f"paper: {PAPER:g}", at=0.34, side="behind")
-    for name, look in (("symmetric", {"color": style.MUTED, "markerfacecolor": "white"}),
-                       ("asymmetric", {"color": style.VERMILION})):  # fmt: skip
-        panel.plot([], [], "o", label=name, markersize=5.0, **look)
+    panel.plot([], [], "o", label="symmetric", markersize=5.0, color=style.MUTED, markerfacecolor="white")
+    panel.plot([], [], "o", label="asymmetric", markersize=5.0, color=style.VERMILION)
     panel.legend(loc="upper left", ncols=2, columnspacing=1.0, handletextpad=0.2, borderaxespad=0.2)
 
 

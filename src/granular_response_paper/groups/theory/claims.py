@@ -17,11 +17,9 @@ claim = Claims("theory")
 def root(data: Data) -> Numbers:
     """Hence (in the physically relevant range β > 0), two peaks are expected for β ≲ 0.2915, which is consistent with
     the value k_T/k_N ≃ 0.3 obtained in the simulation (Fig. 10).
-
     Short: The criterion has its root at 0.2915
     Here: Without horizontal springs the criterion r changes its sign at k_T/k_N = {0:4}.
-    Remark: Eq. (5) keeps the disks from turning; the paper's disks turn
-    """
+    Remark: Eq. (5) keeps the disks from turning; the paper's disks turn"""
     yield data.value("theory", "peak_criterion.root", rotations="suppressed")
 
 
@@ -32,10 +30,8 @@ def root(data: Data) -> Numbers:
 def moduli(data: Data) -> Numbers:
     """In order to obtain the elastic moduli corresponding to the continuum limit of the considered system, an affine
     deformation (which is appropriate for a lattice configuration) is defined by a symmetric, uniform strain field.
-
     Short: Moduli of the spring model
     Here: The four moduli agree with those measured on a periodic lattice, strained and relaxed, to {0} of the largest
     modulus.
-    Remark: Eq. (6) as printed gives shear half its energy; its d is twice that of eq. (10), which the root uses
-    """
+    Remark: Eq. (6) as printed gives shear half its energy; its d is twice that of eq. (10), which the root uses"""
     yield data.value("theory", "moduli.error", np.max, rotations="suppressed")

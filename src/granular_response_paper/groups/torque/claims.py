@@ -9,7 +9,9 @@ from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers
 from granular_response_paper.claims.numbers import needs
 
 GROUP = "torque"
-claim = Claims(GROUP, {"force": 10.0, "angle": 30.0, "scene.contact.friction": 0.5, "scene.packing.polydispersity": 0.001})
+claim = Claims(
+    GROUP, {"force": 10.0, "angle": 30.0, "scene.contact.friction": 0.5, "scene.packing.polydispersity": 0.001}
+)
 
 #: "Close to the load" and beyond (mean radii).
 NEAR, FAR = 6.0, 9.0
@@ -18,11 +20,9 @@ NEAR, FAR = 6.0, 9.0
 @claim("T1a", "V.G, Fig. 18", Ask("mean change of the contact forces near the load", at_least("marked"), "%"))
 def change(data: Data) -> Numbers:
     """As shown, additional torques can have quite a large effect on the obtained force chains.
-
     Short: Torques can have quite a large effect on force chains
     Here: The largest torque changes the contact forces within 6 radii of the load by {0}.
-    Remark: One realization; the sentence says what torques can do
-    """
+    Remark: One realization; the sentence says what torques can do"""
     rings = data.get(GROUP, "reach").sortby("torque").isel(torque=-1)
     yield rings["force_change"].values[rings["ring_outer"].values <= NEAR].mean()
 
@@ -35,12 +35,10 @@ def near_the_load(data: Data) -> Numbers:
     """Although the effect on the stress field (in particular, its asymmetric part) is typically confined to a region
     close to the point of application, this may indicate that for some effects it is important to extend the continuum
     description to incorporate torques and rotations, i.e., use a micropolar or Cosserat continuum model [88, 89, 90]).
-
     Short: Its effect on the stress is confined to the load's surroundings
     Here: Beyond 9 radii from the load a torque changes the antisymmetric part of the stress by {0} of its change within
     6 radii, and the whole stress by {whole stress, mean over the area|0}.
-    Remark: The stress of the force alone falls with the distance too, so that its relative change reaches farther
-    """
+    Remark: The stress of the force alone falls with the distance too, so that its relative change reaches farther"""
     rings = data.get(GROUP, "reach").sortby("torque").isel(torque=-1)
     near, far = rings["ring_outer"].values <= NEAR, rings["ring_inner"].values >= FAR
     study, disks = (data.get(GROUP, name).sortby("torque") for name in ("stress", "torques"))
