@@ -22,7 +22,7 @@ import scene_keys
 ROOT = Path(__file__).resolve().parents[1]
 FRAGMENTS = ROOT / "docs" / "_generated"
 LAWS = ROOT / "tests" / "demonstration.py"
-PLACE = re.compile(r"(?P<head><!-- generated: (?P<name>[\w-]+) -->\n)(?P<text>.*?)(?P<end>\n<!-- end -->)", re.DOTALL)
+PLACE = re.compile(r"(?P<head><!-- generated: (?P<name>[\w-]+) -->)\n.*?(?P<end><!-- end -->)", re.DOTALL)
 
 #: Claims behind the six findings of README.md.
 FINDINGS = ("F4a", "R3a", "R5a", "K1a", "A1", "A5")
@@ -38,7 +38,7 @@ def documents() -> list[Path]:
 
 def expanded(text: str) -> str:
     """A document with all of its places filled anew."""
-    return PLACE.sub(lambda place: f"{place['head']}{filling(place['name'])}{place['end']}", text)
+    return PLACE.sub(lambda place: f"{place['head']}\n\n{filling(place['name'])}\n\n{place['end']}", text)
 
 
 def filling(name: str) -> str:
@@ -159,8 +159,18 @@ def sentence(one: Any) -> str:
     return re.sub(r":\w+:`~?([^`]+)`", r"`\1`", first).replace("``", "`").replace("|", "\\|")
 
 
+def falls() -> str:
+    """What the fall under gravity costs in the default preparation, from ``benchmarks/fall.json``."""
+    found = json.loads((ROOT / "benchmarks" / "fall.json").read_text(encoding="utf-8"))
+    rows = [f"| {row['scene']} | {row['disks']:,} | {row['seconds']:.2g} s | {row['peak_gibibytes']:.2g} GiB |"
+            for row in found["scenes"]]  # fmt: skip
+    head = f"| scene ({found['measured_on']}) | disks | processor time | memory |\n|---|---|---|---|"
+    return "\n".join([head, *rows])
+
+
 MADE: dict[str, Callable[[], str]] = {
     "counts": counts,
+    "falls": falls,
     "findings": findings,
     "figures-of-the-paper": gallery,
     "public-names": public_names,
