@@ -132,25 +132,18 @@ def page(found: Stored) -> str:
     """The template with its tables."""
     machine = found["machine"]
     versions = {f"{row['code'].partition(', ')[0]} {row['version']}": None for row in found["arena"]["runs"]}
-    met = [{**row, "met": "yes" if row["met"] else "**no**"} for row in goals(found)]
     reached = [{**row, "scene": {"friction": "friction 0.2, 15 mg", "frictionless": "no friction, 4 mg"}[row["scene"]]}
                for row in found["responses"]["reached"]]  # fmt: skip
     filled = {
         "processor": found["kernel"]["measured_on"],
         "software": f"{machine['cores']} cores, Python {machine['python']}, Numba {machine['numba']}",
         "versions": ", ".join(name.replace("granular_response", "this package") for name in versions),
-        "goals": table(met, what="", goal="goal", measured="measured", met="met"),
         "steps": table(pick(found["arena"]["runs"], disks=908), code="code", version="version",
                        processor_microseconds="processor time of a step [µs]", times_ours="this package = 1"),
         "reached": table(reached, scene="scene", code="code", **{"0.01": "1e-2", "0.001": "1e-3", "0.0001": "1e-4",
                          "1e-05": "1e-5", "least_error": "smallest error reached"}),
         "exactness": table(found["exactness"]["groups"], kind="packings", equilibria="equilibrium lost by",
                            scenes="scenes", events="events", exact="error at most 1e-8", error="largest error"),
-        "costs": costs(found),
-        "depth": table(found["depth"]["growth"], layers="layers", from_force="from force [mg]",
-                       to_force="to force [mg]", exponent_of_depth="exponent of depth in force",
-                       exponent_of_width="of width"),
-        "depth_on": found["depth"]["measured_on"],
     }  # fmt: skip
     text = (HERE / "benchmarks.md.in").read_text(encoding="utf-8")
     for name, value in filled.items():

@@ -19,6 +19,8 @@ from typing import Any
 
 import scene_keys
 
+from granular_response.errors import GranularError
+
 ROOT = Path(__file__).resolve().parents[1]
 FRAGMENTS = ROOT / "docs" / "_generated"
 LAWS = ROOT / "tests" / "demonstration.py"
@@ -33,7 +35,8 @@ FIGURES = range(1, 25)
 
 def documents() -> list[Path]:
     """All Markdown files that have places or may have some."""
-    return [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "figures" / "README.md", *sorted(ROOT.glob("docs/*.md"))]
+    others = ("README.md", "CONTRIBUTING.md", "figures/README.md", "benchmarks/README.md")
+    return [*(ROOT / name for name in others), *sorted(ROOT.glob("docs/*.md"))]
 
 
 def expanded(text: str) -> str:
@@ -168,9 +171,17 @@ def falls() -> str:
     return "\n".join([head, *rows])
 
 
+def goals() -> str:
+    """What was measured beside the goals, from ``benchmarks/summary.json``."""
+    found = json.loads((ROOT / "benchmarks" / "summary.json").read_text(encoding="utf-8"))["goals"]
+    rows = [f"| {one['what']} | {one['goal']} | {one['measured']} | {'yes' if one['met'] else '**no**'} |" for one in found]
+    return "\n".join(["| | goal | measured | met |\n|---|---|---|---|", *rows])
+
+
 MADE: dict[str, Callable[[], str]] = {
     "counts": counts,
     "falls": falls,
+    "goals": goals,
     "findings": findings,
     "figures-of-the-paper": gallery,
     "public-names": public_names,
@@ -187,4 +198,7 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except GranularError as error:
+        raise SystemExit(f"docs/expand.py: {error}") from None

@@ -24,8 +24,9 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "pictures"
 PARTS = re.compile(r"```python\n(?P<code>.*?)```|!\[[^\]]*\]\((?:docs/)?pictures/(?P<file>[\w-]+\.png)\)", re.DOTALL)
-#: Dots per inch, and colours of the palette: legible at 600 to 700 pixels, 30 kB a picture.
-DPI, COLOURS = 100, 48
+#: Dots per inch, and colours of the palette: legible at 600 to 700 pixels, 40 kB a picture. With fewer colours rare ones turn
+#: into others, such as those of a legend.
+DPI, COLOURS = 100, 256
 #: Two pictures are the same if at most a part of their pixels differ by more than so many of 256 levels.
 LEVELS, PART = 64, 0.01
 
@@ -86,7 +87,7 @@ def save(number: int, path: Path) -> None:
     whole = io.BytesIO()
     plt.figure(number).savefig(whole, dpi=DPI, format="png")
     plt.close(number)
-    small = Image.open(whole).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+    small = Image.open(whole).convert("RGB").quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     small.save(path, optimize=True)
 
 

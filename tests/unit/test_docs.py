@@ -15,13 +15,13 @@ from printed import rounded
 
 from granular_response.cli import scene_reference
 from granular_response.scene import Scene, SceneError
-from granular_response_paper.claims import ClaimsError
+from granular_response_paper.claims.claim import ClaimsError
 
 sys.path.insert(0, str(ROOT / "docs"))
 expand = importlib.import_module("expand")
 pictures = importlib.import_module("pictures_of_pages")
 
-PAGES = [*expand.documents(), *(ROOT / name / "README.md" for name in ("data", "benchmarks")), ROOT / "CHANGELOG.md"]
+PAGES = [*expand.documents(), ROOT / "data" / "README.md", ROOT / "CHANGELOG.md"]
 #: Of a code host: CommonMark with tables, and nothing else.
 HOST = MarkdownIt("commonmark").enable("table")
 NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
