@@ -175,8 +175,8 @@ def _between(data: Data) -> xr.Dataset:
 
 
 @claim(
-    "F8", "IV.C", Ask("change of the response at x = 0", between(0.0, 0.025), "%", 0.02), primary="all forces", finds="any",
-    figures=[5]
+    "F8", "IV.C", Ask("change of the response at x = 0", between(0.0, 0.025), "%", 0.02), primary="all forces",
+    finds="any", figures=[5]
 )  # fmt: skip
 def stiffness_response(data: Data) -> Numbers:
     """The response is also quite insensitive to the choice of stiffness for k_N ≳ 1000mg/R: at x = 0, it only changes
@@ -188,7 +188,8 @@ def stiffness_response(data: Data) -> Numbers:
     and less) is primary"""
     study = _between(data)
     by_force = study["response_at_centre"].transpose("force", ...).values
-    found = {force: np.ptp(one) / abs(one[-1]) for force, one in zip(study["force"].values, by_force, strict=True)}
+    forces = study["force"].values.tolist()
+    found = {force: np.ptp(one) / abs(one[-1]) for force, one in zip(forces, by_force, strict=True)}
     yield "all forces", Quantity.over(found.values())
     for force, change in found.items():
         yield f"{force:g} mg", change
