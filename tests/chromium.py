@@ -48,7 +48,7 @@ class Chromium:
 
     def __exit__(self, *_):
         self._browser.terminate()
-        self._browser.wait(timeout=20)
+        self._browser.wait(timeout=300)
         os.close(self._commands)
         os.close(self._answers)
 
@@ -59,7 +59,7 @@ class Chromium:
         if self._session:
             message["sessionId"] = self._session
         os.write(self._commands, json.dumps(message).encode() + b"\0")
-        until = time.monotonic() + 120.0
+        until = time.monotonic() + 600.0
         while time.monotonic() < until:
             answer = self._next()
             if answer.get("id") == self._number:
@@ -92,7 +92,7 @@ class Chromium:
         assert "exceptionDetails" not in found, found["exceptionDetails"]
         return found["result"].get("value")
 
-    def wait(self, script, seconds=60.0):
+    def wait(self, script, seconds=600.0):
         """Until an expression of the page is true."""
         until = time.monotonic() + seconds
         while not self.run(f"Boolean({script})"):

@@ -27,7 +27,7 @@ contact: {friction: 0.0}
 loads: [{disk: top-centre, force: [0.0, -1.0]}]
 """
 #: Of a command, in seconds.
-LONGEST = 120.0
+LONGEST = 600.0
 #: What worker processes and commands of tests import, with what the test modules do whose functions they run.
 IMPORTED = [
     "granular_response.api.sweep",

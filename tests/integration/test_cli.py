@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from claims_data import PILE, pile_study
-from commands import LIBRARY, PAPER, SCENE, call, process, python, refused, succeeded
+from commands import LIBRARY, LONGEST, PAPER, SCENE, call, process, python, refused, succeeded
 from places import DATA, ROOT
 
 from granular_response import __version__
@@ -252,11 +252,11 @@ def test_an_interrupted_command_ends_quietly(tmp_path):
     os.close(child)
     output = b""
     while b"gravity" not in output:  # it moves: while modules load or kernels compile, libraries may swallow the signal
-        assert select.select([parent], [], [], 120.0)[0], output
+        assert select.select([parent], [], [], LONGEST)[0], output
         output += os.read(parent, 4096)
     assert run.poll() is None
     run.send_signal(signal.SIGINT)
-    run.wait(timeout=60)
+    run.wait(timeout=LONGEST)
     try:
         while chunk := os.read(parent, 4096):
             output += chunk

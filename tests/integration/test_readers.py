@@ -84,7 +84,7 @@ def test_ncdump_shows_words(files):
     if ncdump is None:
         pytest.skip("ncdump is not installed")
     for path in files:
-        said = subprocess.run([ncdump, path], capture_output=True, text=True, check=True, timeout=60).stdout
+        said = subprocess.run([ncdump, path], capture_output=True, text=True, check=True, timeout=600).stdout
         assert said.rstrip().endswith("}") and "\n\tstring " not in said
     words = subprocess.run([ncdump, "-v", "branch,axis", next(iter(files))], capture_output=True, text=True, check=True)
     assert '"loading"' in words.stdout and '"unloading"' in words.stdout and '"x"' in words.stdout

@@ -96,10 +96,8 @@ class Stop:
     def of(cls, problem: Problem) -> Stop:
         """When a scene's dynamics ends, by its plan and its protocol."""
         plan, protocol = problem.plan, problem.scene.protocol
-        return cls(
-            plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time,
-            acceleration=plan.stop_acceleration,
-        )  # fmt: skip
+        by_energy = cls(plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
+        return replace(by_energy, acceleration=plan.stop_acceleration)
 
 
 class Dynamics:

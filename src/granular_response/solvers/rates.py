@@ -196,7 +196,7 @@ class RateProblem:
         closed = sense[: len(trial.normal)] != OPEN
         bare = np.flatnonzero((trial.normal <= OPTIONS.bare) & closed)
         if bare.size:
-            apart = np.abs([self.until(trial, int(c), events.OPENS, velocity)[1] for c in bare])
+            apart = np.abs([self.until(trial, int(c), OPENS, velocity)[1] for c in bare])
             # rates are those of next to no stiffness where a disk bears nothing at all, and rounding is large
             rough = OPTIONS.rounding * self.system.problem.stiffness * np.abs(velocity).max()
             rests = trial.normal[bare] <= self.force
