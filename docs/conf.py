@@ -28,8 +28,8 @@ extensions = [
 ]
 #: The order of the pages on the site; the pages themselves are plain Markdown.
 CONTENTS = {
-    "Use": "installation tutorial concepts gallery/index experiment packings loads motion results many-scenes export from-lammps "
-    "methods troubleshooting scene-reference api reference trust",
+    "Use": "installation tutorial concepts gallery/index experiment packings loads motion results many-scenes export "
+    "from-lammps methods troubleshooting scene-reference api reference trust",
     "The paper": "results-of-the-paper reproduction-notes one-figure reproducing extensions",
     "Background": "physics benchmarks architecture extending",
 }

@@ -1,8 +1,8 @@
 """Generated parts of the documents, put in their places: ``python docs/expand.py`` renews all of them.
 
-A place is a pair of comments in a Markdown file, ``<!-- generated: NAME -->`` and ``<!-- end -->``. What stands between them
-is made from stored files and from the package, so that a reader of the plain file sees it: the table
-``docs/_generated/NAME.md``, or what a function of ``MADE`` returns, or the source of a class of ``tests/demonstration.py``.
+A place is a pair of comments in a Markdown file, ``<!-- generated: NAME -->`` and ``<!-- end -->``. What stands between
+them is made from stored files and from the package, so that a reader of the plain file sees it: the table
+``docs/_generated/NAME.md``, or what a function of ``MADE`` returns, or a class of ``tests/demonstration.py``.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ FINDINGS = ("F4a", "R3a", "R5a", "K1a", "A1", "A5")
 #: The largest number of claims that the gallery shows of a figure.
 SHOWN = 2
 FIGURES = range(1, 25)
+UNJUDGED = "No statement of the paper is judged by it alone."
 
 
 def documents() -> list[Path]:
@@ -85,8 +86,8 @@ def findings() -> str:
 
 def judged(row: dict[str, Any]) -> str:
     """A claim in a line: the paper, here, the verdict, and in how many other preparations it holds."""
-    other = [f"{what} {row[key]['text']}" for key, what in (("gravity", "other gravity:"), ("lattice", "other lattices:"))
-             if row[key]["of"]]  # fmt: skip
+    named = {"gravity": "other gravity", "lattice": "other lattices"}
+    other = [f"{what}: {row[key]['text']}" for key, what in named.items() if row[key]["of"]]
     line = f"**paper** {row['short'].rstrip('.')}. **here** {row['here']} *{row['verdict']}*"
     return f"{line} ({'; '.join(other)})" if other else line
 
@@ -103,13 +104,11 @@ def gallery() -> str:
         group, stem, caption = pictures[0]
         parts.append(f"## Fig. {figure}: {caption['title']}")
         alternative = caption["alternative"].replace('"', "'")
-        parts.append(
-            f'<a href="{group}/{stem}.png"><img src="{group}/{stem}.png" width="420" alt="{alternative}"></a>'
-        )
+        parts.append(f'<a href="{group}/{stem}.png"><img src="{group}/{stem}.png" width="420" alt="{alternative}"></a>')
         about = sorted((row for row in rows if figure in row["figures"]), key=lambda row: row["id"] in shown)
         chosen = about[:SHOWN]
         shown |= {row["id"] for row in chosen}
-        parts.append("\n".join(f"* {judged(row)}" for row in chosen) or "* No statement of the paper is judged by it alone.")
+        parts.append("\n".join(f"* {judged(row)}" for row in chosen) or f"* {UNJUDGED}")
         links = [f"[{other['title']}]({folder}/{name}.png)" for folder, name, other in pictures[1:]]
         more = f" More: {', '.join(links)}." if links else ""
         parts.append(f"`make figure FIGURE={figure}` draws it.{more}")
@@ -174,7 +173,8 @@ def falls() -> str:
 def goals() -> str:
     """What was measured beside the goals, from ``benchmarks/summary.json``."""
     found = json.loads((ROOT / "benchmarks" / "summary.json").read_text(encoding="utf-8"))["goals"]
-    rows = [f"| {one['what']} | {one['goal']} | {one['measured']} | {'yes' if one['met'] else '**no**'} |" for one in found]
+    met = {True: "yes", False: "**no**"}
+    rows = [f"| {one['what']} | {one['goal']} | {one['measured']} | {met[one['met']]} |" for one in found]
     return "\n".join(["| | goal | measured | met |\n|---|---|---|---|", *rows])
 
 

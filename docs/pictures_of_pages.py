@@ -1,8 +1,9 @@
 """Pictures of pages, drawn by the page's own code: ``python docs/pictures_of_pages.py`` draws all anew, or those of the
 pages that are named.
 
-An image of a page that lies in ``docs/pictures`` is a figure that the blocks of Python above it have made; several in a row
-are its figures in turn. All blocks of a page run in turn and share their names. Files are small: few pixels, few colours.
+An image of a page that lies in ``docs/pictures`` is a figure that the blocks of Python above it have made; several in a
+row are its figures in turn. All blocks of a page run in turn and share their names. Files are small: few pixels, few
+colours.
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "pictures"
 PARTS = re.compile(r"```python\n(?P<code>.*?)```|!\[[^\]]*\]\((?:docs/)?pictures/(?P<file>[\w-]+\.png)\)", re.DOTALL)
-#: Dots per inch, and colours of the palette: legible at 600 to 700 pixels, 40 kB a picture. With fewer colours rare ones turn
-#: into others, such as those of a legend.
+#: Dots per inch, and colours of the palette: legible at 600 to 700 pixels, 40 kB a picture. With fewer colours rare
+#: ones turn into others, such as those of a legend.
 DPI, COLOURS = 100, 256
 #: Two pictures are the same if at most a part of their pixels differ by more than so many of 256 levels.
 LEVELS, PART = 64, 0.01
@@ -55,8 +56,8 @@ def images(name: str) -> list[str]:
 def drawn(name: str, folder: Path) -> Drawn:
     """Run the blocks of a page in the working directory; its images go to ``folder``.
 
-    Raises RuntimeError, with the page's name, if its code fails, an image stands where nothing was drawn, or a figure has no
-    image.
+    Raises RuntimeError, with the page's name, if its code fails, an image stands where nothing was drawn, or a figure
+    has no image.
     """
     names: dict[str, Any] = {"__name__": "__main__"}
     found = Drawn([], [])

@@ -8,6 +8,7 @@ import sys
 from html.parser import HTMLParser
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import pytest
 from markdown_it import MarkdownIt
 from places import ROOT
@@ -59,7 +60,8 @@ def anchors(path: Path) -> set[str]:
     """The anchors that a code host gives to the headings of a document."""
     blocks = HOST.parse(path.read_text(encoding="utf-8"))
     titles = [blocks[k + 1] for k, token in enumerate(blocks) if token.type == "heading_open"]
-    plain = ["".join(part.content for part in title.children if part.type in {"text", "code_inline"}) for title in titles]
+    kept = {"text", "code_inline"}
+    plain = ["".join(part.content for part in title.children if part.type in kept) for title in titles]
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in plain}
 
 
@@ -101,7 +103,8 @@ def test_broken_targets_are_told_from_others():
     assert html("<!-- picture: x -->").comments == ["picture: x"]
 
 
-PLACES = [(name, place["name"]) for name in NAMES for place in expand.PLACE.finditer((ROOT / name).read_text(encoding="utf-8"))]
+PLACES = [(name, place["name"]) for name, page in zip(NAMES, PAGES, strict=True)
+          for place in expand.PLACE.finditer(page.read_text(encoding="utf-8"))]  # fmt: skip
 
 
 @pytest.mark.parametrize(("name", "place"), PLACES)
@@ -124,7 +127,7 @@ def test_every_fragment_stands_in_a_page():
 def test_the_gallery_takes_figures_without_claims(monkeypatch):
     monkeypatch.setattr(expand, "claims", lambda: {"table": []})
     text = expand.gallery()
-    assert len(re.findall("^## Fig", text, re.MULTILINE)) == len(re.findall("^\\* No statement", text, re.MULTILINE)) > 20
+    assert text.count("## Fig.") == text.count(f"* {expand.UNJUDGED}") > 20
 
 
 @pytest.mark.parametrize("name", pictures.pages())
@@ -145,8 +148,6 @@ def test_every_picture_belongs_to_a_page_and_all_are_small():
 
 
 def test_pictures_that_differ_are_told_apart(tmp_path):
-    import matplotlib.pyplot as plt
-
     for name, slope in (("one", 1.0), ("same", 1.0), ("other", 2.0)):
         figure, ax = plt.subplots()
         ax.plot([0.0, slope], linewidth=5.0)
@@ -159,8 +160,8 @@ def test_pictures_that_differ_are_told_apart(tmp_path):
 def test_the_shell_blocks_of_the_readme_say_what_a_reader_runs():
     """``.ci/run`` runs them in a fresh clone, in their order."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    lines = "\n".join(token.content for token in tokens(text) if token.type == "fence" and token.info == "sh").splitlines()
-    commands = [line.partition("#")[0].strip() for line in lines]
+    blocks = [token.content for token in tokens(text) if token.type == "fence" and token.info == "sh"]
+    commands = [line.partition("#")[0].strip() for line in "".join(blocks).splitlines()]
     assert {"make reproduce", "make test", "make figure FIGURE=7", "make extensions"} <= set(commands)
     assert any(line.endswith("pip install .") for line in commands)
 
