@@ -4,6 +4,7 @@
 """
 
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -38,6 +39,8 @@ CONTENTS = {
 def on_the_site(app, page, source):
     """What only the site has: its table of contents, and the built gallery in place of the folder of its scripts."""
     source[0] = source[0].replace("](../examples/gallery)", "](gallery/index.rst)")
+    # Markdown beside this folder is no page of the site
+    source[0] = re.sub(r"\[([^\]]+)\]\((\.\./[\w/]+\.md)(?:#[\w-]+)?\)", r"{download}`\1 <\2>`", source[0])
     if page == "index":
         for title, names in CONTENTS.items():
             names = "\n".join(names.split())

@@ -140,7 +140,7 @@ def public_names() -> str:
         ("Errors", "gr.", {name: one for name, one in own.items() if _error(one)}),
     ):
         rows = [f"| `{prefix}{name}` | {sentence(one)} |" for name, one in sorted(names.items())]
-        parts.append(f"### {title}\n\n| name | what it is |\n|---|---|\n" + "\n".join(rows))
+        parts.append(f"## {title}\n\n| name | what it is |\n|---|---|\n" + "\n".join(rows))
     return "\n\n".join(parts)
 
 
