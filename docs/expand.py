@@ -88,7 +88,7 @@ def judged(row: dict[str, Any]) -> str:
     """A claim in a line: the paper, here, the verdict, and in how many other preparations it holds."""
     named = {"gravity": "other gravity", "lattice": "other lattices"}
     other = [f"{what}: {row[key]['text']}" for key, what in named.items() if row[key]["of"]]
-    line = f"**paper** {row['short'].rstrip('.')}. **here** {row['here']} *{row['verdict']}*"
+    line = f"**Paper:** {row['short'].rstrip('.')}. **Here:** {row['here']} *{row['verdict']}*"
     return f"{line} ({'; '.join(other)})" if other else line
 
 
