@@ -32,7 +32,7 @@ CONTENTS = {
     "Use": "installation tutorial concepts gallery/index experiment packings loads motion results many-scenes export "
     "from-lammps methods troubleshooting scene-reference api reference trust",
     "The paper": "results-of-the-paper reproduction-notes one-figure reproducing extensions",
-    "Background": "physics benchmarks architecture extending",
+    "Background": "physics benchmarks architecture extending claims",
 }
 
 
