@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -144,6 +145,7 @@ def page(found: Stored) -> str:
                          "1e-05": "1e-5", "least_error": "smallest error reached"}),
         "exactness": table(found["exactness"]["groups"], kind="packings", equilibria="equilibrium lost by",
                            scenes="scenes", events="events", exact="error at most 1e-8", error="largest error"),
+        "costs": large(found),
     }  # fmt: skip
     text = (HERE / "benchmarks.md.in").read_text(encoding="utf-8")
     for name, value in filled.items():
@@ -151,13 +153,30 @@ def page(found: Stored) -> str:
     return text
 
 
-def costs(found: Stored) -> str:
-    """The table of costs of the user guide."""
+def large(found: Stored) -> str:
+    """Time and memory of large systems."""
     rows = [of_size(found, *size) for size in SIZES]
     rows = [{**row, "disks": f"{row['disks']:,}", "wall": seconds(row["seconds"]),
              "memory": f"{row['peak_gibibytes']:.2g} GiB"} for row in rows]  # fmt: skip
     head = {"disks": "disks", "friction": "friction", "wall": "wall time, two threads", "memory": "memory"}
     return table(rows, **head, measured_on="processor")
+
+
+def costs(found: Stored) -> str:
+    """The table of costs of the user guide: whole solutions, and the error of the default fall's time step."""
+    slabs = (row for row in found["fall"]["scenes"] if row["scene"].startswith("slab, "))
+    errors = {row["disks"]: row.get("floor_error") for row in slabs}
+    rows: list[dict[str, Any]] = []
+    for row in found["fall"]["whole"]:
+        key = ", ".join(f"`{name}: {value}`" for name, value in row["changes"].items())
+        made = {**row, "key": key or None, "error": None if key else errors[row["disks"]], "size": f"{row['disks']:,}",
+                "time": seconds(row["seconds"]), "memory": f"{row['peak_gibibytes']:.2g} GiB"}  # fmt: skip
+        if rows and rows[-1]["scene"] == row["scene"]:
+            growth, more = row["seconds"] / rows[-1]["seconds"], row["disks"] / rows[-1]["disks"]
+            made["exponent"] = math.log(growth) / math.log(more)
+        rows.append(made)
+    return table(rows, scene="scene", key="key that differs", size="disks", time="processor time", memory="memory",
+                 exponent="exponent of the time in disks", error="time-step error of a floor force [mg]")  # fmt: skip
 
 
 def main() -> None:
