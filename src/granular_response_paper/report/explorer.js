@@ -105,6 +105,11 @@
     pen.textAlign = align;
     pen.fillText(words, x, y);
   }
+  function bold(pen, words, x, y, align, ink) {  // what is to be seen in a plot
+    pen.font = "bold 13px system-ui, sans-serif";
+    text(pen, words, x, y, align, ink);
+    pen.font = "11px system-ui, sans-serif";
+  }
   function line(pen, points, ink, width, dashes) {
     pen.strokeStyle = ink;
     pen.lineWidth = width;
@@ -132,7 +137,7 @@
     const place = across(byId("network").clientWidth), scale = place.scale, X = place.X;
     const paper = sheet("network", function () { return (slab.height + 5.5) * scale + 34; });
     const pen = paper.pen, frame = slab.frames[index], lines = slab.lines, floor = paper.height - 32;
-    const Z = function (z) { return floor - z * scale; };
+    const Z = function (z) { return floor - z * scale; }, high = 12;
     const counts = {opened: 0, sliding: 0, most: 0, least: 0};  // of the contacts that are shown
     pen.strokeStyle = colour.grid;
     pen.lineWidth = 1;
@@ -182,7 +187,8 @@
     pen.lineTo(X(0.9), Z(slab.height + 1.8));
     pen.fill();
     text(pen, "F", X(1.4), Z(slab.height + 3.6), "left", colour.load);
-    const bar = LEFT + 4, high = 12;  // a bar as wide as half of the applied force
+    bold(pen, opened(counts.opened), paper.width, high, "right", colour.opened);
+    const bar = LEFT + 4;  // a bar as wide as half of the applied force
     line(pen, [[bar, high], [bar + 3 * scale, high]], colour.increased, 0.5 * widest);
     text(pen, "0.5 F", bar + 3 * scale + 5, high, "left");
     [0, 10, 20].forEach(function (z) { text(pen, String(z), LEFT - 4, Z(z), "right"); });
@@ -218,14 +224,16 @@
   function response(index) {
     const paper = sheet("floor", function (width) { return Math.max(150, 0.3 * width); }), pen = paper.pen;
     const X = across(paper.width).X, floor = slab.response[index];
-    const Y = linear(pen, slab.response, paper.height - 28, paper.width);
+    // the largest response of lost symmetry would flatten all others
     const rows = slab.response, values = rows[index];
+    const Y = linear(pen, rows.filter(function (_, k) { return slab.symmetric[k] || !slab.symmetric[index]; }), paper.height - 28, paper.width);
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(rows[0][k])]; }), colour.soft, 3);
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(values[k])]; }), colour.increased, 1.8);
     slab.x.forEach(function (x, k) {
       dot(pen, X(x), Y(floor[k]), 2.1, colour.increased, false);
       spots.floor.push([X(x), Y(floor[k]), "x = " + typed(x) + " R\u0304: " + mean(floor[k])]);
     });
+    bold(pen, counted(slab.peaks[index]) + (slab.symmetric[index] ? "" : ", not symmetric"), LEFT + 6, 14, "left", colour.increased);
     xTicks(pen, X, paper.height - 10, paper.width);
   }
 
@@ -250,7 +258,7 @@
         const one = pair[1];
         low = Math.max(pair[0], low + 11);
         line(pen, one.force.map(function (f, k) { return [X(f), Y(one.centre[k])]; }), colour.soft, 1);
-        text(pen, "\u00b5 " + short(one.friction), paper.width, low, "right");
+        text(pen, "\u00b5 " + short(one.friction), X(one.force[one.force.length - 1]) + 4, low, "left");
       });
     const own = slab.forces.map(function (f, k) { return [X(f), Y(slab.centre[k]), "F = " + f + " mg: " + mean(slab.centre[k])]; });
     spots.range = own;
@@ -317,8 +325,9 @@
     line(pen, [[x, 8], [x, paper.height - 38]], colour.ink, 1);
     dot(pen, x, y, 4.5, colour.ink);
   }
-  const mean = function (value) { return typed(value.toFixed(4)); };
+  const mean = function (value) { return typed(Number(value.toPrecision(3))); };
   const counted = function (count) { return count + (count === 1 ? " peak" : " peaks"); };
+  const opened = function (count) { return count + (count === 1 ? " contact opened" : " contacts opened"); };
   function walls(friction) { return friction ? "rough walls" : "smooth walls"; }
   // where two peaks begin: in this slab by its own states, and in Fig. 22
   function own() {
@@ -344,6 +353,7 @@
   }
 
   function show() {
+    if (!byId("network").clientWidth) { return; }  // a page that is not laid out is resized too
     readColours();
     value.hidden = true;
     const index = Number(slider.value), force = slab.forces[index], counts = contacts(index);
@@ -354,7 +364,7 @@
     slider.setAttribute("aria-valuetext", force + " mg");
     byId("link").href = "#mu=" + slab.friction + "&F=" + force;
     const reached = slab.motion && force >= slab.motion ? "dynamics from rest" : slab.motion ? "load path" : "";
-    said.textContent = "F = " + force + " mg" + (reached ? " (" + reached + ")" : "") + ": " + counts.opened + (counts.opened === 1 ? " contact opened, " : " contacts opened, ") +
+    said.textContent = "F = " + force + " mg" + (reached ? " (" + reached + ")" : "") + ": " + opened(counts.opened) + ", " +
       counts.sliding + " at the Coulomb limit. Largest increase of a contact force: " + short(counts.most) +
       " F; largest decrease of one that stays closed: " + short(counts.least) + " F. " + shape(index) + own() + figure22();
     byId("network").setAttribute("aria-label", "Contacts of the slab, " + slab.about + ". " + said.textContent);
@@ -378,7 +388,8 @@
   });
   slider.addEventListener("input", function () { stop(); moved(); });
 
-  // the force grows by itself, from the beginning if it is at the end
+  // the force grows by itself, by the same factor in each second, from the beginning if it is at the end
+  const SECONDS_PER_DECADE = 4;
   const play = byId("play");
   let playing = 0;
   function stop() {
@@ -390,11 +401,13 @@
     if (playing) { stop(); return; }
     if (slider.value === slider.max) { slider.value = 0; moved(); }
     play.textContent = "Stop";
+    const begun = performance.now(), from = slab.forces[Number(slider.value)];
     playing = window.setInterval(function () {
-      slider.value = Number(slider.value) + 1;
-      moved();
+      const force = from * Math.pow(10, (performance.now() - begun) / 1000 / SECONDS_PER_DECADE);
+      const next = slab.forces.filter(function (f) { return f <= force; }).length - 1;
+      if (next > Number(slider.value)) { slider.value = next; moved(); }
       if (slider.value === slider.max) { stop(); }
-    }, 300);
+    }, 50);
   });
 
   // a link to a state: #mu=0.2&F=20
@@ -417,6 +430,6 @@
   ["(prefers-color-scheme: dark)", "print"].forEach(function (medium) {
     window.matchMedia(medium).addEventListener("change", show);
   });
-  if (linked()) { byId("try").scrollIntoView(); } else { select(); }
+  if (linked()) { byId("explorer").scrollIntoView({block: "nearest"}); } else { select(); }
   byId("explorer").dataset.ready = "";
 })();

@@ -10,6 +10,7 @@ import xarray as xr
 
 from granular_response.scene import text
 
+from ..claims.numbers import digits
 from . import markdown as tables
 
 #: Where the paper leaves a choice: ``question``, ``choice`` and another ``option``, by the variant that tries the
@@ -29,16 +30,10 @@ def table(datasets: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     words = {variant: str(text) for column in _columns(datasets, "text").values() for variant, text in column.items()}
     rows = []
     for variant in sorted(words, key=[*READINGS, *words].index):
-        differences = [_short(column[variant]) if variant in column else "" for column in values.values()]
+        differences = [digits(column[variant], 2) if variant in column else "" for column in values.values()]
         said = READINGS.get(variant, {"question": words[variant], "choice": "", "option": ""})
         rows.append((said, differences))
     return {"slabs": [name.replace("mu_", "µ = ") for name in values], "rows": rows}
-
-
-def _short(value: float) -> str:
-    """Two digits, without the zero that Python puts into small exponents."""
-    digits, exponent = f"{value:.1e}".split("e")
-    return f"{digits}e{int(exponent)}"
 
 
 def _columns(datasets: Mapping[str, xr.Dataset], name: str) -> dict[str, dict[str, Any]]:
@@ -72,5 +67,5 @@ def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
 _QUOTED: tuple[tuple[str, str, Callable[[float], str], str], ...] = (
     ("stop_1e-9", "response_sum", "{:.4f}".format, "Sum of the response, stopped at 1e-9 per disk"),
     ("no_static_finish", "response_sum", "{:.4f}".format, "Sum of the response, stopped at 1e-13 per disk"),
-    ("literal_friction", "kinetic_energy", _short, "Kinetic energy per disk at the end, friction law as printed"),
+    ("literal_friction", "kinetic_energy", lambda value: digits(value, 2), "Kinetic energy per disk at the end, friction law as printed"),
 )
