@@ -207,9 +207,9 @@ def files(
     environment.filters |= {"typeset": typeset, "key": table.key}
     by_id = {row["id"]: row for row in claims["table"]}
     failing = [r for r in claims["table"] if own and r["verdict"] == "not supported" and r["row"] == "statement"]
+    told = {row["id"] for row in failing} | {one.claim for one in FINDINGS} | {one.answer for one in CHAPTERS}
     findings = [(one, by_id[one.claim]) for one in FINDINGS if own and one.claim in by_id]
     drawn = forest.render(claims)
-    asked = [] if own else answers(checkout / ANSWERS)
     values = {
         "version": __version__,
         "title": TITLES.get(collection.name, f"Figures of {collection.title}"),
@@ -223,11 +223,13 @@ def files(
         "findings": findings,
         "drawn": {file.removesuffix(".png"): pictures.address(drawn[file], file, embedded) for file in drawn},
         "overview": next((picture for picture in shown if picture.stem == "overview"), None),
-        "chapters": [_chapter(one, shown, claims["table"]) for one in CHAPTERS if own],
-        "questions": _asked(asked, shown, claims["table"]),
+        "chapters": [_chapter(one, shown, claims["table"], told) for one in CHAPTERS if own],
+        "questions": [] if own else _asked(answers(checkout / ANSWERS), shown, claims["table"]),
         "failing": failing,
-        "moved": [r for r in claims["table"] if r["row"] == "statement" and r["gravity"]["of"] and not r["gravity"]["holds"]],
-        "told": {row["id"] for row in failing} | {one.claim for one in FINDINGS} | {one.answer for one in CHAPTERS},
+        "moved": [
+            r for r in claims["table"] if r["row"] == "statement" and r["gravity"]["of"] and not r["gravity"]["holds"]
+        ],
+        "told": told,
         "linked": lambda picture: _linked(picture, checkout, start),
         "states": _json_in_html(states) if states else None,
         "explored": states and sorted(slab["friction"] for slab in states["slabs"]),
@@ -250,14 +252,18 @@ Rows = Sequence[Mapping[str, Any]]
 LISTED = 3
 
 
-def _chapter(chapter: Chapter, shown: Sequence[pictures.Picture], rows: Rows) -> dict[str, Any]:
-    """A chapter with its pictures by figure, and the statements that each figure is the first to show."""
+def _chapter(chapter: Chapter, shown: Sequence[pictures.Picture], rows: Rows, told: set[str]) -> dict[str, Any]:
+    """A chapter with its pictures by figure, the statements that each figure is the first to show, and how many more.
+
+    Those that are ``told`` elsewhere on the page are named besides.
+    """
     figures = []
     for number in chapter.figures:
         own = [picture for picture in shown if picture.number == number]
         first = [row for row in rows if row["row"] == "statement" and row["figures"][:1] == [number]]
-        failing_first = sorted(first, key=lambda row: row["verdict"] == "supported")[:LISTED]
-        figures.append((number, own, [row for row in first if row in failing_first], max(len(first) - LISTED, 0)))
+        chosen = sorted((row for row in first if row["id"] not in told), key=lambda row: row["verdict"] == "supported")
+        listed = [row for row in first if row["id"] in told or row in chosen[:LISTED]]
+        figures.append((number, own, listed, len(first) - len(listed)))
     others = [picture for picture in shown if picture.stem in chapter.others]
     return {**chapter._asdict(), "figures": figures, "others": others}
 
@@ -280,8 +286,11 @@ def _slug(heading: str) -> str:
     return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
 
 
-def _asked(asked: Sequence[tuple[str, str, str]], shown: Sequence[pictures.Picture], rows: Rows) -> list[dict[str, Any]]:
-    """The questions with picture and claims: those of the picture's group, at its first picture."""
+def _asked(
+    asked: Sequence[tuple[str, str, str]], shown: Sequence[pictures.Picture], rows: Rows
+) -> list[dict[str, Any]]:
+    """The questions, without them every picture, with the claims of a picture's group at its first picture."""
+    asked = asked or [(picture.title, picture.message, picture.stem) for picture in shown]
     by_stem, told, found = {picture.stem: picture for picture in shown}, set(), []
     for question, answer, stem in asked:
         picture = by_stem.get(stem)

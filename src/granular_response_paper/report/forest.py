@@ -47,9 +47,15 @@ def forest(quantities: Quantities) -> Figure:
             _point(axes, row, other, one["paper"], PALE[other["prepared"]], 3.2 if other["prepared"] else 2.2)
         _point(axes, row, one["ours"], one["paper"], style.INCREASED, 4.6)
         axes.plot([1.0], [row], marker="|", color=style.PAPER, markersize=9.0, markeredgewidth=1.6, zorder=2)
-    for name, colour in (("other gravity", PALE["gravity"]), ("other lattice", PALE["lattice"]), ("other cases", PALE[""])):
+    for name, colour in (
+        ("other gravity", PALE["gravity"]),
+        ("other lattice", PALE["lattice"]),
+        ("other cases", PALE[""]),
+    ):
         axes.plot([], [], "o", color=colour, markersize=3.2, markeredgewidth=0.0, label=name)
-    axes.legend(loc="upper left", bbox_to_anchor=(-0.04, 1.02), ncols=3, fontsize=6.5, handletextpad=0.0, columnspacing=0.3)
+    axes.legend(
+        loc="upper left", bbox_to_anchor=(-0.04, 1.02), ncols=3, fontsize=6.5, handletextpad=0.0, columnspacing=0.3
+    )
     _columns(axes, quantities)
     axes.xaxis.set_major_locator(FixedLocator(RATIOS))
     axes.xaxis.set_major_formatter(lambda ratio, _: f"{ratio:g}")
@@ -92,7 +98,10 @@ def preparations(quantities: Quantities) -> Figure:
     """The force at which two peaks appear at friction 0.2, for each way of applying gravity that was tried."""
     (one,) = (one for one in quantities if one["claim"] == PREPARED)
     tried = [other for other in one["others"] if other["prepared"]]
-    rows = [("gravity at once", one["ours"]), *((other["case"].replace("sqrt(R/g)", "√(R/g)"), other) for other in tried)]
+    rows = [
+        ("gravity at once", one["ours"]),
+        *((other["case"].replace("sqrt(R/g)", "√(R/g)"), other) for other in tried),
+    ]
     figure, panels = style.figure(width=WIDTH, height=AROUND + ROW * len(rows))
     axes = panels[0, 0]
     axes.set(xscale="log", ylim=(len(rows) - 0.4, -0.6))

@@ -50,7 +50,7 @@
     search.addEventListener("input", function () {
       const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
       rows.forEach(function (row, k) { row.hidden = !words.every(function (word) { return texts[k].includes(word); }); });
-      document.getElementById("matches").textContent = rows.filter(function (row) { return !row.hidden; }).length + " claims";
+      document.getElementById("matches").textContent = rows.filter(function (row) { return !row.hidden; }).length + " shown";
     });
   }
 })();

@@ -67,5 +67,10 @@ def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
 _QUOTED: tuple[tuple[str, str, Callable[[float], str], str], ...] = (
     ("stop_1e-9", "response_sum", "{:.4f}".format, "Sum of the response, stopped at 1e-9 per disk"),
     ("no_static_finish", "response_sum", "{:.4f}".format, "Sum of the response, stopped at 1e-13 per disk"),
-    ("literal_friction", "kinetic_energy", lambda value: digits(value, 2), "Kinetic energy per disk at the end, friction law as printed"),
+    (
+        "literal_friction",
+        "kinetic_energy",
+        lambda value: digits(value, 2),
+        "Kinetic energy per disk at the end, friction law as printed",
+    ),
 )
