@@ -86,8 +86,8 @@ def root(tmp_path_factory):
         Image.fromarray(shade).save(path)
         beside = path.with_name("captions.json")
         said = json.loads(beside.read_text()) if beside.exists() else {}
-        said[path.stem] = {"title": "A title", "caption": f"What {path.stem} <shows>. And more. µ = 0.2.",
-                           "alternative": "How it looks.", "question": "Why?", "parameters": {"friction": 0.2}}  # fmt: skip
+        caption = f"What {path.stem} <shows>. And more. µ = 0.2."
+        said[path.stem] = {"title": "A title", "caption": caption, "alternative": "", "parameters": {"friction": 0.2}}
         beside.write_text(json.dumps(said))
     store.write(folder / "data" / "friction_linear_range.nc", friction_study())
     store.write(folder / "data" / "phase_diagram.nc", {"crossovers": crossovers()})

@@ -206,7 +206,9 @@ def files(
     )  # fmt: skip
     environment.filters |= {"typeset": typeset, "key": table.key}
     by_id = {row["id"]: row for row in claims["table"]}
-    failing = [r for r in claims["table"] if own and r["verdict"] == "not supported" and r["row"] == "statement"]
+    rows = claims["table"]
+    statements = [row for row in rows if own and row["row"] == "statement"]
+    failing = [row for row in statements if row["verdict"] == "not supported"]
     told = {row["id"] for row in failing} | {one.claim for one in FINDINGS} | {one.answer for one in CHAPTERS}
     findings = [(one, by_id[one.claim]) for one in FINDINGS if own and one.claim in by_id]
     drawn = forest.render(claims)
@@ -219,16 +221,14 @@ def files(
         "claims": claims,
         "by_id": by_id,
         "verdicts": [(kind["verdict"], table.key(kind["verdict"])) for kind in claims["verdicts"]],
-        "parts": {part: text for part, text in table.PARTS.items() if any(r["part"] == part for r in claims["table"])},
+        "parts": {part: text for part, text in table.PARTS.items() if any(row["part"] == part for row in rows)},
         "findings": findings,
         "drawn": {file.removesuffix(".png"): pictures.address(drawn[file], file, embedded) for file in drawn},
         "overview": next((picture for picture in shown if picture.stem == "overview"), None),
-        "chapters": [_chapter(one, shown, claims["table"], told) for one in CHAPTERS if own],
-        "questions": [] if own else _asked(answers(checkout / ANSWERS), shown, claims["table"]),
+        "chapters": [_chapter(one, shown, rows, told) for one in CHAPTERS if own],
+        "questions": [] if own else _asked(answers(checkout / ANSWERS), shown, rows),
         "failing": failing,
-        "moved": [
-            r for r in claims["table"] if r["row"] == "statement" and r["gravity"]["of"] and not r["gravity"]["holds"]
-        ],
+        "moved": [row for row in statements if row["gravity"]["of"] and not row["gravity"]["holds"]],
         "told": told,
         "linked": lambda picture: _linked(picture, checkout, start),
         "states": _json_in_html(states) if states else None,
@@ -247,6 +247,7 @@ def files(
 
 
 Rows = Sequence[Mapping[str, Any]]
+Answers = Sequence[tuple[str, str, str]]
 
 #: Statements that stand under a figure: those that are not supported before others. All are on the page of claims.
 LISTED = 3
@@ -268,7 +269,7 @@ def _chapter(chapter: Chapter, shown: Sequence[pictures.Picture], rows: Rows, to
     return {**chapter._asdict(), "figures": figures, "others": others}
 
 
-def answers(document: Path) -> list[tuple[str, str, str]]:
+def answers(document: Path) -> Answers:
     """Question, answer and the stem of its picture, as a document has them; none without the document.
 
     Its first table has questions, each a link to a section, and answers; the first picture of the section is shown.
@@ -286,11 +287,9 @@ def _slug(heading: str) -> str:
     return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
 
 
-def _asked(
-    asked: Sequence[tuple[str, str, str]], shown: Sequence[pictures.Picture], rows: Rows
-) -> list[dict[str, Any]]:
+def _asked(known: Answers, shown: Sequence[pictures.Picture], rows: Rows) -> list[dict[str, Any]]:
     """The questions, without them every picture, with the claims of a picture's group at its first picture."""
-    asked = asked or [(picture.title, picture.message, picture.stem) for picture in shown]
+    asked = known or [(picture.title, picture.message, picture.stem) for picture in shown]
     by_stem, told, found = {picture.stem: picture for picture in shown}, set(), []
     for question, answer, stem in asked:
         picture = by_stem.get(stem)

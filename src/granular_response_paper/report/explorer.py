@@ -139,7 +139,8 @@ def _here(datasets: Datasets, friction: float, names: Sequence[str]) -> str:
         return ""
     own = stored.isel(event=stored["friction"].values == friction)
     found = [np.flatnonzero(own["name"].values == name)[:1] for name in names]
-    return ", ".join(text(Quantity.bracket(own["low"][k], own["high"][k]), "mg") for rows in found for k in rows)
+    events = [(float(own["low"][k]), float(own["high"][k])) for rows in found for k in rows]
+    return ", ".join(text(Quantity.bracket(*ends), "mg") for ends in events)
 
 
 def _slabs(datasets: Datasets) -> Iterator[Slab]:

@@ -32,8 +32,9 @@ ENDS = (0.006, 4.5)
 #: The claim whose number is shown for each preparation.
 PREPARED = "R3a"
 
-#: Of points, by how their packing was prepared: not otherwise, other gravity, another initial lattice.
-PALE = {"": style.FAINT, "gravity": style.OPENED_ELSEWHERE, "lattice": "#9CCDE8"}
+#: Colours and names of paler points, by what is other than in the primary case; "": geometry, stiffness, statistic.
+PALE = {"gravity": style.OPENED_ELSEWHERE, "lattice": "#9CCDE8", "": style.FAINT}
+NAMES = {"gravity": "other gravity", "lattice": "other lattice", "": "other cases"}
 
 
 def forest(quantities: Quantities) -> Figure:
@@ -47,15 +48,10 @@ def forest(quantities: Quantities) -> Figure:
             _point(axes, row, other, one["paper"], PALE[other["prepared"]], 3.2 if other["prepared"] else 2.2)
         _point(axes, row, one["ours"], one["paper"], style.INCREASED, 4.6)
         axes.plot([1.0], [row], marker="|", color=style.PAPER, markersize=9.0, markeredgewidth=1.6, zorder=2)
-    for name, colour in (
-        ("other gravity", PALE["gravity"]),
-        ("other lattice", PALE["lattice"]),
-        ("other cases", PALE[""]),
-    ):
-        axes.plot([], [], "o", color=colour, markersize=3.2, markeredgewidth=0.0, label=name)
-    axes.legend(
-        loc="upper left", bbox_to_anchor=(-0.04, 1.02), ncols=3, fontsize=6.5, handletextpad=0.0, columnspacing=0.3
-    )
+    for prepared, colour in PALE.items():
+        axes.plot([], [], "o", color=colour, markersize=3.2, markeredgewidth=0.0, label=NAMES[prepared])
+    set_close = {"fontsize": 6.5, "handletextpad": 0.0, "columnspacing": 0.3}
+    axes.legend(loc="upper left", bbox_to_anchor=(-0.04, 1.02), ncols=3, **set_close)
     _columns(axes, quantities)
     axes.xaxis.set_major_locator(FixedLocator(RATIOS))
     axes.xaxis.set_major_formatter(lambda ratio, _: f"{ratio:g}")
@@ -98,22 +94,20 @@ def preparations(quantities: Quantities) -> Figure:
     """The force at which two peaks appear at friction 0.2, for each way of applying gravity that was tried."""
     (one,) = (one for one in quantities if one["claim"] == PREPARED)
     tried = [other for other in one["others"] if other["prepared"]]
-    rows = [
-        ("gravity at once", one["ours"]),
-        *((other["case"].replace("sqrt(R/g)", "√(R/g)"), other) for other in tried),
-    ]
+    names = ["gravity at once", *(other["case"].replace("sqrt(R/g)", "√(R/g)") for other in tried)]
+    rows = [one["ours"], *tried]
     figure, panels = style.figure(width=WIDTH, height=AROUND + ROW * len(rows))
     axes = panels[0, 0]
     axes.set(xscale="log", ylim=(len(rows) - 0.4, -0.6))
     style.paper_value(axes, one["paper"], "paper", at=0.8)
-    for row, (_, found) in enumerate(rows):
+    for row, found in enumerate(rows):
         low, high = found["interval"]
         colour = style.OPENED if row else style.INCREASED
         axes.plot([low, low if high is None else high], [row, row], color=colour, linewidth=1.6, linestyle="-")
         axes.plot([found["value"] or low], [row], marker="o" if found["value"] else ">", color=colour, markersize=4.6)
         axes.annotate(shown(found["value"] or low), (found["value"] or low, row), (5.0, 0.0), va="center", ha="left",
                       textcoords="offset points", fontsize=7, color=colour)  # fmt: skip
-    axes.set_yticks(range(len(rows)), [name for name, _ in rows])
+    axes.set_yticks(range(len(rows)), names)
     axes.set_xlim(0.08, 60.0)
     axes.xaxis.set_major_locator(FixedLocator((0.1, 1.0, 10.0)))
     axes.xaxis.set_major_formatter(lambda force, _: f"{force:g}")

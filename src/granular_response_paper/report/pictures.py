@@ -19,7 +19,7 @@ from granular_response.machine import threads
 from granular_response_paper import captions
 from granular_response_paper.registry import collection_of, group_path
 
-#: Pixels of the page per pixel of a drawn picture, which has 200 to an inch, and the most: letters as large as the text.
+#: Pixels of the page per pixel of a drawn picture, which has 200 to an inch, and the most of a picture.
 SHOWN, WIDEST = 0.62, 680
 
 #: How hard smooth maps are compressed, from 0 to 100.
