@@ -92,7 +92,6 @@ def root(tmp_path_factory):
     store.write(folder / "data" / "friction_linear_range.nc", friction_study())
     store.write(folder / "data" / "phase_diagram.nc", {"crossovers": crossovers()})
     store.write(folder / "data" / "sensitivity.nc", {"mu_0.2": sensitivity_study()})
-    (folder / "requirements.lock").write_text("# pinned\nnumpy==2.9.1\nsome-other==1.0\n")
     data = Data({"friction_linear_range": friction_study()})
     judged = claims.document([judge(claim, data) for claim in claims.claims_in(PAPER)])
     (folder / "figures" / "claims.json").write_text(json.dumps(judged | {"quantities": QUANTITIES}))

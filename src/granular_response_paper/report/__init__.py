@@ -122,7 +122,7 @@ def write(
     # before the work; a folder is made when there is a page
     check = atomic.check_writable if target.parent.is_dir() else atomic.check_output
     for name in names:
-        check(target.with_name(name), [*used, base / "requirements.lock"])
+        check(target.with_name(name), used)
     made = files(base, target.parent, collection=collection, embedded=embedded, name=target.name)
     target.parent.mkdir(parents=True, exist_ok=True)
     for name, content in made.items():
@@ -233,7 +233,6 @@ def files(
         "linked": lambda picture: _linked(picture, checkout, start),
         "states": _json_in_html(states) if states else None,
         "explored": states and sorted(slab["friction"] for slab in states["slabs"]),
-        "versions": _versions(checkout / "requirements.lock"),
         "style": _colours() + _resource("style.css"),
         "script": _resource("explorer.js"),
         "behaviour": _resource("page.js"),
@@ -309,18 +308,6 @@ def _linked(picture: pictures.Picture, checkout: Path, start: Path) -> list[tupl
     """The files of a picture that are there, in words, with their addresses from ``start``."""
     there = [(name, checkout / path) for name, path in picture.files if (checkout / path).exists()]
     return [(name, Path(os.path.relpath(path, start)).as_posix()) for name, path in there]
-
-
-#: What the digits and the pictures come from.
-_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4", "matplotlib", "dvc")
-
-
-def _versions(lock: Path) -> list[tuple[str, str]]:
-    """Names and pinned versions of the libraries that results depend on, none without the file."""
-    if not lock.exists():
-        return []
-    pinned = dict(line.split("==") for line in lock.read_text(encoding="utf-8").split() if line.count("==") == 1)
-    return [(name, pinned[name]) for name in _LIBRARIES if name in pinned]
 
 
 def _resource(name: str) -> str:

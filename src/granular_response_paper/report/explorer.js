@@ -328,25 +328,11 @@
   const mean = function (value) { return typed(Number(value.toPrecision(3))); };
   const counted = function (count) { return count + (count === 1 ? " peak" : " peaks"); };
   const opened = function (count) { return count + (count === 1 ? " contact opened" : " contacts opened"); };
-  function walls(friction) { return friction ? "rough walls" : "smooth walls"; }
-  // where two peaks begin: in this slab by its own states, and in Fig. 22
-  function own() {
-    const first = slab.peaks.findIndex(function (count) { return count > 1; }), f = slab.forces;
-    return " This slab has one peak " + (first < 0 ? "up to " + f[f.length - 1] + " mg."
-      : first ? "up to " + f[first - 1] + " mg and more from " + f[first] + " mg on." : "under no force.");
-  }
-  function figure22() {
-    const curve = data.crossovers.find(function (one) { return !one.polydispersity; });
-    const k = curve ? curve.friction.indexOf(slab.friction) : -1;
-    if (k < 0) { return ""; }
-    return " Fig. 22 (" + walls(slab.friction) + ", smoothed with w = " + data.width + " R\u0304" +
-      "): two peaks " + begins(curve, k) + ".";
-  }
   function begins(curve, k) {
     return ["from ", "already below ", "not up to "][curve.kind[k]] + short(curve.force[k]) + " mg" + (curve.kind[k] ? "" : " on");
   }
   function shape(index) {
-    const start = "The response (" + walls(slab.walls) + ") ";
+    const start = "The response (" + (slab.walls ? "rough" : "smooth") + " walls) ";
     const value = mean(slab.centre[index]) + " at x = 0; under " + slab.forces[0] + " mg it is " + mean(slab.centre[0]) + ".";
     return start + "has " + counted(slab.peaks[index]) + ", is " + (slab.symmetric[index] ? "" : "not ") +
       "symmetric, and is " + value;
@@ -366,7 +352,7 @@
     const reached = slab.motion && force >= slab.motion ? "dynamics from rest" : slab.motion ? "load path" : "";
     said.textContent = "F = " + force + " mg" + (reached ? " (" + reached + ")" : "") + ": " + opened(counts.opened) + ", " +
       counts.sliding + " at the Coulomb limit. Largest increase of a contact force: " + short(counts.most) +
-      " F; largest decrease of one that stays closed: " + short(counts.least) + " F. " + shape(index) + own() + figure22();
+      " F; largest decrease of one that stays closed: " + short(counts.least) + " F. " + shape(index);
     byId("network").setAttribute("aria-label", "Contacts of the slab, " + slab.about + ". " + said.textContent);
     byId("floor").setAttribute("aria-label", "Floor response against x under " + force + " mg, largest " +
       typed(Math.max.apply(null, slab.response[index]).toFixed(3)) + ". " + shape(index));
@@ -374,7 +360,7 @@
       " at " + slab.forces[0] + " mg to " + mean(slab.centre[slab.centre.length - 1]) + " at " +
       slab.forces[slab.forces.length - 1] + " mg; the cursor is at " + force + " mg.");
     byId("phase").setAttribute("aria-label", "Force from which there are two peaks against friction; the cursor is at friction " +
-      slab.friction + " and " + force + " mg." + figure22());
+      slab.friction + " and " + force + " mg.");
   }
   function moved() {
     wanted = slab.forces[Number(slider.value)];

@@ -88,7 +88,6 @@ def payload(friction: Datasets, phase: Datasets | None = None) -> dict[str, Any]
         "slabs": [_described(slab, one, friction) for slab, one in zip(slabs, contacts, strict=True)],
         "range": _range(friction),
         "crossovers": _crossovers(phase) if phase else [],
-        "width": WIDTH,
         "packed": base64.b64encode(zlib.compress(b"".join(one.bytes(strongest) for one in contacts), 9)).decode(),
     }
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image, ImageSequence
+from PIL import Image
 
 from granular_response.inputs import read_json
 from granular_response.machine import threads
@@ -114,19 +114,17 @@ def _said(folder: Path) -> dict[tuple[str, str], dict[str, str]]:
 
 
 def shown(path: Path, page: Path, *, embedded: bool = False) -> Picture:
-    """A drawn picture as the page in a folder shows it; an animation beside it stands in its place.
+    """A drawn picture as the page in a folder shows it.
 
     Embedded it has as many pixels as drawn in 256 colours, a third as large as the PNG; a smooth map is in all colours,
     with little loss, which is smaller.
     """
     with Image.open(path) as image:
         plain = image.convert("RGB")
-    moving = path.with_suffix(".gif")
-    source = Path(os.path.relpath(moving if moving.exists() else path, page)).as_posix()
+    source = Path(os.path.relpath(path, page)).as_posix()
     if embedded:
         few = plain.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).convert("RGB")
-        still = (_webp(few, lossless=True, quality=76), _webp(plain, quality=MAP_QUALITY))
-        source = _moving(moving) if moving.exists() else min(still, key=len)
+        source = min(_webp(few, lossless=True, quality=76), _webp(plain, quality=MAP_QUALITY), key=len)
     return Picture(
         path.stem,
         path.parent.name,
@@ -136,14 +134,6 @@ def shown(path: Path, page: Path, *, embedded: bool = False) -> Picture:
         min(round(SHOWN * plain.width), WIDEST),
         bool(np.asarray(plain.reduce(8)).mean() > PAPER),
     )
-
-
-def _moving(path: Path) -> str:
-    """A GIF as an animated WebP with the same frames: a third as large."""
-    with Image.open(path) as image:
-        frames = [(frame.convert("RGB"), frame.info["duration"]) for frame in ImageSequence.Iterator(image)]
-    (first, *others), durations = zip(*frames, strict=True)
-    return _webp(first, lossless=True, quality=76, save_all=True, append_images=others, duration=durations, loop=0)
 
 
 def address(image: bytes, name: str, embedded: bool) -> tuple[str, int, int]:
