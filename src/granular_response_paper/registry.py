@@ -2,7 +2,7 @@
 
 A *figure group* is a folder with ``parameters.py`` (the class ``Parameters``, the group's section of ``params.yaml``),
 ``simulate`` (parameters to datasets), ``draw.py`` (datasets to figures), ``captions.yaml``, ``reduced.yaml`` (a run of
-seconds) and, where something is claimed, ``claims.py`` beside ``claims.yaml``. A *collection* is a package of such
+seconds) and, where something is claimed, ``claims.py``. A *collection* is a package of such
 folders with a pipeline of its own. The paper is one. Others are installed beside it and found by their entry points,
 so the paper knows none of them::
 

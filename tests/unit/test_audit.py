@@ -187,16 +187,16 @@ def test_another_load_factor_than_was_asked_for_is_found(solution, state):
 def test_a_disk_that_bears_next_to_nothing_is_judged_by_what_it_bears():
     """In mid-air, out of balance by its whole weight, which was less than any bound in units of the mean one."""
     smooth = {"contact": {"friction": 0.0, "normal_stiffness": 37.5}, "wall": {"friction": 0.0}, "loads": []}
-    dust = {"x": [2.0, 6.0, 4.0], "z": [0.98, 0.98, 5.0], "radius": 1.0, "mass": [1.0, 1.0, 1e-12]}
+    dust = {"x": [2.0, 6.0, 4.0], "z": [0.98, 0.98, 5.0], "radius": 1.0, "mass": [1.0, 1.0, 1e-6]}
     problem = Problem.from_scene(Scene.from_arrays(**dust, width=8.0, scene=smooth))
     rule = ContactRule(37.5, 0.0, 0.0), ContactRule(75.0, 0.0, 0.0)
     position = problem.packing.position.copy()
     position[:2, 1] = 1.0 - problem.weight[:2] / 75.0
     state = problem.relisted(replace(problem.bare_state(), position=position))
     found = audit(state, problem.packing.radius, problem.weight, 8.0, *rule, np.zeros((3, 3)))
-    assert found.force_residual < 1e-11 and found.in_flight == 1
+    assert found.force_residual < 2e-6 and found.in_flight == 1
     assert found.relative_residual == pytest.approx(1.0)
-    whole = audit(state, problem.packing.radius, problem.weight, 8.0, *rule, np.zeros((3, 3)), rounding=1e-11)
+    whole = audit(state, problem.packing.radius, problem.weight, 8.0, *rule, np.zeros((3, 3)), rounding=1e-5)
     assert whole.relative_residual == 0.0  # a weight that no digit of a position shows
 
 

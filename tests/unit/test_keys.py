@@ -154,9 +154,9 @@ class Stiffer(Linear):
 
 def test_a_module_that_a_law_imports_counts(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
-    (tmp_path / "law_of_mine.py").write_text(LAW)
+    (tmp_path / "stiffer_law.py").write_text(LAW)
     (tmp_path / "constants_of_mine.py").write_text("PART = 1.0\n")
-    law = importlib.import_module("law_of_mine").Stiffer
+    law = importlib.import_module("stiffer_law").Stiffer
     monkeypatch.setitem(KNOWN_LAWS, "stiffer", KnownLaw(law=law))
     scene = Scene().updated({"contact.law": "stiffer"})
     of_problem = law.of(1.0, 1.0, 1.0, 1.0, 0.2, 0.0, 0.5)  # as in the name of a rest state

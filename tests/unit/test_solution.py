@@ -57,7 +57,7 @@ UNEVEN = {"packing__polydispersity": 0.1, "packing__lattice_constant": "touching
         (SMOOTH | UNEVEN, "preparation__gravity", "slow", False),
         (SMOOTH, "protocol__friction_law", "literal", True),
         (RUBS, "protocol__stop_kinetic_energy", 1e-9, False),
-        (RUBS | UNEVEN, "protocol__stop_kinetic_energy", 1e-10, True),
+        (RUBS | UNEVEN, "protocol__stop_kinetic_energy", 1e-10, False),
         (RUBS | UNEVEN, "protocol__stop_kinetic_energy", 1e-8, False),
         (SMOOTH | {"loads": []}, "protocol__load_factors", [0.5, 1.0], True),
     ],

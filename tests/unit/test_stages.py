@@ -99,6 +99,7 @@ def test_simulate_and_draw(group, tmp_path):
     assert json.loads(Path("figures/squares/captions.json").read_text()) == {
         "fig99_squares": {
             "figure": None,
+            "title": "",
             "question": "How do squares grow?",
             "panels": [],
             "caption": "4 squares. F_ext = 1 and 2 m\u0304g.",

@@ -66,8 +66,13 @@ def test_copies_lean_to_both_sides_and_are_mirror_images(stored):
 
 
 def test_a_wider_slab_has_two_peaks_at_a_smaller_force(stored):
-    """By a twentieth with friction 0.2 in rows of 121 disks; the linear range is shorter still."""
+    """By a twentieth with friction 0.2 in rows of 121 disks, by a quarter in rows of 241; linear ranges shrink more."""
     ours, wide = (bracket(stored, "crossover", name, 0.2)[0] for name in ("as in the paper", "121 disks a row"))
     assert 0.9 < wide / ours < 0.97
     ours, wide = (bracket(stored, "linear_range", name, 0.2)[0] for name in ("as in the paper", "121 disks a row"))
     assert wide < 0.5 * ours
+    widest = (
+        bracket(stored, "crossover", "241 disks a row", 0.2)[0],
+        bracket(stored, "linear_range", "241 disks a row", 0.2)[0],
+    )
+    assert widest[0] < 16.0 and widest[1] < 0.5 * wide

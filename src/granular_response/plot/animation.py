@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -111,8 +110,8 @@ def rendered(animation: FuncAnimation, ending: str = ".gif", *, fps: float = 6.0
     with style.context():
         if ending == ".html":
             return animation.to_jshtml(fps=max(1, round(fps))).encode()
-        with tempfile.TemporaryDirectory() as folder:
-            target = Path(folder) / f"animation{ending}"
+        with atomic.scratch() as folder:
+            target = folder / f"animation{ending}"
             writer: AbstractMovieWriter = _Film(fps) if ending == ".mp4" else _Writer(fps, ending)
             animation.save(target, writer=writer, dpi=dpi)
             return target.read_bytes()

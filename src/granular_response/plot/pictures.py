@@ -296,7 +296,7 @@ def stress(
         axes = new_axes(ax, aspect_of(shown, half_width))
         norm = root_norm(end if end > 0.0 else 1.0, signed=signed)
         mesh = {"cmap": cmap or (style.SIGNED if signed else style.SEQUENTIAL), **mesh}
-        image = draw_field(axes, x, z, field if signed else np.maximum(field, 0.0), norm=norm, **mesh)
+        image = draw_field(axes, x, z, field, norm=norm, **mesh)
         near: dict[str, Any] = {"color": style.MUTED if signed else style.FAINT, "linewidth": 0.7, "linestyle": ":"}
         axes.axhline(width, **near)
         for side in () if shown.box.periodic else (width, shown.box.width - width):

@@ -19,7 +19,7 @@ from ..contact.coulomb import limit
 from ..errors import EquilibriumError
 from ..state import Certificate, FloatArray, State
 from ..state.box import bodies
-from .free import least, solved_by, suspicious
+from .free import least_at_rest, solved_by, suspicious
 from .problem import Problem
 from .stability import Spectrum
 from .system import Configuration, StaticSystem, Trial
@@ -129,7 +129,7 @@ def newton(
             break
         length = float(np.abs(step[: 2 * n]).max())
         if suspicious(system, length, size) and (by := system.kept_factor(trial)) is not None:
-            step = least(system, solved_by(system, by), step)
+            step = least_at_rest(system, solved_by(system, by), step, r)
             length = float(np.abs(step[: 2 * n]).max())
         scale = min(1.0, OPTIONS.longest_step / length) if length > 0 else 1.0
         search = backtracking and iterations > OPTIONS.whole_steps
@@ -274,9 +274,7 @@ def finish(problem: Problem, state: State, *, maximum_iterations: int | None = N
     system = StaticSystem(problem, state)
     known = system.start(state)
     external, ordered = external_force(problem, factor), problem.packing.ordered
-    trial, report = newton(
-        system, known, external, maximum_iterations=maximum_iterations, backtracking=ordered
-    )  # fmt: skip
+    trial, report = newton(system, known, external, maximum_iterations=maximum_iterations, backtracking=ordered)
     if not report.converged:
         raise EquilibriumError(
             f"no static equilibrium within {report.iterations} Newton iterations of the state "

@@ -26,6 +26,9 @@ class FreeOptions:
     #: Displacement per force, in units of the inverse normal stiffness, from which on a step may go along a null
     #: direction: the softest directions of packings have up to 1e5, a null direction 1e10.
     soft: float = 1e7
+    #: Force (mean weights) along a null direction up to which it is a residual, and moves nothing. The lightest disk
+    #: that is allowed weighs ten times that, and falls.
+    residual: float = 1e-7
     #: Normal force (mean weights) up to which a contact bears nothing, as of ``PathOptions.passing``: it is no tie,
     #: as it may open.
     bare: float = 1e-8
@@ -51,6 +54,15 @@ def least(system: StaticSystem, solve: Callable[[FloatArray], FloatArray], step:
     That multiplies what lies along one by the inverse of the regularisation, anything else by next to nothing of it.
     """
     return step - SYSTEM.regularisation * system.problem.stiffness * solve(step)
+
+
+def least_at_rest(
+    system: StaticSystem, solve: Callable[[FloatArray], FloatArray], step: FloatArray, force: FloatArray
+) -> FloatArray:
+    """The same where the forces out of balance (dof,) are no more than a residual along null directions; else ``step``:
+    a disk in the air falls along one."""
+    along = SYSTEM.regularisation * system.problem.stiffness * solve(force)
+    return least(system, solve, step) if float(np.abs(along).max()) <= OPTIONS.residual else step
 
 
 def without_bare(system: StaticSystem, trial: Trial) -> Trial | None:

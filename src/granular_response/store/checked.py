@@ -67,8 +67,9 @@ def checked(dataset: xr.Dataset) -> xr.Dataset:
     if events:
         _check_range(dataset, "event_state", sizes["state"])
         _check_range(dataset, "event_first", sizes["disk"], lowest=-1)
-        _check_range(dataset, "event_second", sizes["disk"], lowest=-1)
-        _check_range(dataset.isel(event=dataset["event_at_wall"].values == 1), "event_second", len(WALL_MEANINGS))
+        for at_wall, count, lowest in ((0, sizes["disk"], -1), (1, len(WALL_MEANINGS), 0)):
+            of_kind = dataset.isel(event=dataset["event_at_wall"].values == at_wall)
+            _check_range(of_kind, "event_second", count, lowest=lowest)
     _check_attributes(dataset.attrs)
     return indexed(labelled(dataset))
 

@@ -54,6 +54,7 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None, forma
         problem = " ".join(f"{type(error).__name__}: {error}".split())
         raise GroupError(f"{path}: {group} cannot be drawn with these parameters ({problem})") from error
     beside = target / captions.FILE
+    atomic.make_folder(beside)
     atomic.check_writable(beside, [path])
     atomic.write_bytes(beside, (json.dumps(said, ensure_ascii=False, indent=1) + "\n").encode())
     return [*paths, beside]
