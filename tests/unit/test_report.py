@@ -6,6 +6,7 @@ import json
 import re
 import zlib
 from collections import Counter
+from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -170,7 +171,9 @@ def test_one_row_for_every_claim_with_its_verdict(judged, page, claims_page):
     assert "What fig17_pile &lt;shows&gt;." in page and "<shows>" not in page  # texts from data cannot become markup
 
 
+@cache
 def everything(collection):
+    """The stored page of a collection and that of its claims."""
     return pages_of(ROOT / collection.folder, collection)
 
 

@@ -221,12 +221,15 @@
     return Y;
   }
 
+  // states on the scale of this one: the large responses of lost symmetry would flatten all others
+  function fits(index) {
+    return function (_, k) { return slab.symmetric[k] || !slab.symmetric[index]; };
+  }
   function response(index) {
     const paper = sheet("floor", function (width) { return Math.max(150, 0.3 * width); }), pen = paper.pen;
     const X = across(paper.width).X, floor = slab.response[index];
-    // the largest response of lost symmetry would flatten all others
     const rows = slab.response, values = rows[index];
-    const Y = linear(pen, rows.filter(function (_, k) { return slab.symmetric[k] || !slab.symmetric[index]; }), paper.height - 28, paper.width);
+    const Y = linear(pen, rows.filter(fits(index)), paper.height - 28, paper.width);
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(rows[0][k])]; }), colour.soft, 3);
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(values[k])]; }), colour.increased, 1.8);
     slab.x.forEach(function (x, k) {
@@ -247,7 +250,8 @@
     const paper = sheet("range", function (width) { return Math.max(170, 0.62 * width); }), pen = paper.pen;
     const others = data.range;
     const motion = slab.motion ? slab.forces.indexOf(slab.motion) : slab.forces.length;
-    const X = logarithm(0.1, 110, LEFT, paper.width - 40), rows = others.concat([slab]).map(function (one) { return one.centre; });
+    const X = logarithm(0.1, Math.max(110, ...slab.forces), LEFT, paper.width - 40);
+    const rows = others.map(function (one) { return one.centre; }).concat([slab.centre.filter(fits(index))]);
     const Y = linear(pen, rows, paper.height - 36, paper.width - 40);
     [0.1, 1, 10, 100].forEach(function (force) { text(pen, String(force), X(force), paper.height - 26, "center"); });
     text(pen, "F / mg", (LEFT + paper.width) / 2, paper.height - 9, "center");
@@ -263,7 +267,7 @@
     const own = slab.forces.map(function (f, k) { return [X(f), Y(slab.centre[k]), "F = " + f + " mg: " + mean(slab.centre[k])]; });
     spots.range = own;
     line(pen, own.slice(0, motion), colour.increased, 2);
-    own.slice(motion).forEach(function (point) { dot(pen, point[0], point[1], 2.6, colour.increased, true); });
+    own.filter(fits(index)).slice(motion).forEach(function (point) { dot(pen, point[0], point[1], 2.6, colour.increased, true); });
     const force = slab.forces[index];
     line(pen, [[X(force), 8], [X(force), paper.height - 36]], colour.ink, 1);
     dot(pen, X(force), Y(slab.centre[index]), 4.5, colour.ink);

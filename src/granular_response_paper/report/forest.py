@@ -69,8 +69,9 @@ def _columns(axes: Axes, quantities: Quantities) -> None:
         paper, unit = one["paper"] * (100.0 if one["unit"] == "%" else 1.0), f" {one['unit']}".rstrip()
         said.append((f"{paper:g}{unit}", one["ours"]["text"].replace(unit, "") if unit else one["ours"]["text"]))
     for row, (paper, ours) in enumerate(said, -1):
-        for text, place, colour in ((paper, 1.01, style.PAPER), (ours, 1.17, style.INCREASED)):
-            axes.text(place, row, text, transform=axes.get_yaxis_transform(), va="center", color=colour, fontsize=6.8)
+        for text, points, colour in ((paper, 3.0, style.PAPER), (ours, 36.0, style.INCREASED)):
+            axes.annotate(text, (1.0, row), (points, 0.0), xycoords=axes.get_yaxis_transform(), color=colour,
+                          textcoords="offset points", va="center", fontsize=6.8)  # fmt: skip
 
 
 def _name(what: str) -> str:
