@@ -1,9 +1,12 @@
 """The page: what it says agrees with the stored table, it needs no network, and a real browser shows all of it."""
 
 import base64
+import html
 import json
 import re
 import zlib
+from collections import Counter
+from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -12,6 +15,7 @@ import pytest
 from chromium import BROWSER, Chromium
 from claims_data import by_row, dataset, over
 from PIL import Image
+from places import ROOT
 from refusals import refuses
 
 from granular_response.store import files as store
@@ -19,8 +23,8 @@ from granular_response_paper import report
 from granular_response_paper.claims import table as claims
 from granular_response_paper.claims.claim import ClaimsError, Data, judge
 from granular_response_paper.groups.sensitivity import simulate as sensitivity
-from granular_response_paper.registry import PAPER
-from granular_response_paper.report import against, explorer, readings
+from granular_response_paper.registry import PAPER, collections
+from granular_response_paper.report import against, explorer, forest, readings
 from granular_response_paper.report.typeset import typeset
 
 FORCES = (0.0, 1.0, 4.0, 90.0)
@@ -74,8 +78,8 @@ def root(tmp_path_factory):
         "theory/fig01_predictions": (1400, 500),
         "friction_linear_range/fig06_linear_range": (680, 520),
         "pile_dip/fig17_pile": (1400, 900),
-        "pile_dip/fig17_pile_profiles": (700, 300),
-        "numerics/numerics": (1400, 500),
+        "pile_dip/fig17b_profiles": (700, 300),
+        "overview/overview": (1240, 980),
     }.items():
         path = folder / "figures" / f"{name}.png"
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -83,24 +87,52 @@ def root(tmp_path_factory):
         Image.fromarray(shade).save(path)
         beside = path.with_name("captions.json")
         said = json.loads(beside.read_text()) if beside.exists() else {}
-        said[path.stem] = {"caption": f"What {path.stem} <shows>.", "alternative": "How it looks.", "question": "Why?"}
+        caption = f"What {path.stem} <shows>. And more. µ = 0.2."
+        said[path.stem] = {"title": "A title", "caption": caption, "alternative": "", "parameters": {"friction": 0.2}}
         beside.write_text(json.dumps(said))
     store.write(folder / "data" / "friction_linear_range.nc", friction_study())
     store.write(folder / "data" / "phase_diagram.nc", {"crossovers": crossovers()})
     store.write(folder / "data" / "sensitivity.nc", {"mu_0.2": sensitivity_study()})
-    (folder / "benchmarks").mkdir()
-    goal = {"what": "Speed of a step", "goal": "at least 4", "measured": "5", "met": True}
-    (folder / "benchmarks" / "summary.json").write_text(json.dumps({"goals": [goal]}))
-    (folder / "requirements.lock").write_text("# pinned\nnumpy==2.9.1\nsome-other==1.0\n")
     data = Data({"friction_linear_range": friction_study()})
     judged = claims.document([judge(claim, data) for claim in claims.claims_in(PAPER)])
-    (folder / "figures" / "claims.json").write_text(json.dumps(judged))
+    (folder / "figures" / "claims.json").write_text(json.dumps(judged | {"quantities": QUANTITIES}))
     return folder
+
+
+def point(value, low, high, **others):
+    return {"value": value, "interval": [low, high], **others}
+
+
+QUANTITIES = [
+    {"what": "two peaks, friction 0.2", "paper": 20.0, "unit": "mg", "claim": "R3a", "others": [
+        point(0.15, 0.15, 0.15, case="gravity ramped over 100 sqrt(R/g)", prepared="gravity"),
+        point(None, 40.0, None, case="gravity first without friction", prepared="gravity"),
+        point(35.0, 0.0, 70.0, case="121 disks a row", prepared=""),
+    ], "ours": point(20.2, 17.4, 20.4, text="20 mg (17 to 20 mg)", interval_of="range over the protocol")},
+    {"what": "change of the response with k_N", "paper": 0.02, "unit": "%", "claim": "F8", "others": [],
+     "ours": point(2.8e-5, 2.8e-5, 2.8e-5, text="0.0028 %", interval_of="none")},
+]  # fmt: skip
+
+
+def pages_of(folder, collection=PAPER, **options):
+    """The page and that of the claims."""
+    made = report.files(folder, collection=collection, **options)
+    return made["report.html"].decode(), made["claims.html"].decode()
 
 
 @pytest.fixture(scope="module")
 def page(root):
-    return report.page(root)
+    return pages_of(root)[0]
+
+
+@pytest.fixture(scope="module")
+def claims_page(root):
+    return pages_of(root)[1]
+
+
+def words(text):
+    """What a page shows, without its scripts and styles."""
+    return html.unescape(re.sub(r"<[^>]+>", " ", re.sub(r"<(script|style).*?</\1>", "", text, flags=re.DOTALL)))
 
 
 @pytest.fixture(scope="module")
@@ -124,24 +156,85 @@ class Elements(HTMLParser):
         return [attributes for name, attributes in self.found if name == tag]
 
 
-def test_one_row_for_every_claim_with_its_verdict(judged, page):
-    elements = Elements(page)
+def test_one_row_for_every_claim_with_its_verdict(judged, page, claims_page):
+    elements = Elements(claims_page)
     rows = [row["id"] for row in elements.named("tr") if row.get("class", "").startswith("claim ")]
     assert rows == [f"claim-{row['id']}" for row in judged["table"]]
     chips = [span["class"] for span in elements.named("span") if span.get("class", "").startswith("chip")]
     assert chips == [f"chip {row['verdict'].replace(' ', '_')}" for row in judged["table"]]
     for part in ("ordered", "disorder"):
-        tiles = page.partition(f'id="tiles-{part}"')[2].partition("<p ")[0]
-        counted = re.findall(r'<a class="tile (\w+)" href="#only-\w+"><b>(\d+)</b>', tiles)
-        found = {verdict: int(number) for verdict, number in counted}
+        counts = page.partition(f'id="counts-{part}"')[2].partition("</span>")[0]
+        found = {verdict: int(number) for verdict, number in re.findall(r'#only-(\w+)">(\d+) ', counts)}
         assert found == {verdict: number for verdict, number in judged["counts"][part].items() if number}
     for sentence in judged["scheme"]:
-        assert f"<li>{sentence}</li>" in page
-    assert "time step &lt;halved&gt;" in page and "<halved>" not in page  # texts from data cannot become markup
+        assert f"<li>{sentence}</li>" in page and f"<li>{sentence}</li>" in claims_page
+    assert "What fig17_pile &lt;shows&gt;." in page and "<shows>" not in page  # texts from data cannot become markup
+
+
+@cache
+def everything(collection):
+    """The stored page of a collection and that of its claims."""
+    return pages_of(ROOT / collection.folder, collection)
+
+
+@pytest.mark.parametrize("collection", collections(), ids=lambda one: one.name)
+def test_the_stored_page_says_each_sentence_once_in_few_words_and_all_its_links_are_good(collection):
+    page, claims_page = everything(collection)
+    table = claims.read(ROOT / collection.folder / claims.OUTPUT)["table"]
+    for here, rows in Counter(row["here"] for row in table if row["verdict"] != "not measured").items():
+        assert page.count(typeset(here)) <= rows, here
+    assert len(words(page).split()) <= 8000
+    ids = {name: {e["id"] for _, e in Elements(text).found if "id" in e} for name, text in
+           (("report.html", page), ("claims.html", claims_page))}  # fmt: skip
+    for name, text in (("report.html", page), ("claims.html", claims_page)):
+        for link in (a["href"] for a in Elements(text).named("a")):
+            path, _, target = link.partition("#")
+            if path in ("", *ids):
+                assert not target or target.startswith("mu=") or target in ids[path or name], link
+            else:
+                assert (ROOT / collection.folder / "figures" / path).exists() or path.endswith(".nc"), link
+
+
+def test_every_statement_of_the_paper_that_fails_and_every_finding_is_said_on_the_stored_page():
+    page, _ = everything(PAPER)
+    table = {row["id"]: row for row in claims.read(ROOT / claims.OUTPUT)["table"]}
+    failing = [name for name, row in table.items() if row["verdict"] == "not supported" and row["row"] == "statement"]
+    for name in (*failing, *(one.claim for one in report.FINDINGS), *(one.answer for one in report.CHAPTERS)):
+        assert page.count(typeset(table[name]["here"])) == 1, name
+    numbers = re.findall(r"\d+\.\d+", " ".join(row["here"] for row in table.values()))
+    assert numbers and all(len(number.replace(".", "").lstrip("0")) <= 4 for number in numbers)
+
+
+def test_every_picture_of_the_paper_is_in_one_chapter():
+    numbers = [number for chapter in report.CHAPTERS for number in chapter.figures]
+    assert sorted(numbers) == list(range(1, 25))
+    known = {row.id for row in claims.claims_in(PAPER)}
+    assert {one.answer for one in report.CHAPTERS} | {one.claim for one in report.FINDINGS} <= known
+
+
+def test_the_extensions_answer_each_question_with_its_own_picture():
+    answered = report.answers(ROOT / report.ANSWERS)
+    pictures = [stem for _, _, stem in answered]
+    assert len(answered) > 5 and all(pictures) and len(set(pictures)) == len(pictures)
+    assert all(list((ROOT / "extensions" / "figures").glob(f"*/{stem}.png")) for stem in pictures)
+
+
+def test_numbers_stand_at_their_ratio_to_the_papers_and_bounds_are_arrows():
+    axes = forest.forest(QUANTITIES).axes[0]
+    drawn = {
+        (line.get_marker(), round(float(line.get_xdata()[0]), 4)) for line in axes.lines if len(line.get_xdata()) == 1
+    }
+    # gravity, its bound, the bracket that begins at no force, ours, and a number beyond the axis
+    assert {("o", 0.0075), (">", 2.0), ("<", 3.5), ("o", 1.01), ("<", forest.ENDS[0])} <= drawn
+    said = [text.get_text() for text in axes.texts]
+    assert said == ["paper", "here", "20 mg", "20 (17 to 20)", "2 %", "0.0028"]
+    assert forest.render({"quantities": []}) == {}
+    again = forest.render({"quantities": QUANTITIES})
+    assert list(again) == list(forest.FILES) and again == forest.render({"quantities": QUANTITIES})
 
 
 def test_a_self_contained_page_needs_no_network_and_no_other_file(root):
-    page = report.page(root, embedded=True)
+    page = pages_of(root, embedded=True)[0]
     elements = Elements(page)
     assert all(image["src"].startswith("data:image/webp;base64,") for image in elements.named("img"))
     assert [link["href"] for link in elements.named("link")] == ["data:,"]
@@ -150,14 +243,12 @@ def test_a_self_contained_page_needs_no_network_and_no_other_file(root):
     assert "url(" not in page and "@import" not in page
 
 
-def test_every_figure_of_the_paper_has_a_place_and_others_stand_by_their_questions(page):
+def test_every_figure_of_the_paper_has_a_place(page):
     assert sorted(map(int, re.findall(r' id="figure-(\d+)"', page))) == list(range(1, 25))
-    assert page.count("not drawn yet") == 24 - 3
-    assert page.count('<figure id="picture-') == 5
-    assert page.count("<img ") == 5 + 3  # in full, and the paper's in small
-    assert re.findall(r"<h3>([^<]+\?)</h3>", page) == ["Why?"]
-    assert page.index('id="picture-fig17_pile"') < page.index("Why?") < page.index('id="picture-numerics"')
-    assert "<b>Numerics. What numerics &lt;shows&gt;.</b>" in page
+    assert page.count("is not drawn yet") == 24 - 3
+    assert page.count('<figure id="picture-') == 4 + 3  # of figures; the overview and the two of the claims
+    assert page.count("<b>Fig. 17. A title. What fig17") == 2
+    assert "<summary>Parameters</summary><p>µ = 0.2." in page
     targets = set(re.findall(r'href="#([\w-]+)"', page))
     assert targets <= {e["id"] for _, e in Elements(page).found if "id" in e}
 
@@ -165,30 +256,32 @@ def test_every_figure_of_the_paper_has_a_place_and_others_stand_by_their_questio
 def test_pictures_lead_to_the_files_that_are_there(root, page, tmp_path):
     part = page.partition('<figure id="picture-fig06_linear_range"')[2].partition("</figure>")[0]
     found = {name: link for link, name in re.findall(r'<a href="([^#"]+)">([\w ]+)</a>', part)}
-    assert found["picture"] == "friction_linear_range/fig06_linear_range.png"
     assert found["data"] == "../data/friction_linear_range.nc"
     assert {"drawing", "simulation"} < set(found)
     assert all((root / "figures" / link).exists() for link in found.values())
     elsewhere = report.write(tmp_path / "elsewhere" / "page.html", root).read_text()
     assert report.write(tmp_path / "again" / "page.html", root).read_text() == elsewhere
-    moved = [a["href"] for a in Elements(elsewhere).named("a") if not a["href"].startswith("#")]
+    made = {path.name for path in (tmp_path / "again").iterdir()}
+    assert made == {"page.html", "claims.html", "forest.png", "preparations.png"}
+    refuses(report.ReportError, r"claims\.html: is the name of", report.write, tmp_path / "claims.html", root)
+    moved = [a["href"].partition("#")[0] for a in Elements(elsewhere).named("a")]
     assert moved and all((tmp_path / "elsewhere" / link).exists() for link in moved)
 
 
-def test_claims_and_figures_lead_to_each_other(judged, page):
-    def listed(mark, end="</figure>"):
-        return page.partition(mark)[2].partition(end)[0]
+def test_claims_and_figures_lead_to_each_other(judged, page, claims_page):
+    def listed(text, mark, end):
+        return text.partition(mark)[2].partition(end)[0]
 
+    told = {one.claim for one in report.FINDINGS} | {one.answer for one in report.CHAPTERS}
     for row in judged["table"]:
-        part = listed(f'<tr id="claim-{row["id"]}"', "</tr>")
-        assert [int(number) for number in re.findall(r'href="#figure-(\d+)"', part)] == row["figures"]
+        part = listed(claims_page, f'<tr id="claim-{row["id"]}"', "</tr>")
+        assert [int(number) for number in re.findall(r'href="report.html#figure-(\d+)"', part)] == row["figures"]
     for number in (1, 6, 17):
-        shown = re.findall(r'<li><a class="mark \w+" href="#claim-(\w+)">', listed(f'<span id="figure-{number}"'))
-        assert shown == [row["id"] for row in judged["table"] if number in row["figures"]]
-    # a further picture shows the claims of its group that no figure shows
-    expected = [row["id"] for row in judged["table"] if row["group"] == "numerics" and not row["figures"]]
-    found = re.findall(r'<li><a class="mark \w+" href="#claim-(\w+)">', listed('<figure id="picture-numerics"'))
-    assert found == expected != []
+        part = listed(page, f'<section id="figure-{number}"', "</section>")
+        shown = re.findall(r'<a class="mark \w+" href="claims.html#claim-(\w+)">', part)
+        own = [r["id"] for r in judged["table"] if r["figures"][:1] == [number] and r["row"] == "statement"]
+        assert set(shown) <= set(own) and len(set(shown) - told) == min(report.LISTED, len(set(own) - told))
+        assert f"make figure FIGURE={number}<" in part
 
 
 @pytest.mark.parametrize(
@@ -288,7 +381,7 @@ def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
     if content is not None:
         (tmp_path / "figures").mkdir()
         (tmp_path / "figures" / "claims.json").write_text(content)
-    refuses(ClaimsError, rf"claims\.json: {problem}", report.page, tmp_path)
+    refuses(ClaimsError, rf"claims\.json: {problem}", report.files, tmp_path)
 
 
 @pytest.fixture(scope="module")
@@ -303,12 +396,13 @@ def tab(tmp_path_factory):
 def opened(tab, root, tmp_path_factory):
     """Opens the page, with its explorer ready."""
     path = tmp_path_factory.mktemp("page") / "page.html"
-    path.write_text(report.page(root, embedded=True))
+    report.write(path, root, embedded=True)
 
-    def show(width, **options):
+    def show(width, name="page.html", **options):
         del tab.problems[:], tab.requests[:]
-        tab.open(path, width, **options)
-        tab.wait("'ready' in document.getElementById('explorer').dataset")
+        tab.open(path.with_name(name), width, **options)
+        if name == "page.html":
+            tab.wait("'ready' in document.getElementById('explorer').dataset")
         return tab
 
     return show
@@ -326,22 +420,29 @@ def drawn(tab):
 def test_a_browser_shows_all_of_it(judged, opened, width, scheme):
     tab = opened(width, scheme=scheme)
     assert tab.problems == [] and {Path(url).name for url in tab.requests} == {"page.html"}
-    assert tab.run("document.querySelectorAll('tr.claim').length") == len(judged["table"])
     assert tab.run("document.documentElement.scrollWidth") == tab.run("document.documentElement.clientWidth") == width
     sizes = "i => [i.naturalWidth, i.clientWidth, i.parentElement.clientWidth]"
     tab.run("document.querySelectorAll('details').forEach(folded => { folded.open = true; })")
+    tab.run("document.querySelectorAll('img').forEach(image => { image.loading = 'eager'; })")
+    tab.wait("Array.from(document.images).every(image => image.complete)")
     images = tab.run(f"Array.from(document.querySelectorAll('main img'), {sizes})")
-    assert len(images) == 5 + 3  # the paper's in small too
+    assert len(images) == 4 + 3 + 2  # the overview three times: a telephone shows a column of it each time
+    assert all(inherent and frame <= width for inherent, _, frame in images)
     # only on a telephone does a picture scroll sideways, in its own frame, so that its letters can be read
-    assert all(0 < shown <= (640 if width == 390 else frame) and frame <= width and i for i, shown, frame in images)
+    assert width == 390 or all(0 <= shown <= 680 for _, shown, _ in images)
     assert tab.run("document.documentElement.scrollWidth") == width  # folded tables too
     assert tab.run("getComputedStyle(document.body).backgroundColor") == (
         "rgb(255, 255, 255)" if scheme == "light" else "rgb(20, 24, 29)"
     )
+    tab = opened(width, "claims.html", scheme=scheme)
+    assert tab.run("document.documentElement.scrollWidth") == width and tab.problems == []
+    rows = "Array.from(document.querySelectorAll('tr.claim')).filter(row => row.offsetHeight).map(row => row.id)"
     for kind in ("not measured", "supported"):
         tab.run(f"document.getElementById('only-{kind.replace(' ', '_')}').click()")
-        rows = "Array.from(document.querySelectorAll('tr.claim')).filter(row => row.offsetHeight).length"
-        assert tab.run(rows) == sum(row["verdict"] == kind for row in judged["table"])
+        assert tab.run(rows) == [f"claim-{row['id']}" for row in judged["table"] if row["verdict"] == kind]
+    tab.run("document.getElementById('only-all').click()")
+    tab.run("search.value = 'R3A Two'; search.dispatchEvent(new Event('input'))")
+    assert tab.run(rows) == ["claim-R3a"] and tab.run("matches.textContent") == "1 shown"
 
 
 def test_the_explorer_follows_mouse_and_keys(opened):

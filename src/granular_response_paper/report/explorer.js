@@ -105,6 +105,11 @@
     pen.textAlign = align;
     pen.fillText(words, x, y);
   }
+  function bold(pen, words, x, y, align, ink) {  // what is to be seen in a plot
+    pen.font = "bold 13px system-ui, sans-serif";
+    text(pen, words, x, y, align, ink);
+    pen.font = "11px system-ui, sans-serif";
+  }
   function line(pen, points, ink, width, dashes) {
     pen.strokeStyle = ink;
     pen.lineWidth = width;
@@ -132,7 +137,7 @@
     const place = across(byId("network").clientWidth), scale = place.scale, X = place.X;
     const paper = sheet("network", function () { return (slab.height + 5.5) * scale + 34; });
     const pen = paper.pen, frame = slab.frames[index], lines = slab.lines, floor = paper.height - 32;
-    const Z = function (z) { return floor - z * scale; };
+    const Z = function (z) { return floor - z * scale; }, high = 12;
     const counts = {opened: 0, sliding: 0, most: 0, least: 0};  // of the contacts that are shown
     pen.strokeStyle = colour.grid;
     pen.lineWidth = 1;
@@ -182,7 +187,8 @@
     pen.lineTo(X(0.9), Z(slab.height + 1.8));
     pen.fill();
     text(pen, "F", X(1.4), Z(slab.height + 3.6), "left", colour.load);
-    const bar = LEFT + 4, high = 12;  // a bar as wide as half of the applied force
+    bold(pen, opened(counts.opened), paper.width, high, "right", colour.opened);
+    const bar = LEFT + 4;  // a bar as wide as half of the applied force
     line(pen, [[bar, high], [bar + 3 * scale, high]], colour.increased, 0.5 * widest);
     text(pen, "0.5 F", bar + 3 * scale + 5, high, "left");
     [0, 10, 20].forEach(function (z) { text(pen, String(z), LEFT - 4, Z(z), "right"); });
@@ -215,17 +221,22 @@
     return Y;
   }
 
+  // states on the scale of this one: the large responses of lost symmetry would flatten all others
+  function fits(index) {
+    return function (_, k) { return slab.symmetric[k] || !slab.symmetric[index]; };
+  }
   function response(index) {
     const paper = sheet("floor", function (width) { return Math.max(150, 0.3 * width); }), pen = paper.pen;
     const X = across(paper.width).X, floor = slab.response[index];
-    const Y = linear(pen, slab.response, paper.height - 28, paper.width);
     const rows = slab.response, values = rows[index];
+    const Y = linear(pen, rows.filter(fits(index)), paper.height - 28, paper.width);
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(rows[0][k])]; }), colour.soft, 3);
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(values[k])]; }), colour.increased, 1.8);
     slab.x.forEach(function (x, k) {
       dot(pen, X(x), Y(floor[k]), 2.1, colour.increased, false);
       spots.floor.push([X(x), Y(floor[k]), "x = " + typed(x) + " R\u0304: " + mean(floor[k])]);
     });
+    bold(pen, counted(slab.peaks[index]) + (slab.symmetric[index] ? "" : ", not symmetric"), LEFT + 6, 14, "left", colour.increased);
     xTicks(pen, X, paper.height - 10, paper.width);
   }
 
@@ -239,7 +250,8 @@
     const paper = sheet("range", function (width) { return Math.max(170, 0.62 * width); }), pen = paper.pen;
     const others = data.range;
     const motion = slab.motion ? slab.forces.indexOf(slab.motion) : slab.forces.length;
-    const X = logarithm(0.1, 110, LEFT, paper.width - 40), rows = others.concat([slab]).map(function (one) { return one.centre; });
+    const X = logarithm(0.1, Math.max(110, ...slab.forces), LEFT, paper.width - 40);
+    const rows = others.map(function (one) { return one.centre; }).concat([slab.centre.filter(fits(index))]);
     const Y = linear(pen, rows, paper.height - 36, paper.width - 40);
     [0.1, 1, 10, 100].forEach(function (force) { text(pen, String(force), X(force), paper.height - 26, "center"); });
     text(pen, "F / mg", (LEFT + paper.width) / 2, paper.height - 9, "center");
@@ -250,12 +262,12 @@
         const one = pair[1];
         low = Math.max(pair[0], low + 11);
         line(pen, one.force.map(function (f, k) { return [X(f), Y(one.centre[k])]; }), colour.soft, 1);
-        text(pen, "\u00b5 " + short(one.friction), paper.width, low, "right");
+        text(pen, "\u00b5 " + short(one.friction), X(one.force[one.force.length - 1]) + 4, low, "left");
       });
     const own = slab.forces.map(function (f, k) { return [X(f), Y(slab.centre[k]), "F = " + f + " mg: " + mean(slab.centre[k])]; });
     spots.range = own;
     line(pen, own.slice(0, motion), colour.increased, 2);
-    own.slice(motion).forEach(function (point) { dot(pen, point[0], point[1], 2.6, colour.increased, true); });
+    own.filter(fits(index)).slice(motion).forEach(function (point) { dot(pen, point[0], point[1], 2.6, colour.increased, true); });
     const force = slab.forces[index];
     line(pen, [[X(force), 8], [X(force), paper.height - 36]], colour.ink, 1);
     dot(pen, X(force), Y(slab.centre[index]), 4.5, colour.ink);
@@ -317,33 +329,21 @@
     line(pen, [[x, 8], [x, paper.height - 38]], colour.ink, 1);
     dot(pen, x, y, 4.5, colour.ink);
   }
-  const mean = function (value) { return typed(value.toFixed(4)); };
+  const mean = function (value) { return typed(Number(value.toPrecision(3))); };
   const counted = function (count) { return count + (count === 1 ? " peak" : " peaks"); };
-  function walls(friction) { return friction ? "rough walls" : "smooth walls"; }
-  // where two peaks begin: in this slab by its own states, and in Fig. 22
-  function own() {
-    const first = slab.peaks.findIndex(function (count) { return count > 1; }), f = slab.forces;
-    return " This slab has one peak " + (first < 0 ? "up to " + f[f.length - 1] + " mg."
-      : first ? "up to " + f[first - 1] + " mg and more from " + f[first] + " mg on." : "under no force.");
-  }
-  function figure22() {
-    const curve = data.crossovers.find(function (one) { return !one.polydispersity; });
-    const k = curve ? curve.friction.indexOf(slab.friction) : -1;
-    if (k < 0) { return ""; }
-    return " Fig. 22 (" + walls(slab.friction) + ", smoothed with w = " + data.width + " R\u0304" +
-      "): two peaks " + begins(curve, k) + ".";
-  }
+  const opened = function (count) { return count + (count === 1 ? " contact opened" : " contacts opened"); };
   function begins(curve, k) {
     return ["from ", "already below ", "not up to "][curve.kind[k]] + short(curve.force[k]) + " mg" + (curve.kind[k] ? "" : " on");
   }
   function shape(index) {
-    const start = "The response (" + walls(slab.walls) + ") ";
+    const start = "The response (" + (slab.walls ? "rough" : "smooth") + " walls) ";
     const value = mean(slab.centre[index]) + " at x = 0; under " + slab.forces[0] + " mg it is " + mean(slab.centre[0]) + ".";
     return start + "has " + counted(slab.peaks[index]) + ", is " + (slab.symmetric[index] ? "" : "not ") +
       "symmetric, and is " + value;
   }
 
   function show() {
+    if (!byId("network").clientWidth) { return; }  // a page that is not laid out is resized too
     readColours();
     value.hidden = true;
     const index = Number(slider.value), force = slab.forces[index], counts = contacts(index);
@@ -354,9 +354,9 @@
     slider.setAttribute("aria-valuetext", force + " mg");
     byId("link").href = "#mu=" + slab.friction + "&F=" + force;
     const reached = slab.motion && force >= slab.motion ? "dynamics from rest" : slab.motion ? "load path" : "";
-    said.textContent = "F = " + force + " mg" + (reached ? " (" + reached + ")" : "") + ": " + counts.opened + (counts.opened === 1 ? " contact opened, " : " contacts opened, ") +
+    said.textContent = "F = " + force + " mg" + (reached ? " (" + reached + ")" : "") + ": " + opened(counts.opened) + ", " +
       counts.sliding + " at the Coulomb limit. Largest increase of a contact force: " + short(counts.most) +
-      " F; largest decrease of one that stays closed: " + short(counts.least) + " F. " + shape(index) + own() + figure22();
+      " F; largest decrease of one that stays closed: " + short(counts.least) + " F. " + shape(index);
     byId("network").setAttribute("aria-label", "Contacts of the slab, " + slab.about + ". " + said.textContent);
     byId("floor").setAttribute("aria-label", "Floor response against x under " + force + " mg, largest " +
       typed(Math.max.apply(null, slab.response[index]).toFixed(3)) + ". " + shape(index));
@@ -364,7 +364,7 @@
       " at " + slab.forces[0] + " mg to " + mean(slab.centre[slab.centre.length - 1]) + " at " +
       slab.forces[slab.forces.length - 1] + " mg; the cursor is at " + force + " mg.");
     byId("phase").setAttribute("aria-label", "Force from which there are two peaks against friction; the cursor is at friction " +
-      slab.friction + " and " + force + " mg." + figure22());
+      slab.friction + " and " + force + " mg.");
   }
   function moved() {
     wanted = slab.forces[Number(slider.value)];
@@ -378,7 +378,8 @@
   });
   slider.addEventListener("input", function () { stop(); moved(); });
 
-  // the force grows by itself, from the beginning if it is at the end
+  // the force grows by itself, by the same factor in each second, from the beginning if it is at the end
+  const SECONDS_PER_DECADE = 4;
   const play = byId("play");
   let playing = 0;
   function stop() {
@@ -390,11 +391,13 @@
     if (playing) { stop(); return; }
     if (slider.value === slider.max) { slider.value = 0; moved(); }
     play.textContent = "Stop";
+    const begun = performance.now(), from = slab.forces[Number(slider.value)];
     playing = window.setInterval(function () {
-      slider.value = Number(slider.value) + 1;
-      moved();
+      const force = from * Math.pow(10, (performance.now() - begun) / 1000 / SECONDS_PER_DECADE);
+      const next = slab.forces.filter(function (f) { return f <= force; }).length - 1;
+      if (next > Number(slider.value)) { slider.value = next; moved(); }
       if (slider.value === slider.max) { stop(); }
-    }, 300);
+    }, 50);
   });
 
   // a link to a state: #mu=0.2&F=20
@@ -417,6 +420,6 @@
   ["(prefers-color-scheme: dark)", "print"].forEach(function (medium) {
     window.matchMedia(medium).addEventListener("change", show);
   });
-  if (linked()) { byId("try").scrollIntoView(); } else { select(); }
+  if (linked()) { byId("explorer").scrollIntoView({block: "nearest"}); } else { select(); }
   byId("explorer").dataset.ready = "";
 })();

@@ -18,8 +18,10 @@ from numpy.typing import NDArray
 from granular_response.observe.peaks import asymmetry
 from granular_response.scene import Scene
 from granular_response.state import OPEN, FloatArray, contact_force
+from granular_response.studies.measures import MARGINS
 
 from ..captions import Datasets
+from ..claims.numbers import Quantity, text
 from .typeset import typeset
 
 FRICTIONS = (0.0, 0.2, 1.0)
@@ -33,9 +35,6 @@ REACH = 30.0
 #: A contact's byte is the square root of its added force per applied force, FULL at the largest of all, negative where
 #: compression is lost; OPENED is a contact that touched at rest and does not under load.
 FULL, OPENED = 120, 127
-
-#: A contact slides if its tangential force is within this part of the Coulomb limit (as ``mobilised_contacts``).
-MARGIN = 0.01
 
 #: Largest force of Fig. 6.
 LARGEST_OF_FIG_6 = 50.0
@@ -89,7 +88,6 @@ def payload(friction: Datasets, phase: Datasets | None = None) -> dict[str, Any]
         "slabs": [_described(slab, one, friction) for slab, one in zip(slabs, contacts, strict=True)],
         "range": _range(friction),
         "crossovers": _crossovers(phase) if phase else [],
-        "width": WIDTH,
         "packed": base64.b64encode(zlib.compress(b"".join(one.bytes(strongest) for one in contacts), 9)).decode(),
     }
 
@@ -139,13 +137,9 @@ def _here(datasets: Datasets, friction: float, names: Sequence[str]) -> str:
     if stored is None or not names:
         return ""
     own = stored.isel(event=stored["friction"].values == friction)
-    said = []
-    for name in names:
-        for k in np.flatnonzero(own["name"].values == name)[:1]:
-            first, last = f"{float(own['low'][k]):.3g}", f"{float(own['high'][k]):.3g}"
-            between = first if first == last else f"between {first} and {last}"
-            said.append(f"above {first}" if last == "nan" else between)
-    return f"{', '.join(said)} mg" if said else ""
+    found = [np.flatnonzero(own["name"].values == name)[:1] for name in names]
+    events = [(float(own["low"][k]), float(own["high"][k])) for rows in found for k in rows]
+    return ", ".join(text(Quantity.bracket(*ends), "mg") for ends in events)
 
 
 def _slabs(datasets: Datasets) -> Iterator[Slab]:
@@ -205,7 +199,7 @@ class _Contacts:
             touching = states["contact_status"].values[:, inside] != OPEN
             force = contact_force(normal, along, across)
             added = np.where(along >= along[0], 1.0, -1.0) * np.linalg.norm(force - force[0], axis=-1)
-            slides = touching & (np.abs(across) >= (1.0 - MARGIN) * slab.friction * along) & (slab.friction > 0.0)
+            slides = touching & (np.abs(across) >= (1.0 - MARGINS[0]) * slab.friction * along) & (slab.friction > 0.0)
             chosen = [k for one, k in slab.chosen if one == source]
             found.append((added[chosen], (touching[0] & ~touching)[chosen], slides[chosen]))
         added, opened, sliding = map(np.concatenate, zip(*found, strict=True))

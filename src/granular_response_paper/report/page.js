@@ -30,7 +30,7 @@
   // a link into something folded unfolds it
   function unfold(hash) {
     const filter = hash.startsWith("#only-") && document.getElementById(hash.slice(1));
-    if (filter) { filter.checked = true; document.getElementById("claims").scrollIntoView(); return; }
+    if (filter) { filter.checked = true; return; }
     const target = document.getElementById(decodeURIComponent(hash.slice(1)));
     const folded = target && target.closest("details:not([open])");
     if (folded) { folded.open = true; target.scrollIntoView(); }
@@ -41,4 +41,16 @@
   });
   window.addEventListener("hashchange", function () { unfold(window.location.hash); });
   unfold(window.location.hash);
+
+  // claims that hold all words of the search, in any part of them
+  const search = document.getElementById("search");
+  if (search) {
+    const rows = Array.from(document.querySelectorAll("tr.claim"));
+    const texts = rows.map(function (row) { return row.textContent.toLowerCase(); });
+    search.addEventListener("input", function () {
+      const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+      rows.forEach(function (row, k) { row.hidden = !words.every(function (word) { return texts[k].includes(word); }); });
+      document.getElementById("matches").textContent = rows.filter(function (row) { return !row.hidden; }).length + " shown";
+    });
+  }
 })();

@@ -1,8 +1,9 @@
-"""How much each reading of the paper matters: the stored sensitivities as a table, for the page and for the notes."""
+"""How much each reading of the paper matters: the stored sensitivities as a table for the notes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from importlib import resources
 from typing import Any
 
@@ -10,6 +11,7 @@ import xarray as xr
 
 from granular_response.scene import text
 
+from ..claims.numbers import digits
 from . import markdown as tables
 
 #: Where the paper leaves a choice: ``question``, ``choice`` and another ``option``, by the variant that tries the
@@ -17,28 +19,6 @@ from . import markdown as tables
 READINGS: Mapping[str, Mapping[str, str]] = text.read(
     resources.files(__package__).joinpath("readings.yaml").read_text("utf-8")
 )
-
-
-def table(datasets: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    """The ``slabs`` of the study ``sensitivity``, and ``rows`` of the readings that its datasets hold.
-
-    Each has the largest difference of the floor response in each slab, empty where it was not tried. A variant that
-    has no words here is shown with those of the study.
-    """
-    values = _columns(datasets, "largest_difference")
-    words = {variant: str(text) for column in _columns(datasets, "text").values() for variant, text in column.items()}
-    rows = []
-    for variant in sorted(words, key=[*READINGS, *words].index):
-        differences = [_short(column[variant]) if variant in column else "" for column in values.values()]
-        said = READINGS.get(variant, {"question": words[variant], "choice": "", "option": ""})
-        rows.append((said, differences))
-    return {"slabs": [name.replace("mu_", "µ = ") for name in values], "rows": rows}
-
-
-def _short(value: float) -> str:
-    """Two digits, without the zero that Python puts into small exponents."""
-    digits, exponent = f"{value:.1e}".split("e")
-    return f"{digits}e{int(exponent)}"
 
 
 def _columns(datasets: Mapping[str, xr.Dataset], name: str) -> dict[str, dict[str, Any]]:
@@ -52,11 +32,20 @@ def _columns(datasets: Mapping[str, xr.Dataset], name: str) -> dict[str, dict[st
 
 
 def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
-    """The table in Markdown, and below it what else the notes quote of the study. Equal data give equal text."""
-    shown = table(datasets)
-    heads = ["interpretation", "choice", "other option", *(f"change, {slab}" for slab in shown["slabs"])]
+    """The readings that the datasets of the study ``sensitivity`` hold as a table in Markdown, and below it what else
+    the notes quote of the study. Equal data give equal text.
+
+    Each reading has the largest difference of the floor response in each slab, empty where it was not tried. A variant
+    that has no words here is shown with those of the study.
+    """
+    changes = _columns(datasets, "largest_difference")
+    words = {variant: str(text) for column in _columns(datasets, "text").values() for variant, text in column.items()}
+    slabs = [name.replace("mu_", "µ = ") for name in changes]
+    heads = ["interpretation", "choice", "other option", *(f"change, {slab}" for slab in slabs)]
     rows, before = [], ""
-    for reading, differences in shown["rows"]:
+    for variant in sorted(words, key=[*READINGS, *words].index):
+        reading = READINGS.get(variant, {"question": words[variant], "choice": "", "option": ""})
+        differences = [digits(column[variant], 2) if variant in column else "" for column in changes.values()]
         said = ("", "") if reading["question"] == before else (reading["question"], reading["choice"])
         rows.append([*said, reading["option"], *differences])
         before = reading["question"]
@@ -64,7 +53,7 @@ def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
     for variant, name, form, what in _QUOTED:
         values = [form(column[variant]) for column in _columns(datasets, name).values() if variant in column]
         if values:
-            quoted.append(f"* {what}: {', '.join(values)} ({', '.join(shown['slabs'])})")
+            quoted.append(f"* {what}: {', '.join(values)} ({', '.join(slabs)})")
     return "\n".join([tables.table(heads, rows), *([""] if quoted else []), *quoted])
 
 
@@ -72,5 +61,6 @@ def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
 _QUOTED: tuple[tuple[str, str, Callable[[float], str], str], ...] = (
     ("stop_1e-9", "response_sum", "{:.4f}".format, "Sum of the response, stopped at 1e-9 per disk"),
     ("no_static_finish", "response_sum", "{:.4f}".format, "Sum of the response, stopped at 1e-13 per disk"),
-    ("literal_friction", "kinetic_energy", _short, "Kinetic energy per disk at the end, friction law as printed"),
-)
+    ("literal_friction", "kinetic_energy", partial(digits, number=2), "Kinetic energy per disk at the end, friction "
+     "law as printed"),
+)  # fmt: skip
