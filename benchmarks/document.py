@@ -143,6 +143,7 @@ def page(found: Stored) -> str:
                          "1e-05": "1e-5", "least_error": "smallest error reached"}),
         "exactness": table(found["exactness"]["groups"], kind="packings", equilibria="equilibrium lost by",
                            scenes="scenes", events="events", exact="error at most 1e-8", error="largest error"),
+        "costs": large(found),
     }  # fmt: skip
     text = (HERE / "benchmarks.md.in").read_text(encoding="utf-8")
     for name, value in filled.items():

@@ -161,15 +161,6 @@ def sentence(one: Any) -> str:
     return re.sub(r":\w+:`~?([^`]+)`", r"`\1`", first).replace("``", "`").replace("|", "\\|")
 
 
-def falls() -> str:
-    """What the fall under gravity costs in the default preparation, from ``benchmarks/fall.json``."""
-    found = json.loads((ROOT / "benchmarks" / "fall.json").read_text(encoding="utf-8"))
-    rows = [f"| {row['scene']} | {row['disks']:,} | {row['seconds']:.2g} s | {row['peak_gibibytes']:.2g} GiB |"
-            for row in found["scenes"]]  # fmt: skip
-    head = f"| scene ({found['measured_on']}) | disks | processor time | memory |\n|---|---|---|---|"
-    return "\n".join([head, *rows])
-
-
 def goals() -> str:
     """What was measured beside the goals, from ``benchmarks/summary.json``."""
     found = json.loads((ROOT / "benchmarks" / "summary.json").read_text(encoding="utf-8"))["goals"]
@@ -180,7 +171,6 @@ def goals() -> str:
 
 MADE: dict[str, Callable[[], str]] = {
     "counts": counts,
-    "falls": falls,
     "goals": goals,
     "findings": findings,
     "figures-of-the-paper": gallery,
