@@ -110,8 +110,8 @@ def write(
     pictures of the claims beside it; returns its path.
 
     Raises ClaimsError, ReportError or StoreError for a table of claims, a ``captions.json`` or a dataset that cannot be
-    read, ReportError for the name of a file beside the page, OSError if a page cannot be written, or would replace one of
-    the files it is made from.
+    read, ReportError for the name of a file beside the page, OSError if a page cannot be written, or would replace one
+    of the files it is made from.
     """
     target, base = Path(output), Path(root)
     if target.name in (CLAIMS, *forest.FILES):
