@@ -1,9 +1,10 @@
-"""The default fall under gravity against the paper's time step to its end: time, steps, memory and forces.
+"""The default fall under gravity against the paper's time step to its end, and what whole solutions cost.
 
 `python benchmarks/fall.py OUTPUT.json [--only WORDS]`. The reference has the paper's step all the way and ends at a
 kinetic energy of 1e-15 mg R per disk. Differences of the two equilibria are the largest of a force on the floor and of
 a tangential force, in mg, and the number of contacts that are closed in one of them only. Each scene runs in a process
-of its own, whose peak memory is that of the default fall. Rows that are not asked for are kept.
+of its own, whose peak memory is that of the default fall. The rows of `whole` are of `gr.solve` from scene to result,
+with a load of 1 mg. Kernels are compiled before. Rows that are not asked for are kept.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from typing import Any
 import numpy as np
 from timing import processor, write
 
+import granular_response as gr
 from granular_response.scene import Scene
 from granular_response.scene.protocol import PAPERS_TIME_STEP
 from granular_response.solvers.problem import Problem
@@ -53,6 +55,18 @@ SCENES: dict[str, dict[str, Any]] = {
     "wide, 10 layers of 121": slab(10, 121),
     "pile, 20 layers": {"packing": {"kind": "pile", "layers": 20}, "contact.friction": 0.5},
     "disorder 0.1, 15 layers": slab(15, 61, packing__polydispersity=0.1),
+}
+
+#: Whole solutions of the default scene, and the one key that each changes.
+CHANGES: dict[str, dict[str, Any]] = {
+    "default": {},
+    "prepared without friction": {"preparation.gravity": "frictionless"},
+    "without friction": {"contact.friction": 0.0},
+}
+WHOLE = {
+    f"{words}, {layers} layers": (words, {"packing.layers": layers, "packing.disks_per_row": disks_per_row, **changes})
+    for words, changes in CHANGES.items()
+    for layers, disks_per_row in ((15, 61), (30, 121), (60, 241))
 }
 
 
@@ -93,22 +107,43 @@ def measure(words: str) -> dict[str, Any]:
     return row | {"papers_seconds": papers, "papers_steps": end.reached.steps}
 
 
+def measure_whole(name: str) -> dict[str, Any]:
+    """The row of one whole solution."""
+    words, changes = WHOLE[name]
+    described = Scene().updated({"loads.0.force": [0.0, -1.0], **changes})
+    for integrator in ("beeman", "leapfrog"):  # compiles
+        small = {"packing.layers": 4, "packing.disks_per_row": 17, "protocol.integrator": integrator}
+        gr.solve(described.updated(small), progress=False)
+    start = time.process_time()
+    disks = len(gr.solve(described, progress=False).rest.position)
+    return {
+        "scene": words, "changes": CHANGES[words], "disks": disks, "seconds": time.process_time() - start,
+        "peak_gibibytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20, "measured_on": processor(),
+    }  # fmt: skip
+
+
 def main(path: str, only: list[str]) -> None:
-    rows = json.loads(Path(path).read_text(encoding="utf-8"))["scenes"] if Path(path).exists() else []
-    kept = {row["scene"]: row for row in rows}
-    for words in only or SCENES:
+    stored = json.loads(Path(path).read_text(encoding="utf-8")) if Path(path).exists() else {}
+    kept = {row["scene"]: row for row in stored.get("scenes", [])}
+    whole = {(row["scene"], row["disks"]): row for row in stored.get("whole", [])}
+    for words in only or [*SCENES, *WHOLE]:
         with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as process:
-            kept[words] = process.submit(measure, words).result()
-        print(kept[words], flush=True)
+            row = process.submit(measure if words in SCENES else measure_whole, words).result()
+        print(row, flush=True)
+        if words in SCENES:
+            kept[words] = row
+        else:
+            whole[row["scene"], row["disks"]] = row
         found = [kept[name] for name in SCENES if name in kept]
+        wholes = sorted(whole.values(), key=lambda row: ([*CHANGES].index(row["scene"]), row["disks"]))
         paper = [row for row in found if row["scene"].startswith("slab") and row["disks"] < MOST]
         slope = np.polyfit(*np.log([[row["disks"], row["seconds"]] for row in paper]).T, 1)[0] if paper[1:] else None
-        write(path, {"exponent_of_seconds": slope, "scenes": found})
+        write(path, {"exponent_of_seconds": slope, "scenes": found, "whole": wholes})
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("output")
-    parser.add_argument("--only", nargs="*", default=[], choices=[*SCENES], metavar="WORDS")
+    parser.add_argument("--only", nargs="*", default=[], choices=[*SCENES, *WHOLE], metavar="WORDS")
     given = parser.parse_args()
     main(given.output, given.only)

@@ -4,6 +4,7 @@
 """
 
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -25,8 +26,32 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
     "sphinx_gallery.gen_gallery",
-    "pictures_of_pages",
 ]
+#: The order of the pages on the site; the pages themselves are plain Markdown.
+CONTENTS = {
+    "Use": "installation tutorial concepts gallery/index experiment packings loads motion results many-scenes export "
+    "from-lammps methods troubleshooting scene-reference api reference trust",
+    "The paper": "results-of-the-paper reproduction-notes one-figure reproducing extensions",
+    "Background": "physics benchmarks architecture extending claims",
+}
+
+
+def on_the_site(app, page, source):
+    """What only the site has: its table of contents, and the built gallery in place of the folder of its scripts."""
+    source[0] = source[0].replace("](../examples/gallery)", "](gallery/index.rst)")
+    # Markdown beside this folder is no page of the site
+    source[0] = re.sub(r"\[([^\]]+)\]\((\.\./[\w/]+\.md)(?:#[\w-]+)?\)", r"{download}`\1 <\2>`", source[0])
+    if page == "index":
+        for title, names in CONTENTS.items():
+            names = "\n".join(names.split())
+            source[0] += f"\n```{{toctree}}\n:hidden:\n:maxdepth: 1\n:caption: {title}\n\n{names}\n```\n"
+
+
+def setup(app):
+    app.connect("source-read", on_the_site)
+    return {"parallel_read_safe": True}
+
+
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = ["_build", "_generated", *(f"gallery/**/*.{end}" for end in ("ipynb", "py", "zip", "json"))]
 

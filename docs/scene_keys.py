@@ -1,14 +1,11 @@
-"""The reference of the scene keys, made from their descriptions: ``python docs/scene_keys.py`` renews the page."""
+"""The reference of the scene keys, made from their descriptions; ``expand.py`` puts it into its page."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 from granular_response.cli.scene_reference import sections
 from granular_response.scene import Scene
-
-PAGE = Path(__file__).with_name("_generated") / "scene-keys.md"
 
 
 def lines() -> str:
@@ -33,7 +30,3 @@ def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
     """A Markdown table; a bar within a cell would end it."""
     texts = [head, ("---",) * len(head), *(tuple(cell.replace("|", "\\|") for cell in row) for row in rows)]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in texts)
-
-
-if __name__ == "__main__":
-    PAGE.write_text(lines(), encoding="utf-8")

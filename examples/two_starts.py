@@ -11,40 +11,40 @@ import argparse
 
 import numpy as np
 
-from granular_response.observe.floor import smoothed_response
-from granular_response.observe.network import HORIZONTAL, bulk_disks, coordination_number, lattice_direction
-from granular_response.scene import Scene
-from granular_response.solvers.solution import solve_scene
-from granular_response.store.result import to_dataset
-from granular_response.sweeps.tasks import map_tasks
+import granular_response as gr
 
 STARTS = (2.0, "touching-largest")
 FORCE = 15.0
 X = np.linspace(-40.0, 40.0, 161)  # from the loaded disk, in mean radii
 
 
-def measure(task: tuple[Scene, float | str, int]) -> dict[str, np.ndarray | float]:
+def measure(task: tuple[gr.Scene, float | str, int]) -> dict[str, np.ndarray | float]:
     """One task: a realization, before and under the force. All random numbers come from its number."""
     base, start, realization = task
-    scene = base.updated({"packing.lattice_constant": start, "packing.realization": realization})
-    solution = solve_scene(scene)
-    rest, packing = solution.rest, solution.problem.packing
-    horizontal = lattice_direction(rest) == HORIZONTAL
-    pairs = packing.neighbour_pairs()
-    in_row = packing.row[pairs[:, 0]] == packing.row[pairs[:, 1]]
-    result = to_dataset(solution)
+    result = gr.solve(
+        base.updated({"packing.lattice_constant": start, "packing.realization": realization}), progress=False
+    )
+    contacts = result.contacts_table(state=0)
+    pairs = contacts[contacts["wall"] == ""][["first", "second"]].to_numpy(int)
+    x, z = (result.rest.position[pairs[:, 1]] - result.rest.position[pairs[:, 0]]).T
+    horizontal = np.abs(z) < np.tan(np.pi / 6.0) * np.abs(x)  # within 30 degrees
+    # rows of the lattice have n and n - 1 disks in turn
+    layers, row = base.packing.layers, base.packing.disks_per_row
+    in_rows = sum(row - 1 - k % 2 for k in range(layers))
+    between_rows = 2 * (row - 1) * (layers - 1)
+    counted = gr.coordination_number(result).isel(state=0)
     return {
-        "coordination number": coordination_number(rest),
-        "coordination number away from boundaries": coordination_number(rest, bulk_disks(rest, packing.width)),
-        "horizontal contacts over those of the lattice": (rest.pairs.touching & horizontal).sum() / in_row.sum(),
-        "oblique contacts over those of the lattice": (rest.pairs.touching & ~horizontal).sum() / (~in_row).sum(),
-        "response": smoothed_response(X, result["x"].values, result["floor_response"].values[-1], 3.0),
+        "coordination number": float(counted["coordination_number"]),
+        "coordination number without rattlers": float(counted["without_rattlers"]),
+        "horizontal contacts over those of the lattice": horizontal.sum() / in_rows,
+        "oblique contacts over those of the lattice": (~horizontal).sum() / between_rows,
+        "response": result.response_at(X, smooth=3.0).isel(load=-1).values,
     }
 
 
-def scene(polydispersity: float, **packing: int) -> Scene:
+def scene(polydispersity: float, **packing: int) -> gr.Scene:
     """The paper's slab without friction, with settings for a fast fall and a static finish."""
-    return Scene().updated(
+    return gr.Scene().updated(
         {
             "packing.polydispersity": polydispersity,
             **{f"packing.{key}": value for key, value in packing.items()},
@@ -52,15 +52,14 @@ def scene(polydispersity: float, **packing: int) -> Scene:
             "loads": [{"disk": "top-centre", "force": [0.0, -FORCE]}],
             "protocol.integrator": "verlet",
             "protocol.time_step": "auto",
-            "protocol.stop_kinetic_energy": 1e-9,
         }
     )
 
 
-def compare(base: Scene, realizations: int, **sweep) -> dict[float | str, dict[str, tuple[np.ndarray, np.ndarray]]]:
+def compare(base: gr.Scene, realizations: int, **sweep) -> dict[float | str, dict[str, tuple[np.ndarray, np.ndarray]]]:
     """Mean over realizations and its standard error of everything measured, for each initial lattice."""
     tasks = [(base, start, realization) for start in STARTS for realization in range(realizations)]
-    found = map_tasks(measure, tasks, **sweep)
+    found = gr.map_tasks(measure, tasks, **sweep)
     table = {}
     for k, start in enumerate(STARTS):
         group = found[k * realizations : (k + 1) * realizations]

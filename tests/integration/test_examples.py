@@ -1,5 +1,6 @@
 """Every scene of ``examples/`` is solved, and the tables there are what their scripts make."""
 
+import ast
 import runpy
 from pathlib import Path
 
@@ -44,6 +45,25 @@ def test_an_example_comes_to_a_certified_equilibrium(path):
             down = -float(result["applied_load"].sel(component="force_z").sum())
             added = float((result["floor_response"].sum("floor_disk") * result["total_force"]).isel(load=0))
             assert added == pytest.approx(down, abs=1e-8)
+
+
+def internal(script: Path) -> list[str]:
+    """Modules of the package that a script imports beside the package itself."""
+    nodes = list(ast.walk(ast.parse(script.read_text(encoding="utf-8"))))
+    names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
+    names += [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)]
+    return [name for name in names if name.startswith("granular_response") and name != "granular_response"]
+
+
+@pytest.mark.parametrize("script", sorted(EXAMPLES.rglob("*.py")), ids=lambda path: path.stem)
+def test_an_example_uses_public_names_only(script):
+    assert internal(script) == []
+
+
+def test_an_internal_import_is_found(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text("import granular_response as gr\nfrom granular_response.scene import Scene\n")
+    assert internal(script) == ["granular_response.scene"]
 
 
 def test_the_starts_of_a_disordered_slab_differ_as_the_notes_say():

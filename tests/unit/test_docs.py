@@ -1,51 +1,169 @@
-"""Documents name modules, files, keys and messages that exist."""
+"""Documents can be read where they are opened, and name modules, files, keys and messages that exist."""
 
 from __future__ import annotations
 
 import importlib
 import re
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
 
+import matplotlib.pyplot as plt
 import pytest
+from markdown_it import MarkdownIt
 from places import ROOT
 from printed import rounded
 
 from granular_response.cli import scene_reference
 from granular_response.scene import Scene, SceneError
+from granular_response_paper.claims.claim import ClaimsError
 
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+sys.path.insert(0, str(ROOT / "docs"))
+expand = importlib.import_module("expand")
+pictures = importlib.import_module("pictures_of_pages")
+
+PAGES = [*expand.documents(), ROOT / "data" / "README.md", ROOT / "CHANGELOG.md"]
+#: Of a code host: CommonMark with tables, and nothing else.
+HOST = MarkdownIt("commonmark").enable("table")
+NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
 
 
-#: Pages whose blocks of Python run in turn, when the site is built and here.
-RUN = sorted(page.stem for page in PAGES if "<!-- picture: " in page.read_text(encoding="utf-8"))
+class Targets(HTMLParser):
+    """What HTML within a document leads to, and its comments."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[str] = []
+        self.comments: list[str] = []
+
+    def handle_starttag(self, tag, attrs):
+        self.found += [value for key, value in attrs if key in {"href", "src"}]
+
+    def handle_comment(self, data):
+        self.comments.append(data.strip())
 
 
-@pytest.mark.parametrize("page", RUN)
-def test_the_python_of_a_page_draws_and_prints_what_it_says(page, tmp_path, monkeypatch):
-    monkeypatch.syspath_prepend(ROOT / "docs")
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "examples").symlink_to(ROOT / "examples")
-    text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
-    found = importlib.import_module("pictures_of_pages").drawn(page, text, tmp_path)
-    pictures = re.findall(r"```{image} _drawn/(\S+)", found.text)
-    assert len(pictures) >= text.count("<!-- picture: ") and "<!-- picture: " not in found.text
-    assert all((tmp_path / name).stat().st_size > 1000 for name in pictures)
+def tokens(text: str):
+    """All tokens of a document, those within lines too."""
+    for token in HOST.parse(text):
+        yield token
+        yield from token.children or ()
+
+
+def html(text: str) -> Targets:
+    found = Targets()
+    found.feed("".join(token.content for token in tokens(text) if token.type in {"html_block", "html_inline"}))
+    return found
+
+
+def anchors(path: Path) -> set[str]:
+    """The anchors that a code host gives to the headings of a document."""
+    blocks = HOST.parse(path.read_text(encoding="utf-8"))
+    titles = [blocks[k + 1] for k, token in enumerate(blocks) if token.type == "heading_open"]
+    kept = {"text", "code_inline"}
+    plain = ["".join(part.content for part in title.children if part.type in kept) for title in titles]
+    return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in plain}
+
+
+def broken(target: str, page: Path) -> bool:
+    """Whether a link or a picture of a page leads nowhere; addresses of the web are not followed."""
+    if re.match(r"https?://|mailto:", target):
+        return False
+    name, _, anchor = target.partition("#")
+    path = (page.parent / name).resolve() if name else page
+    if not path.exists() or ROOT not in [path, *path.parents]:
+        return True
+    return bool(anchor) and anchor not in anchors(path)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_pictures_and_links_of_a_page_lead_somewhere(name):
+    page = ROOT / name
+    text = page.read_text(encoding="utf-8")
+    targets = [token.attrs.get("href") or token.attrs.get("src") for token in tokens(text)
+               if token.type in {"link_open", "image"}] + html(text).found  # fmt: skip
+    assert [target for target in targets if broken(str(target), page)] == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_page_has_no_directive_in_place_of_content(name):
+    text = (ROOT / name).read_text(encoding="utf-8")
+    kinds = [token.info for token in tokens(text) if token.type == "fence"]
+    assert [kind for kind in kinds if kind.startswith("{")] == []
+    words = [token.content for token in tokens(text) if token.type == "text"]
+    assert [word for word in words if re.search(r"\{\w+\}$|^:::|ADDRESS", word)] == []
+    assert {comment for comment in html(text).comments if not re.fullmatch(r"generated: [\w-]+|end", comment)} == set()
+
+
+def test_broken_targets_are_told_from_others():
+    page = ROOT / "README.md"
+    assert broken("docs/no-such-page.md", page) and broken("docs/tutorial.md#no-such-heading", page)
+    assert broken("../outside", page) and not broken("docs/tutorial.md#a-first-response", page)
+    assert html('<!-- picture: x --><a href="y"><img src="z"></a>').found == ["y", "z"]
+    assert html("<!-- picture: x -->").comments == ["picture: x"]
+
+
+PLACES = [(name, place["name"]) for name, page in zip(NAMES, PAGES, strict=True)
+          for place in expand.PLACE.finditer(page.read_text(encoding="utf-8"))]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "place"), PLACES)
+def test_what_stands_in_a_place_is_what_makes_it(name, place):
+    """``python docs/expand.py`` renews all places."""
+    text = (ROOT / name).read_text(encoding="utf-8")
+    (stands,) = [one[0] for one in expand.PLACE.finditer(text) if one["name"] == place]
+    try:
+        assert stands == expand.expanded(stands)
+    except ClaimsError as error:  # a table of claims that is to be made anew
+        pytest.skip(str(error))
+
+
+def test_every_fragment_stands_in_a_page():
+    fragments = {path.stem for path in expand.FRAGMENTS.glob("*.md")}
+    assert fragments <= {place for _, place in PLACES}
+    assert set(expand.MADE) <= {place for _, place in PLACES}
+
+
+def test_the_gallery_takes_figures_without_claims(monkeypatch):
+    monkeypatch.setattr(expand, "claims", lambda: {"table": []})
+    text = expand.gallery()
+    assert text.count("## Fig.") == text.count(f"* {expand.UNJUDGED}") > 20
+
+
+@pytest.mark.parametrize("name", pictures.pages())
+def test_the_python_of_a_page_draws_and_prints_what_it_says(name, tmp_path, monkeypatch):
+    with pictures.scratch():
+        found = pictures.drawn(name, tmp_path)
+    text = pictures.page(name).read_text(encoding="utf-8")
+    assert found.files == pictures.images(name)
+    assert [file for file in found.files if not pictures.same(tmp_path / file, pictures.FOLDER / file)] == []
     quoted = re.findall(r"```python\n(?:.*?)```(?:\n\n```text\n(.*?)```)?", text, re.DOTALL)
     assert [rounded(one) for one in found.printed] == [rounded(one) for one in quoted]
 
 
-def test_the_readme_prints_what_it_says(tmp_path, monkeypatch, capsys):
+def test_every_picture_belongs_to_a_page_and_all_are_small():
+    files = {path.name: path.stat().st_size for path in pictures.FOLDER.glob("*.png")}
+    assert set(files) == {file for name in pictures.pages() for file in pictures.images(name)}
+    assert sum(files.values()) < 1.5e6
+
+
+def test_pictures_that_differ_are_told_apart(tmp_path):
+    for name, slope in (("one", 1.0), ("same", 1.0), ("other", 2.0)):
+        figure, ax = plt.subplots()
+        ax.plot([0.0, slope], linewidth=5.0)
+        ax.set(ylim=(0.0, 2.0))
+        pictures.save(figure.number, tmp_path / f"{name}.png")
+    assert pictures.same(tmp_path / "one.png", tmp_path / "same.png")
+    assert not pictures.same(tmp_path / "one.png", tmp_path / "other.png")
+
+
+def test_the_shell_blocks_of_the_readme_say_what_a_reader_runs():
+    """``.ci/run`` runs them in a fresh clone, in their order."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    ((code, printed),) = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", text, re.DOTALL)
-    monkeypatch.chdir(tmp_path)
-    exec(compile(code, "README.md", "exec"), {})
-    assert rounded(capsys.readouterr().out) == rounded(printed)
-    assert (tmp_path / "response.png").stat().st_size > 1000
-
-
-def test_the_reference_of_the_scene_keys_is_current(monkeypatch):
-    monkeypatch.syspath_prepend(ROOT / "docs")
-    made = importlib.import_module("scene_keys")
-    assert made.PAGE.read_text(encoding="utf-8") == made.lines(), "python docs/scene_keys.py"
+    blocks = [token.content for token in tokens(text) if token.type == "fence" and token.info == "sh"]
+    commands = [line.partition("#")[0].strip() for line in "".join(blocks).splitlines()]
+    assert {"make reproduce", "make test", "make figure FIGURE=7", "make extensions"} <= set(commands)
+    assert any(line.endswith("pip install .") for line in commands)
 
 
 def test_the_reference_says_what_the_scene_allows():

@@ -4,8 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import granular_response as gr
+from granular_response.solvers import taps
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
 
 
 def test_a_collision_keeps_momentum_and_its_restitution():
@@ -92,6 +96,77 @@ def test_a_cradle_passes_its_motion_on():
     row = gr.Scene.from_arrays([500.0 + 2.02 * k for k in range(5)], [50.0] * 5, 1.0, width=1000.0, scene=free)
     after = gr.motion(row, [0.3], progress=False)["velocity"].values[0, :, 0]
     np.testing.assert_allclose(after, [0.0, 0.0, 0.0, 0.0, 1.0], atol=1e-3)
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.01])
+@pytest.mark.parametrize(
+    ("masses", "velocity"),
+    [
+        ([1.0, 1.0, 1.0], [1.0, 0.0, 0.0]),
+        ([1.0] * 5, [1.0, 1.0, 0.0, 0.0, 0.0]),
+        ([1.0, 2.0, 0.5, 1.0, 0.5], [1.0, 0.0, 0.0, 0.0, 0.0]),
+    ],
+)
+def test_a_soft_cradle_is_a_chain_of_springs(masses, velocity, gap):
+    """At k = 3000 several contacts are closed at once and none takes all: m a = k (overlap before - overlap behind) of
+    the chain, integrated by scipy. 2e-4 of the speed, as of other collisions without dashpots."""
+    n, k, mass = len(masses), 3000.0, np.array(masses) / np.mean(masses)
+    law = {"friction": 0.0, "damping_ratio": 0.0, "normal_stiffness": k}
+    free = {"loads": [], "contact": law, "motion": {"weightless": True, "vx": velocity}}
+    x = 500.0 + (2.0 + gap) * np.arange(n)
+    row = gr.Scene.from_arrays(x, [50.0] * n, 1.0, mass=masses, width=1000.0, scene=free)
+    after = gr.motion(row, [1.0], progress=False)["velocity"].values[0, :, 0]
+
+    def chain(_, y):
+        push = k * np.maximum(2.0 - np.diff(y[:n]), 0.0)
+        return np.r_[y[n:], (np.r_[0.0, push] - np.r_[push, 0.0]) / mass]
+
+    solved = solve_ivp(chain, (0.0, 1.0), np.r_[x, velocity], method="DOP853", rtol=1e-11, atol=1e-12, max_step=2e-3)
+    np.testing.assert_allclose(after, solved.y[n:, -1], atol=2e-4)
+
+
+@pytest.mark.parametrize(("degrees", "spin"), [(45.0, 2.0), (45.0, -8.0), (70.0, 0.0), (70.0, -8.0)])
+@pytest.mark.parametrize("friction", [0.1, 0.3])
+def test_a_collision_that_slides_turns_a_disk(friction, degrees, spin):
+    """Onto the floor without dashpots: the normal impulse is J = 2 m v, the tangential one mu J against the slip
+    v_x + R w, and the spin changes by twice it (moment of inertia m R^2 / 2). It slides to the end where the slip is
+    more than 3 mu J. 2e-4 of the speed."""
+    vx, vz = math.sin(math.radians(degrees)), -math.cos(math.radians(degrees))
+    slip, rubbed = vx + spin, 2.0 * friction * abs(vz)
+    assert abs(slip) > 3.0 * rubbed
+    law = {"friction": friction, "damping_ratio": 0.0}
+    free = {"loads": [], "wall": law, "motion": {"weightless": True, "vx": vx, "vz": vz, "spin": spin}}
+    after = gr.motion(gr.Scene.from_arrays([500.0], [1.01], 1.0, width=1000.0, scene=free), [1.0], progress=False)
+    found = [*after["velocity"].values[0, 0], after["angular_velocity"].values[0, 0]]
+    way = math.copysign(rubbed, slip)
+    assert found == pytest.approx([vx - way, -vz, spin - 2.0 * way], abs=2e-4)
+
+
+@pytest.mark.parametrize("k", [3e3, 1e6])
+@pytest.mark.parametrize("amplitude", [1.5, 3.0])
+def test_a_tap_throws_a_disk_off(monkeypatch, amplitude, k):
+    """Gravity in the box falls from 1 + A to 1 - A within T / 2 and changes its sign t = (A - 1) T / (4 A) before the
+    end: then the disk has the speed 2 A t^2 / T and the height 2 A t^3 / (3 T). On its spring it follows the wave by
+    sqrt(1 / (2 k)) late or early: so much in t."""
+    thrown = []
+
+    def settle(problem, state, *args, **changes):
+        thrown.append(state)
+        return whole(problem, state, *args, **changes)
+
+    duration = 3.0
+    wave = {"number": 1, "amplitude": amplitude, "duration": duration}
+    law = {"friction": 0.3, "normal_stiffness": k}
+    scene = {"loads": [], "contact": law, "preparation": {"taps": wave}}
+    whole = taps.settle
+    monkeypatch.setattr(taps, "settle", settle)
+    found = rest_state(Problem.from_scene(gr.Scene.from_arrays([5.0], [1.0], 1.0, width=10.0, scene=scene)))
+    t, late = (amplitude - 1.0) * duration / (4.0 * amplitude), 1.0 / math.sqrt(2.0 * k)
+    speed, height = 2.0 * amplitude * t**2 / duration, 2.0 * amplitude * t**3 / (3.0 * duration)
+    (state,) = thrown
+    assert state.velocity[0, 1] == pytest.approx(speed, rel=2.0 * late / t)
+    assert state.position[0, 1] - 1.0 == pytest.approx(height, rel=3.0 * late / t)
+    assert found.position[0, 1] == pytest.approx(1.0 - 0.5 / k, abs=1e-9)
 
 
 @pytest.mark.parametrize("speed", [1.0, 5.0, 20.0])

@@ -37,46 +37,43 @@ def find_event(
     tolerance: float | None = None,
     progress: Progress | bool = True,
 ) -> Bracket:
-    """Find where something happens between two loads, or two values of a key.
+    """Find the load, or the value of a scene parameter, at which something happens.
 
     Parameters
     ----------
     scene : a scene, nested mappings, or the path of a scene file.
-    happened : a kind of :class:`granular_response.Event`, such as ``"opens"``, for the first one on the path; or
-        what is called with a :class:`Result` and says whether it has happened in its last state, such as
+    happened : a kind of event, such as ``"opens"``: the first one along the path is found. Or a function that is called
+        with a :class:`Result` and returns whether its last state fulfils a condition, such as
         ``lambda result: result.floor_response.max() > 0.2``.
-    low, high : between these, and different at both: factors of the scene's loads, ``low`` above 0 (or 0 for a kind of
-        event), or values of the key.
-    where : of the kind of event, only those of which this is true: ``lambda event: event.at_wall``.
-    key : the load, which grows, each state reached from the nearest one below it; or the path of a key with real
-        values, such as contact.friction, where each value is a packing of its own, under the loads of its programme.
-    tolerance : width of the bracket at which to stop; a thousandth of the whole range if left out.
+    low, high : ends of the range, at which the condition must differ: load factors (``low`` above 0, or 0 for a kind of
+        event), or values of the scene parameter.
+    where : restricts events: ``lambda event: event.at_wall``.
+    key : "load": the load grows, and each state continues from the nearest one below it. Or a scene parameter with real
+        values, such as contact.friction: each value is solved separately, under its whole load programme.
+    tolerance : width of the bracket at which bisection stops; a thousandth of the range if left out.
     progress : as of :func:`sweep`.
 
     Returns
     -------
-    A bracket ``low``, ``high`` with ``at_low``, what ``happened`` says at its lower end; at the upper one it says the
-    opposite.
+    A bracket ``low``, ``high``; ``at_low`` is the value of the condition at its lower end.
 
-    A kind of event along the load is read from one path: ``low`` and ``high`` are both its load factor, whatever the
-    tolerance. Where an equilibrium is lost they are that and the one at which the path goes on; where the path took
-    events together, the ends of the increment.
+    A kind of event along the load is read from one load path. ``low`` and ``high`` coincide unless equilibrium is lost
+    there, or events were processed in a batch; then they are the ends of the dynamic jump or of the increment.
 
-    Where a function of the result changes is searched for, along a path among its events first: the bracket either
-    holds a load at which contacts change, and is no wider than needed for the states at both sides (2e-6 mean disk
-    weights), or holds none, so that the response is smooth in it. If the function changes several times between ``low``
-    and ``high``, this is one of the changes.
+    A function of the result is bisected, along a load path among its events first. The bracket then either contains one
+    event and is 2e-6 mg wide, or contains none, so that the response is smooth within it. If the condition changes
+    several times between ``low`` and ``high``, one of the changes is found.
 
     Raises
     ------
     granular_response.EventNotBracketed
-        If it says the same at both ends, or there is no such event between them.
+        If the condition is the same at both ends, or no such event lies between them.
     ValueError
-        For an empty range, a tolerance or a smallest load that is not positive, a kind that there is not, and for
-        ``where`` with a function of the result.
+        For an empty range, a tolerance or lower load that is not positive, an unknown kind of event, or ``where`` with
+        a function of the result.
     granular_response.SceneError, granular_response.SolveError
-        For a key or a value that is not allowed, for a scene without loads where these grow, for a kind of event where
-        no path is followed, and where there is no equilibrium.
+        For a key or a value that is not allowed, a scene without loads, a kind of event if the scene is not solved
+        along a load path, and if there is no equilibrium.
 
     Examples
     --------

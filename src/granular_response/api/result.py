@@ -296,23 +296,30 @@ class Result:
         return xr.DataArray(tensor, coordinates, tuple(coordinates), "stress", labels)
 
     def influence(self, *, state: int = -1, sliding: str = "refuse") -> xr.DataArray:
-        """The response of the vertical force on each floor disk to a small force on any disk, exact in the limit.
+        """The response of each floor force to a small force on any disk, in the limit of zero force.
+
+        The responses of one floor disk follow from one linear system, K^T y = c, with the tangent stiffness K and the
+        row c of its floor contact.
 
         Parameters
         ----------
         state : the loaded state, as of :meth:`contacts_table`, with its errors.
-        sliding : "refuse" a state with contacts at the Coulomb limit, whose response depends on the direction of the
-            load, or take them to "stick".
+        sliding : with contacts at the Coulomb limit the response depends on the direction of the load. "refuse" raises
+            an error then; "stick" takes these contacts as sticking.
 
         Returns
         -------
-        Dimensions ``floor_disk``, ``disk`` and ``component``: per unit force along "x" and "z" and, where disks turn,
-        per unit "torque". With ``x`` of the floor disks from the loaded disk, and ``disk_x``, ``disk_z`` of all disks.
-        NaN for disks with fewer than two contacts, unless one resists rolling, and along x where nothing holds the
-        packing as a whole. 0 where a load holds the disk.
+        Dimensions ``floor_disk``, ``disk`` and ``component``: the incremental vertical floor force per
+        unit force along "x" and "z" and, if disks can rotate, per unit "torque" (1 / mean radius). Coordinates: ``x``
+        of floor disks relative to the loaded disk, ``disk_x`` and ``disk_z`` of all disks, in mean radii. NaN for
+        rattlers, and along x if nothing holds the packing as a whole. 0 for a disk with prescribed displacement.
 
-        Raises ValueError for another ``sliding``; granular_response.SolveError for a state that is not stable, or has
-        contacts at the Coulomb limit where these are refused.
+        Raises
+        ------
+        ValueError
+            For another ``sliding``.
+        granular_response.SolveError
+            For a state that is not stable, or has contacts at the Coulomb limit with ``sliding="refuse"``.
 
         Examples
         --------
@@ -493,22 +500,39 @@ def solve(
     method: str | None = None,
     progress: Progress | bool = True,
 ) -> Result:
-    """Settle a scene under gravity, then take it through its load programme.
+    """Settle a scene under gravity, then follow its load programme.
+
+    The initial equilibrium r(q) = 0 under gravity comes first. Each state under load continues from the one before it:
+    along the contact events of a load path with friction, by minimisation of the energy without. Every state has a
+    certificate.
 
     Parameters
     ----------
     scene : a scene, nested mappings with its keys, or the path of a scene file.
-    load_factors : multipliers of the scene's loads, in turn, growing or falling; ``protocol.load_factors`` if None.
+    load_factors : multipliers of the scene's loads (dimensionless), in turn, growing or falling;
+        ``protocol.load_factors`` if None.
     method : "auto", "dynamics", "path" or "minimise" in place of ``protocol.method``.
     progress : a bar on the terminal, or a line in a notebook, after two seconds; False for none, or a function that is
         called as ``progress(done, total, stage)``.
 
-    Raises granular_response.SceneError for a scene that is not allowed; granular_response.SolveError for one that has
-    no such states, with one line that says what to change.
+    Returns
+    -------
+    The initial equilibrium and one state for each load factor. Forces are in mg, lengths in mean radii.
 
-    Warns (UserWarning) of states that are still moving where no static finish is asked for, of states that are not in
-    balance as statics does not have their law, of a load so small that rounding is seen in its response, and of
-    settings for another method, which have no effect.
+    Raises
+    ------
+    granular_response.SceneError
+        For a scene that is not allowed.
+    granular_response.SolveError
+        If the packing does not settle, or has no equilibrium under a load. The message is one line that says what to
+        change.
+
+    Warns
+    -----
+    UserWarning
+        If a state has not settled (``static_finish=False``); if the contact law has no static solver, so that states
+        are not certified; if the load is so small that rounding shows in the response; if a setting has no effect with
+        the method that is used.
 
     Examples
     --------

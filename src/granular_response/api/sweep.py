@@ -74,49 +74,55 @@ def sweep(
     checkpoint: str | os.PathLike[str] | None = None,
     progress: Progress | bool = True,
 ) -> xr.Dataset:
-    """Solve a scene with every combination of values of its keys, and measure each result.
+    """Solve a scene for every combination of parameter values, and return one labelled dataset.
 
-    A script calls it under ``if __name__ == "__main__":``, since worker processes import the script.
+    Call it under ``if __name__ == "__main__":`` in a script, since worker processes import the script.
 
     Parameters
     ----------
-    scene : what all have in common: a scene, nested mappings, or the path of a scene file.
-    axes : values by the path of a key: ``{"contact.friction": [0, 0.2], "packing.realization": range(20)}``. What each
-        means is said by ``granular-response keys``.
-    measure : called with each :class:`Result` where it was solved; returns a number, a ``DataArray``, a ``Dataset``, or
-        a mapping of names to numbers, arrays and ``DataArray``. A function of a notebook or a lambda will do.
-    load_factors : multipliers of the scene's loads at which states are kept; those of the scene if left out.
+    scene : the common scene: a scene, nested mappings, or the path of a scene file.
+    axes : values of each scene parameter: ``{"contact.friction": [0, 0.2], "packing.realization": range(20)}``.
+        ``granular-response keys`` lists the parameters.
+    measure : function of a :class:`Result`, called where it was solved; returns a number, a ``DataArray``, a
+        ``Dataset``, or a mapping of names to numbers, arrays and ``DataArray``. A lambda or a function of a notebook is
+        allowed. By default the floor response.
+    load_factors : load factors at which states are stored; those of the scene if left out.
     workers : local processes; all cores if left out, this process if 1.
     executor : a ``concurrent.futures.Executor`` in place of local processes, as of :func:`map_tasks`.
-    checkpoint : folder that keeps each solution, so that an interrupted sweep continues, and another ``measure`` takes
-        what was solved. **It must be a folder of your own**, and one that all workers reach. A solution is taken if the
-        scene, the files that it names (disks, springs), this package, the installed numba, numpy, scipy and xarray, and
-        the modules of a law or packing of your own, with all of your own that they import, are the same. Files that
-        such a law or packing opens by itself, unless a property ``files`` of the packing lists them, and environment
-        variables are not known. Reading a solution runs no code of the file; files of another owner, and damaged ones,
-        are computed again.
+    checkpoint : folder in which each solution is stored, so that an interrupted sweep continues and another ``measure``
+        reuses the solutions. **It must be your own folder**, and all workers must reach it. A stored solution is reused
+        if the scene, its files (disks, springs), this package, the installed numba, numpy, scipy and xarray, and the
+        modules of user-defined laws or packings, with all of your own that they import, are unchanged. Not detected:
+        files that such a law or packing opens by itself, unless the packing's property ``files`` lists them, and
+        environment variables. Reading a solution runs no code; files of another owner and damaged files are recomputed.
     progress : a line on the terminal, or in a notebook; False for none, or a function that is called as
         ``progress(done, total, what)``.
 
     Returns
     -------
-    One dimension for each key, in the order of ``axes``, then those of what was measured. A dimension has the last part
-    of its key as name (``friction``, ``realization``), or the whole with ``_`` where two keys end alike; its values as
-    coordinate, with the attribute ``key``; values that are neither numbers nor text are numbered, in the order given.
-    What has no coordinate of its own and another length in each result is filled up with NaN. So are floor disks that
-    differ: they are then numbered from the left, and ``floor_disk_index`` says which each is. Load programmes that
-    differ are put side by side step by step: ``load`` then has no labels, but ``step`` and, for each combination,
-    ``load_factor``. Attributes are those that all results share, and texts that say what was done: ``scene`` (with its
-    seed), ``axes``, ``load_factors``, the name of the ``measure``, ``package_version`` and ``versions``.
+    A dataset with one dimension for each parameter, in the order of ``axes``, followed by the dimensions of the
+    measure.
 
-    A combination without equilibrium is NaN throughout; the variable ``error`` then has its message, empty for the
-    others, and a warning says how many there are. What :func:`solve` warns of is said once, with the number of
-    combinations.
+    * A dimension is named by the last part of its key (``friction``, ``realization``), or by the whole key with ``_``
+      if two keys end alike. Its coordinate has the values, with the attribute ``key``; values that are neither numbers
+      nor text are numbered in the given order.
+    * Variables whose length differs between results are padded with NaN. Floor disks are then numbered from the left;
+      ``floor_disk_index`` gives their index in the packing.
+    * If load programmes differ, ``load`` has no labels: ``step`` numbers the loads, and ``load_factor`` has their
+      values for each combination.
+    * Attributes: those that all results share, and ``scene`` (with its seed), ``axes``, ``load_factors``, the name of
+      the ``measure``, ``package_version`` and ``versions``.
+    * A combination without equilibrium is NaN. The variable ``error`` has its message (empty for the others), and a
+      warning gives their number. Warnings of :func:`solve` appear once, with the number of combinations.
 
-    Raises granular_response.SceneError for a key, a value or load factors that are not allowed, before anything is
-    solved; ValueError for axes that are no mapping, and for an axis that is no list of values, is empty or has a value
-    twice; granular_response.SweepError if ``measure`` raises or returns something else, if no combination has an
-    equilibrium, or if workers fail.
+    Raises
+    ------
+    granular_response.SceneError
+        For a key, a value or load factors that are not allowed, before anything is solved.
+    ValueError
+        If ``axes`` is not a mapping, or an axis is not a list of values, is empty or contains a value twice.
+    granular_response.SweepError
+        If ``measure`` raises an error or returns another type, no combination has an equilibrium, or workers fail.
 
     Examples
     --------
@@ -163,26 +169,26 @@ def preparations(
     checkpoint: str | os.PathLike[str] | None = None,
     progress: Progress | bool = True,
 ) -> xr.Dataset:
-    """The response of a scene prepared in several ways, with its band over them.
+    """The response of a scene under several preparations, with its band over them.
 
-    Unless the load is small, the way in which gravity was applied matters more than most parameters.
+    With friction the initial equilibrium depends on how gravity was applied. This matters more than most parameters.
 
     Parameters
     ----------
-    ways : by name, a ``Preparation`` or a mapping of keys that differ from that of the scene. If left out: gravity at
-        once (the paper's), ramped over 20, 100 and 500 sqrt(R/g), a start without friction, and ten taps of 0.5 g after
-        slow gravity.
+    ways : preparations by name: a ``Preparation``, or a mapping of the keys that differ from the scene's. By default
+        gravity applied instantaneously (the paper's), ramped over 20, 100 and 500 sqrt(R/g), frictionless preparation,
+        and ten taps of 0.5 g after slow gravity.
     scene, measure, load_factors, workers, executor, checkpoint, progress : as of :func:`sweep`.
 
     Returns
     -------
-    What :func:`sweep` returns, with the dimension ``preparation``, and ``loaded_disk``; and of each measured number
-    that depends on it, ``..._low`` and ``..._high``, the ends of its band over preparations (those without an
-    equilibrium left out). Where not the same disks reach the floor, ``floor_disk`` has their numbers, in their order
-    along x, so that a band is that of one disk.
+    The dataset of :func:`sweep` with the dimension ``preparation`` and the variable ``loaded_disk``. Each numeric
+    variable ``v`` has a band over preparations, from ``v_low`` to ``v_high``; preparations without an equilibrium are
+    left out. If different disks reach the floor, ``floor_disk`` has their indices, in the order of x, so that a band
+    belongs to one disk.
 
-    Raises as :func:`sweep` does; SceneError for what is no preparation, or one that is given twice. Warns (UserWarning)
-    where a load is on another disk in another preparation.
+    Raises the errors of :func:`sweep`, and granular_response.SceneError for an entry that is not a preparation or is
+    given twice. Warns (UserWarning) if loads act on different disks in different preparations.
 
     Examples
     --------

@@ -60,8 +60,11 @@ def response(
     cmap : colour map of matplotlib, from the first curve to the last.
     line : goes to ``Axes.plot``, also as matplotlib shortens its names (``lw``, ``ls``, ``c``).
 
-    Raises PictureError for a result without forces to respond to, see :func:`floor`, and for colours that are not one
-    or one for each curve.
+    Raises
+    ------
+    granular_response.plot.PictureError
+        For a result without forces to respond to, see :func:`floor`, and for colours that are not one or one for each
+        curve.
 
     Examples
     --------

@@ -1,0 +1,260 @@
+"""Set-up and the whole check on a machine that has nothing: what they decide. No package is installed here."""
+
+import os
+import shutil
+import subprocess
+import sys
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
+from pathlib import Path
+
+import pytest
+from places import ROOT
+
+#: In place of pip: writes down what it was asked, and knows the settings in the file ``settings`` of the folder.
+PIP = """
+import pathlib, sys
+if sys.argv[1:3] == ["config", "list"]:
+    sys.exit(print(pathlib.Path("settings").read_text(), end=""))
+with open("asked", "a") as asked:
+    print(*sys.argv[1:], file=asked)
+sys.exit(pathlib.Path("pip-fails").exists())
+"""
+
+
+@pytest.fixture
+def setup(tmp_path, monkeypatch):
+    """The script, as that of a checkout in a new folder whose environments have the pip above."""
+    checkout = tmp_path / "a größe's #1 (100 %; a&b)"
+    for name in (".ci/setup", "requirements.lock", "pyproject.toml", "src/granular_response_paper", "extensions"):
+        source = ROOT / name
+        name = f"{name}/pyproject.toml" if source.is_dir() else name
+        (checkout / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, checkout / name)
+    (checkout / ".git").touch()
+    (checkout / "settings").touch()
+    return loaded(checkout, monkeypatch)
+
+
+def loaded(checkout, monkeypatch):
+    """The script of a checkout, in its folder."""
+    monkeypatch.chdir(checkout)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    loader = SourceFileLoader("setup_script", str(checkout / ".ci" / "setup"))
+    module = module_from_spec(spec_from_loader(loader.name, loader))
+    loader.exec_module(module)
+    run = subprocess.run
+
+    def venv_without_pip(command, **options):
+        if "venv" not in command:
+            return run(command, **options)
+        done = run([*command, "--without-pip"], **options)
+        (site,) = Path(".venv").glob("lib/python*/site-packages")
+        (site / "pip").mkdir(exist_ok=True)
+        (site / "pip" / "__init__.py").touch()
+        (site / "pip" / "__main__.py").write_text(PIP)
+        return done
+
+    monkeypatch.setattr(module.subprocess, "run", venv_without_pip)
+    return module
+
+
+def asked():
+    """What pip was asked since the last look."""
+    file = Path("asked")
+    lines = file.read_text().splitlines() if file.exists() else []
+    file.unlink(missing_ok=True)
+    return lines
+
+
+def whole(setup):
+    setup.main([])
+    assert setup.complete("paper") and len(asked()) == 2
+
+
+def test_versions_come_first_then_the_packages_of_the_checkout_and_nothing_twice(setup, capsys):
+    setup.main([])
+    versions, own = asked()
+    assert "--constraint requirements.lock hatchling editables" in versions and "--no-build-isolation" not in versions
+    assert own.count("--editable") == 3 and "--no-deps" in own and "--no-build-isolation" in own
+    setup.main([])
+    assert asked() == []
+    setup.main(["--tools"])
+    (tools,) = asked()
+    assert " pytest==" in tools
+    setup.main(["--tools"])
+    assert asked() == [] and capsys.readouterr().out.count("Installing") == 2
+
+
+def python_gone():
+    Path(".venv/bin/python").unlink()
+    Path(".venv/bin/python").symlink_to("/nowhere/python")
+
+
+def pip_gone():
+    for folder in Path(".venv").glob("lib/python*/site-packages/pip"):
+        shutil.rmtree(folder)
+
+
+def begun():
+    Path(".venv/.begun").touch()
+
+
+def a_file():
+    shutil.rmtree(".venv")
+    Path(".venv").touch()
+
+
+@pytest.mark.parametrize("damage", [python_gone, pip_gone, a_file, begun])
+def test_an_environment_that_is_not_whole_is_made_anew(setup, damage):
+    whole(setup)
+    Path(".venv/of-before").touch()
+    damage()
+    whole(setup)
+    assert not Path(".venv/of-before").exists()
+
+
+def test_an_environment_is_made_within_the_checkout_where_a_link_leads_out_of_it(setup, tmp_path):
+    """What the link leads to is somebody else's."""
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "file").touch()
+    Path(".venv").symlink_to(elsewhere)
+    whole(setup)
+    assert not Path(".venv").is_symlink() and [one.name for one in elsewhere.iterdir()] == ["file"]
+
+
+@pytest.mark.parametrize("way", [shutil.copytree, shutil.move])
+def test_the_environment_of_a_copied_or_renamed_checkout_is_made_anew(setup, tmp_path, monkeypatch, way):
+    whole(setup)
+    there = tmp_path / "there"
+    monkeypatch.chdir(tmp_path)
+    way(Path(setup.__file__).parents[1], there, **({"symlinks": True} if way is shutil.copytree else {}))
+    assert not loaded(there, monkeypatch).usable()
+
+
+def test_a_new_version_in_the_lock_is_installed_into_the_environment_that_is_there(setup):
+    whole(setup)
+    Path(".venv/of-before").touch()
+    with open("requirements.lock", "a") as lock:
+        lock.write("# another\n")
+    whole(setup)
+    assert Path(".venv/of-before").exists()
+
+
+def test_another_python_is_taken_only_where_it_was_asked_for(setup, monkeypatch):
+    whole(setup)
+    monkeypatch.setattr(setup.sys, "version_info", (3, 99, 0))
+    assert setup.usable() and not setup.usable(this_python=True)
+
+
+def test_what_pip_did_not_end_is_done_again(setup):
+    Path("pip-fails").touch()
+    with pytest.raises(SystemExit, match="pip ended with status 1"):
+        setup.main([])
+    Path("pip-fails").unlink()
+    asked()
+    assert not setup.complete("paper")
+    whole(setup)
+
+
+def test_of_the_settings_of_pip_those_count_that_say_how_packages_are_reached(setup):
+    Path("settings").write_text(
+        ":env:.find-links='/wheels'\n:env:.user='1'\nglobal.index-url='http://global/x=1'\nglobal.target='/tmp/x'\n"
+        "install.index-url='http://install/x=1'\ninstall.no-deps='true'\ninstall.require-hashes='true'\n"
+        "global.extra-index-url='\\nhttp://one\\nhttp://two'\nlist.proxy='http://other'\nglobal.only-binary=':all:'\n"
+    )
+    setup.make()
+    assert setup.pip_settings() == {
+        "PIP_FIND_LINKS": "/wheels",
+        "PIP_INDEX_URL": "http://install/x=1",
+        "PIP_EXTRA_INDEX_URL": "http://one http://two",
+    }
+
+
+def test_pip_sees_no_other_setting_of_the_user(setup, monkeypatch):
+    setup.make()
+    reached = {}
+    run = setup.subprocess.run
+    monkeypatch.setattr(setup.subprocess, "run", lambda command, **given: reached.update(given) or run(command, **given))
+    for name in ("PIP_USER", "PIP_TARGET", "PIP_CONFIG_FILE", "PIP_NO_DEPS", "PYTHONHOME", "PYTHONPATH"):
+        monkeypatch.setenv(name, "/somewhere")
+    monkeypatch.setattr(setup, "pip_settings", lambda: {"PIP_PROXY": "http://proxy"})
+    setup.pip("nothing")
+    names = {name for name in reached["env"] if name.startswith(("PIP_", "PYTHON"))}
+    assert names == {"PIP_PROXY", "PIP_CONFIG_FILE", "PIP_DISABLE_PIP_VERSION_CHECK"}
+    assert reached["env"]["PIP_CONFIG_FILE"] == os.devnull
+
+
+def test_a_python_that_makes_no_environments_names_the_package_that_is_missing(setup, monkeypatch):
+    monkeypatch.setattr(setup.importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(SystemExit, match=rf"apt install python3\.{sys.version_info.minor}-venv$"):
+        setup.main([])
+    assert not Path(".venv").exists()
+
+
+@pytest.mark.parametrize("sign", [":", "$", "[", "{", "}"])
+def test_a_path_that_a_tool_misreads_is_refused_in_one_line(tmp_path, sign):
+    script = tmp_path / f"a{sign}b" / ".ci" / "setup"
+    script.parent.mkdir(parents=True)
+    shutil.copy(ROOT / ".ci" / "setup", script)
+    done = subprocess.run([sys.executable, "-I", script], capture_output=True, text=True)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert f"the path has a {sign}, which" in done.stderr and str(script.parents[1]) in done.stderr
+
+
+@pytest.fixture
+def check(tmp_path):
+    """Runs the whole check on a repository with this README and this Makefile."""
+
+    def run(readme, makefile="reproduce test lint docs wheels:\n\t@echo $@: 3 passed\n"):
+        repository = tmp_path / "repository"
+        (repository / ".ci").mkdir(parents=True)
+        for name in "run", "setup":
+            shutil.copy(ROOT / ".ci" / name, repository / ".ci" / name)
+        (repository / "README.md").write_text(readme)
+        (repository / "Makefile").write_text(makefile)
+        environment = os.environ | {f"GIT_{who}_{what}": "a@b" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
+        for words in ("init", "-q"), ("add", "."), ("commit", "-qm", "all"):
+            subprocess.run(["git", *words], cwd=repository, env=environment, check=True)
+        # as the script sees it where no Python of the user's is in the way
+        path = os.pathsep.join([str(Path(sys.executable).parent), environment["PATH"]])
+        done = subprocess.run(
+            [repository / ".ci" / "run"], env=environment | {"PATH": path, "TMPDIR": str(tmp_path)}, capture_output=True, text=True
+        )
+        return done.returncode, done.stdout, done.stderr
+
+    return run
+
+
+BLOCKS = "# A\n\n```python\nno shell\n```\n\n```sh\nmake reproduce  # all\n{}\n```\n\nwords\n\n```sh\nmake test\n```\n"
+
+
+def test_the_check_runs_the_commands_of_the_readme_and_shows_what_they_say(check):
+    status, out, err = check(BLOCKS.format('test "$HOME" != ~root -a -z "${PYTHONPATH:-}"'))
+    assert status == 0, err
+    assert [line for line in out.splitlines() if "passed" in line] == [
+        f"{one}: 3 passed" for one in ("reproduce", "test", "lint", "docs", "wheels")
+    ]
+    assert "nothing differs" in out
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ("false | cat", "false | cat"),
+        ("echo '# more' >> Makefile", " M Makefile"),
+        ("git config status.showUntrackedFiles no; touch file", "?? file"),
+    ],
+)
+def test_the_check_fails_with_a_command_of_the_readme_or_a_file_that_differs(check, command, said):
+    status, out, err = check(BLOCKS.format(command))
+    assert status != 0 and said in err and "nothing differs" not in out
+
+
+def test_the_check_fails_where_the_readme_has_no_commands_or_a_target_fails(check, tmp_path):
+    status, out, err = check("    make reproduce\n    make test\n")
+    assert status == 1 and err == "README.md has no shell block with make reproduce\n" and "nothing differs" not in out
+    shutil.rmtree(tmp_path / "repository")
+    status, out, _ = check(BLOCKS.format(""), "reproduce test lint wheels:\n\t@echo $@\ndocs:\n\t@false\n")
+    assert status != 0 and "nothing differs" not in out
