@@ -41,7 +41,9 @@ def loaded(checkout, monkeypatch):
     monkeypatch.chdir(checkout)
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     loader = SourceFileLoader("setup_script", str(checkout / ".ci" / "setup"))
-    module = module_from_spec(spec_from_loader(loader.name, loader))
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None
+    module = module_from_spec(spec)
     loader.exec_module(module)
     run = subprocess.run
 
@@ -176,7 +178,7 @@ def test_pip_sees_no_other_setting_of_the_user(setup, monkeypatch):
     setup.make()
     reached = {}
     run = setup.subprocess.run
-    monkeypatch.setattr(setup.subprocess, "run", lambda command, **given: reached.update(given) or run(command, **given))
+    monkeypatch.setattr(setup.subprocess, "run", lambda words, **given: reached.update(given) or run(words, **given))
     for name in ("PIP_USER", "PIP_TARGET", "PIP_CONFIG_FILE", "PIP_NO_DEPS", "PYTHONHOME", "PYTHONPATH"):
         monkeypatch.setenv(name, "/somewhere")
     monkeypatch.setattr(setup, "pip_settings", lambda: {"PIP_PROXY": "http://proxy"})
@@ -214,14 +216,13 @@ def check(tmp_path):
             shutil.copy(ROOT / ".ci" / name, repository / ".ci" / name)
         (repository / "README.md").write_text(readme)
         (repository / "Makefile").write_text(makefile)
-        environment = os.environ | {f"GIT_{who}_{what}": "a@b" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
+        somebody = ("-c", "user.name=somebody", "-c", "user.email=somebody@here")
         for words in ("init", "-q"), ("add", "."), ("commit", "-qm", "all"):
-            subprocess.run(["git", *words], cwd=repository, env=environment, check=True)
+            subprocess.run(["git", *somebody, *words], cwd=repository, check=True)
         # as the script sees it where no Python of the user's is in the way
-        path = os.pathsep.join([str(Path(sys.executable).parent), environment["PATH"]])
-        done = subprocess.run(
-            [repository / ".ci" / "run"], env=environment | {"PATH": path, "TMPDIR": str(tmp_path)}, capture_output=True, text=True
-        )
+        path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+        environment = os.environ | {"PATH": path, "TMPDIR": str(tmp_path)}
+        done = subprocess.run([repository / ".ci" / "run"], env=environment, capture_output=True, text=True)
         return done.returncode, done.stdout, done.stderr
 
     return run

@@ -67,7 +67,8 @@ def test_a_fall_ends_where_accelerations_are_small_in_the_equilibrium_of_its_end
     assert quick.reached.steps < 0.8 * slow.reached.steps
     error = apart(quick, slow)
     assert error < MOST_LEFT
-    monkeypatch.setattr(choice, "AT_REST", 30.0 * choice.AT_REST)
+    for name in "AT_REST", "DISORDERED_AT_REST":
+        monkeypatch.setattr(choice, name, 30.0 * getattr(choice, name))
     assert apart(rest_state(rough(**described)), slow) > 10.0 * error
 
 
@@ -96,9 +97,11 @@ def test_a_packing_is_not_at_rest_while_one_of_its_disks_falls():
 
 def test_the_protocol_is_taken_at_its_word():
     """A stopping energy or rule that is given, ``method: dynamics``, or no static finish."""
+    still = {"packing__polydispersity": choice.DISORDERED_AT_REST, "protocol__time_step": choice.AT_REST}
     for usual in ({}, {"packing__polydispersity": 0.1}, {"protocol__time_step": 1e-4}):
         plan = rough(**usual).plan
-        assert (plan.stop_energy, plan.stop_acceleration, plan.larger_steps) == (1e-13, choice.AT_REST, False)
+        expected = next((still[key] for key in usual), choice.AT_REST)
+        assert (plan.stop_energy, plan.stop_acceleration, plan.larger_steps) == (1e-13, expected, False)
     for other in (
         {"protocol__stop_kinetic_energy": 1e-9},
         {"protocol__method": "dynamics"},

@@ -110,12 +110,12 @@ def write(
     pictures of the claims beside it; returns its path.
 
     Raises ClaimsError, ReportError or StoreError for a table of claims, a ``captions.json`` or a dataset that cannot be
-    read, ReportError for the name of the page of claims, OSError if a page cannot be written, or would replace one of
-    the files it is made from.
+    read, ReportError for the name of a file beside the page, OSError if a page cannot be written, or would replace one
+    of the files it is made from.
     """
     target, base = Path(output), Path(root)
-    if target.name == CLAIMS:
-        raise ReportError(f"{target}: is the name of the page of claims beside it; choose another one")
+    if target.name in (CLAIMS, *forest.FILES):
+        raise ReportError(f"{target}: is the name of a file that is written beside the page; choose another one")
     names = [target.name, CLAIMS, *(() if embedded else forest.FILES)]
     own = [base / OUTPUT.parent / name for name in (OUTPUT.name, *names[1:])]
     used = [file for folder in ("figures", "data") for file in (base / folder).rglob("*") if file not in own]

@@ -187,7 +187,7 @@
     pen.lineTo(X(0.9), Z(slab.height + 1.8));
     pen.fill();
     text(pen, "F", X(1.4), Z(slab.height + 3.6), "left", colour.load);
-    bold(pen, opened(counts.opened), paper.width, high, "right", colour.opened);
+    bold(pen, counts.opened + " opened", paper.width, high, "right", colour.opened);
     const bar = LEFT + 4;  // a bar as wide as half of the applied force
     line(pen, [[bar, high], [bar + 3 * scale, high]], colour.increased, 0.5 * widest);
     text(pen, "0.5 F", bar + 3 * scale + 5, high, "left");
@@ -331,7 +331,6 @@
   }
   const mean = function (value) { return typed(Number(value.toPrecision(3))); };
   const counted = function (count) { return count + (count === 1 ? " peak" : " peaks"); };
-  const opened = function (count) { return count + (count === 1 ? " contact opened" : " contacts opened"); };
   function begins(curve, k) {
     return ["from ", "already below ", "not up to "][curve.kind[k]] + short(curve.force[k]) + " mg" + (curve.kind[k] ? "" : " on");
   }
@@ -354,7 +353,7 @@
     slider.setAttribute("aria-valuetext", force + " mg");
     byId("link").href = "#mu=" + slab.friction + "&F=" + force;
     const reached = slab.motion && force >= slab.motion ? "dynamics from rest" : slab.motion ? "load path" : "";
-    said.textContent = "F = " + force + " mg" + (reached ? " (" + reached + ")" : "") + ": " + opened(counts.opened) + ", " +
+    said.textContent = "F = " + force + " mg" + (reached ? " (" + reached + ")" : "") + ": " + counts.opened + (counts.opened === 1 ? " contact opened, " : " contacts opened, ") +
       counts.sliding + " at the Coulomb limit. Largest increase of a contact force: " + short(counts.most) +
       " F; largest decrease of one that stays closed: " + short(counts.least) + " F. " + shape(index);
     byId("network").setAttribute("aria-label", "Contacts of the slab, " + slab.about + ". " + said.textContent);
