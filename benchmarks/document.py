@@ -31,6 +31,9 @@ NAMED = {
     "stepped over": "passed with a fixed friction bound",
 }
 
+#: Disks at least, and methods, of the large systems.
+SIZES = ((900, "path"), (14_000, "path"), (57_000, "path"), (100_000, "path"), (1_000_000, "minimise"))
+
 
 def read() -> Stored:
     """All stored benchmarks by name."""
@@ -149,6 +152,15 @@ def page(found: Stored) -> str:
     for name, value in filled.items():
         text = text.replace("{" + name + "}", value)
     return text
+
+
+def large(found: Stored) -> str:
+    """Time and memory of large systems."""
+    rows = [of_size(found, *size) for size in SIZES]
+    rows = [{**row, "disks": f"{row['disks']:,}", "wall": seconds(row["seconds"]),
+             "memory": f"{row['peak_gibibytes']:.2g} GiB"} for row in rows]  # fmt: skip
+    head = {"disks": "disks", "friction": "friction", "wall": "wall time, two threads", "memory": "memory"}
+    return table(rows, **head, measured_on="processor")
 
 
 def costs(found: Stored) -> str:
