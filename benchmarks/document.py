@@ -183,7 +183,8 @@ def costs(found: Stored) -> str:
             made["exponent"] = math.log(growth) / math.log(more)
         rows.append(made)
     return table(rows, scene="scene", key="key that differs", size="disks", time="processor time, one thread",
-                 memory="memory", exponent="exponent of the time in disks", error="time-step error of a floor force [mg]")  # fmt: skip
+                 memory="memory", exponent="exponent of the time in disks",
+                 error="time-step error of a floor force [mg]")  # fmt: skip
 
 
 def main() -> None:
