@@ -170,14 +170,16 @@ def costs(found: Stored) -> str:
     rows: list[dict[str, Any]] = []
     for row in found["fall"]["whole"]:
         key = ", ".join(f"`{name}: {value}`" for name, value in row["changes"].items())
-        made = {**row, "key": key or None, "error": None if key else errors[row["disks"]], "size": f"{row['disks']:,}",
-                "time": seconds(row["seconds"]), "memory": f"{row['peak_gibibytes']:.2g} GiB"}  # fmt: skip
+        error = None if key else errors.get(row["disks"])
+        made = {**row, "key": key or None, "error": error, "size": f"{row['disks']:,}", "time": seconds(row["seconds"]),
+                "memory": f"{row['peak_gibibytes']:.2g} GiB"}  # fmt: skip
         if rows and rows[-1]["scene"] == row["scene"]:
             growth, more = row["seconds"] / rows[-1]["seconds"], row["disks"] / rows[-1]["disks"]
             made["exponent"] = math.log(growth) / math.log(more)
         rows.append(made)
-    return table(rows, scene="scene", key="key that differs", size="disks", time="processor time", memory="memory",
-                 exponent="exponent of the time in disks", error="time-step error of a floor force [mg]")  # fmt: skip
+    return table(rows, scene="scene", key="key that differs", size="disks", time="processor time, one thread",
+                 memory="memory", exponent="exponent of the time in disks",
+                 error="time-step error of a floor force [mg]")  # fmt: skip
 
 
 def main() -> None:
