@@ -104,7 +104,7 @@ class Protocol(Description):
         default=1e-13,
         description="Kinetic energy per disk below which a packing counts as settled (E_stop). With this default, the "
         "default stop_rule and friction, a fall ends earlier if statics follows: at a mean acceleration of 0.001 g for "
-        "half a period of the slowest oscillation (0.01 g in ordered packings with larger steps).",
+        "half a period of the slowest oscillation (0.01 g in ordered packings with larger steps and smooth walls).",
     )
     stop_rule: Literal["instantaneous", "envelope"] = Field(
         default="instantaneous",
