@@ -105,7 +105,7 @@ class Protocol(Description):
         description="Kinetic energy per disk below which a packing counts as settled (E_stop). With this default, the "
         "default stop_rule and friction, a fall ends earlier if statics follows: at a mean acceleration of 0.001 g for "
         "half a period of the slowest oscillation (0.002 g in disordered packings, 0.01 g in ordered ones with larger "
-        "steps).",
+        "steps and smooth walls).",
     )
     stop_rule: Literal["instantaneous", "envelope"] = Field(
         default="instantaneous",
