@@ -164,7 +164,7 @@ def large(found: Stored) -> str:
 
 
 def costs(found: Stored) -> str:
-    """The table of costs of the user guide: whole solutions, and the error of the default fall's time step."""
+    """The table of costs of the user guide: whole solutions, and how far a default fall ends from one at the paper's step."""
     slabs = (row for row in found["fall"]["scenes"] if row["scene"].startswith("slab, "))
     errors = {row["disks"]: row.get("floor_error") for row in slabs}
     rows: list[dict[str, Any]] = []
@@ -179,7 +179,7 @@ def costs(found: Stored) -> str:
         rows.append(made)
     return table(rows, scene="scene", key="key that differs", size="disks", time="processor time, one thread",
                  memory="memory", exponent="exponent of the time in disks",
-                 error="time-step error of a floor force [mg]")  # fmt: skip
+                 error="floor forces beside the paper's step to its end [mg]")  # fmt: skip
 
 
 def main() -> None:

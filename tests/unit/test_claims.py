@@ -673,12 +673,10 @@ def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path
 
 
 def test_the_readme_quotes_the_stored_table():
-    """The counts in words; and verdicts in its table, by the claims that the comment before the table names."""
+    """The counts in words, and the verdict of each of its findings."""
     found = table.read(ROOT / "figures" / "claims.json")
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert [line for line in table.quoted(found).splitlines() if line not in readme] == []
-    named, rows = re.search(r"<!-- verdicts of figures/claims.json: (.*?) -->\n(.*?)\n\n", readme, re.DOTALL).groups()
-    quoted = [line.strip("| ").split(" | ")[-1] for line in rows.splitlines()[2:]]
-    verdicts = {row["id"]: row["verdict"] for row in found["table"]}
-    said = {one: verdict.partition(",")[0] for one, verdict in zip(named.split(", "), quoted, strict=True)}
-    assert said == {one: verdicts[one] for one in said}
+    verdicts = {row["here"]: row["verdict"] for row in found["table"]}
+    told = re.findall(r"^\d\. .*?\*\*Here:\*\* (.*?) \*([a-z ]+)\*", readme, re.MULTILINE)
+    assert len(told) == 6 and all(verdicts[here] == verdict for here, verdict in told)
