@@ -164,7 +164,7 @@ def large(found: Stored) -> str:
 
 
 def costs(found: Stored) -> str:
-    """The table of costs of the user guide: whole solutions, and how far a default fall ends from one at the paper's step."""
+    """The table of costs of the user guide: whole solutions, and where a default fall ends beside the paper's step."""
     slabs = (row for row in found["fall"]["scenes"] if row["scene"].startswith("slab, "))
     errors = {row["disks"]: row.get("floor_error") for row in slabs}
     rows: list[dict[str, Any]] = []

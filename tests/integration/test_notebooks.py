@@ -49,8 +49,8 @@ def test_a_stored_notebook_was_executed_from_top_to_bottom(path):
 
 
 def test_the_first_notebook_shows_again_what_is_stored():
-    """Every text, and as many pictures, from a kernel of its own."""
+    """Every text, and as many pictures, from a kernel of its own: two that are drawn, and that of a result."""
     stored = read("first_response")
     again = notebooks.executed(notebooks.FOLDER / "first_response.ipynb")
     assert shown(again) == shown(stored)
-    assert sum("image/png" in output.get("data", {}) for output in outputs(again)) == 2
+    assert sum("image/png" in output.get("data", {}) for output in outputs(again)) == 3
