@@ -9,6 +9,7 @@ import pty
 import re
 import resource
 import select
+import shlex
 import shutil
 import signal
 import subprocess
@@ -270,7 +271,7 @@ def test_an_interrupted_command_ends_quietly(tmp_path):
 
 
 def test_a_shell_takes_the_floating_point_choices():
-    code = f'eval "$({sys.executable} -m granular_response.machine.floating_point)"; env'
+    code = f'eval "$({shlex.quote(sys.executable)} -m granular_response.machine.floating_point)"; env'
     environment = {k: v for k, v in os.environ.items() if k not in floating_point.variables()}
     done = subprocess.run(["sh", "-c", code], env=environment, capture_output=True, text=True, check=True)
     assert {f"{name}={value}" for name, value in floating_point.variables().items()} <= set(done.stdout.splitlines())
