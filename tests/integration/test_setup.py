@@ -71,7 +71,7 @@ def asked():
 
 def whole(setup):
     setup.main([])
-    assert setup.complete("paper") and len(asked()) == 2
+    assert setup.usable() and setup.installed("paper") and len(asked()) == 2
 
 
 def test_versions_come_first_then_the_packages_of_the_checkout_and_nothing_twice(setup, capsys):
@@ -148,6 +148,10 @@ def test_another_python_is_taken_only_where_it_was_asked_for(setup, monkeypatch)
     whole(setup)
     monkeypatch.setattr(setup.sys, "version_info", (3, 99, 0))
     assert setup.usable() and not setup.usable(this_python=True)
+    setup.main([])
+    assert asked() == []
+    setup.main(["--this-python"])
+    assert len(asked()) == 2
 
 
 def test_what_pip_did_not_end_is_done_again(setup):
@@ -156,7 +160,7 @@ def test_what_pip_did_not_end_is_done_again(setup):
         setup.main([])
     Path("pip-fails").unlink()
     asked()
-    assert not setup.complete("paper")
+    assert not (setup.usable() and setup.installed("paper"))
     whole(setup)
 
 
