@@ -19,7 +19,7 @@ from pathlib import Path
 
 LIBRARY, PAPER = "granular_response", "granular_response_paper"
 #: Commands of the reproduction; all others are the library's.
-OF_THE_PAPER = {"simulate", "draw", "summary", "claims", "groups", "reproduce", "report"}
+OF_THE_PAPER = {"simulate", "draw", "claims", "reproduce", "report"}
 #: A scene that is solved at once.
 SCENE = """\
 packing: {kind: slab, layers: 3, disks_per_row: 5}

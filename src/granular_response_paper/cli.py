@@ -34,9 +34,6 @@ CollectionName = Annotated[
         autocompletion=lambda: [one.name for one in collections()],
     ),
 ]
-#: Folders and files that several commands take.
-Root = Annotated[Path, typer.Option(help="Folder of the checkout.")]
-GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
 
 
 @commands.command(
@@ -78,7 +75,7 @@ def simulate(
 @commands.command("draw pile_dip", "draw pile_dip --formats pdf,svg", "draw pile_dip --data other.nc -o other-figures")
 def draw(
     group: Group,
-    data: GroupData = None,
+    data: Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")] = None,
     output: Annotated[Path | None, output_option(help="Folder of the figures; figures/GROUP if not given.")] = None,
     formats: Annotated[str, typer.Option(help="Further formats beside PNG, separated by commas: pdf, svg.")] = "",
 ) -> None:
@@ -92,7 +89,7 @@ def draw(
         typer.echo(str(path))
 
 
-@commands.command("claims", "claims --list", "claims --list --figure 17")
+@commands.command("claims", "claims --list", "claims --figure 17")
 def claims(
     data: Annotated[
         Path | None, typer.Option(help="Folder of the datasets; that of the collection if not given.")
@@ -100,33 +97,31 @@ def claims(
     output: Annotated[
         Path | None, output_option(help="Table of claims (JSON); figures/claims.json if not given.")
     ] = None,
-    others: Annotated[
-        Path | None,
-        typer.Option(help="Summary of other preparations, left out if not there; extensions/summary.nc if not given."),
-    ] = None,
     name: CollectionName = PAPER.name,
     every: Annotated[bool, typer.Option("--list", help="Print the stored table without judging again.")] = False,
-    figure: Annotated[
-        int | None, typer.Option(help="With --list: the claims of one figure of the paper alone.")
-    ] = None,
+    figure: Annotated[int | None, typer.Option(help="Print the stored claims on this figure of the paper.")] = None,
 ) -> None:
     """Compare the claims with the stored datasets.
 
-    A table with verdicts on groups whose datasets are not here is not overwritten.
+    A table with verdicts on groups whose datasets are not here is not overwritten. The stored table of the extensions
+    comes with the summary of other preparations, which the claims of the paper read.
     """
     from .claims import preparations as kept
     from .claims import table
+    from .claims.claim import PREPARATION
 
-    if figure is not None and not every:
-        raise typer.BadParameter("must stand with --list: without it all claims are judged anew", param_hint="--figure")
     loaded()
-    one = collection(name)
+    one, every = collection(name), every or figure is not None
+    source = one.here / kept.SOURCE.relative_to(kept.OUTPUT.parent)
+    summarised = PREPARATION in one.groups and not every and data is output is None and source.exists()
     output, data = output or one.here / table.OUTPUT, data or one.here / "data"
     if not every:
         checkout.check(one)
-        kept.check(others or kept.OUTPUT)
+        kept.check()
         _keep_verdicts(output, [group for group in table.groups_read(one) if not (data / f"{group}.nc").exists()])
-    found = table.read(output) if every else table.write(output, data, others or kept.OUTPUT, collection=one)
+    found = table.read(output) if every else table.write(output, data, kept.OUTPUT, collection=one)
+    if summarised:
+        typer.echo(str(kept.write(source, one.here / kept.OUTPUT.name)))
     rows = [row for row in found["table"] if figure is None or figure in row["figures"]]
     if every and not rows:
         typer.echo(f"no claim on figure {figure}")
@@ -157,80 +152,34 @@ def _keep_verdicts(output: Path, absent: list[str]) -> None:
         )
 
 
-@commands.command("summary", "summary --data elsewhere/preparation.nc")
-def summary(
-    data: Annotated[
-        Path | None, typer.Option(help="Datasets of the group preparation; those of the extensions if not given.")
-    ] = None,
-    output: Annotated[Path | None, output_option(help="Summary (netCDF); extensions/summary.nc if not given.")] = None,
-) -> None:
-    """Write the forces of the events of the slab in other preparations, which the claims read."""
-    from .claims import preparations as writing
-    from .claims.claim import PREPARATION
-
-    loaded()
-    checkout.check(collection_of(PREPARATION))
-    typer.echo(str(writing.write(data or writing.SOURCE, output or writing.OUTPUT)))
-
-
-@commands.command("groups", "groups --collection extensions")
-def groups(name: CollectionName = PAPER.name, root: Root = Path(".")) -> None:
-    """List the figure groups of a collection: figures, stored run time on two cores, question."""
-    from granular_response.inputs import read_json
-
-    from . import captions
-
-    one, stored = collection(name), root / "benchmarks" / "pipeline.json"
-    runs = read_json(stored)["runs"] if stored.exists() else []
-    times = {row["stage"]: row["seconds"] for row in runs if row["collection"] == name}
-    for group in one.groups:
-        file = root / one.folder / "figures" / group / captions.FILE
-        said = read_json(file) if file.exists() else {}  # a new group is not drawn yet
-        numbers = sorted({entry["figure"] for entry in said.values() if entry.get("figure")})
-        shown = f"Fig. {', '.join(map(str, numbers))}" if numbers else "-"
-        parts = [times.get(f"{part}@{group}") for part in ("simulate", "draw")]
-        seconds = f"{sum(filter(None, parts)):.0f} s" if None not in parts else "-"
-        typer.echo(f"{group:26} {shown:22} {seconds:>6}  {captions.question(group)}")
-
-
 @commands.command("reproduce", "reproduce --collection extensions", "reproduce --force")
 def reproduce(
     name: CollectionName = PAPER.name,
-    root: Root = Path("."),
     force: Annotated[bool, typer.Option("--force", help="Run every stage, also those that are up to date.")] = False,
 ) -> None:
     """Run every stage of a collection that is out of date, and show the progress."""
     from .pipeline import reproduce as running
 
     arguments = ["--force"] if force else []
-    status = running.reproduce(collection(name), root, arguments=arguments, say=typer.echo)
-    if status:
+    if status := running.reproduce(collection(name), Path(), arguments=arguments, say=typer.echo):
         raise typer.Exit(status)
 
 
-@commands.command("report", "report --self-contained -o page.html", "report --fragments docs/_generated")
+@commands.command("report", "report --fragments docs/_generated")
 def report(
-    output: Annotated[Path | None, output_option(help="Page to make (HTML); figures/report.html if not given.")] = None,
-    root: Annotated[
-        Path | None, typer.Option(help="Folder with figures/ and data/; that of the collection if not given.")
-    ] = None,
     name: CollectionName = PAPER.name,
-    embedded: Annotated[
-        bool, typer.Option("--self-contained", help="Put the pictures into the page, which otherwise shows the files.")
-    ] = False,
     fragments: Annotated[
         Path | None, typer.Option(help="Write the tables that documents include into this folder too.")
     ] = None,
 ) -> None:
-    """Make the page that shows results, figures and verdicts. It needs no network."""
+    """Make the page that shows results, figures and verdicts, figures/report.html. It needs no network."""
     from . import report as reporting
 
     loaded()
     one = collection(name)
     checkout.check(one)
-    output, root = output or one.here / reporting.OUTPUT, root or one.here
-    typer.echo(str(reporting.write(output, root, collection=one, embedded=embedded)))
-    for path in reporting.write_fragments(fragments, root, collection=one) if fragments else ():
+    typer.echo(str(reporting.write(one.here, collection=one)))
+    for path in reporting.write_fragments(fragments, one.here, collection=one) if fragments else ():
         typer.echo(str(path))
 
 

@@ -25,7 +25,6 @@ from places import DATA, ROOT
 from granular_response import __version__
 from granular_response.machine import floating_point
 from granular_response.store import files as store
-from granular_response_paper.registry import collections
 
 PROGRAMS = {LIBRARY: "granular-response", PAPER: "granular-response-paper"}
 
@@ -98,13 +97,6 @@ def test_stored_claims_are_listed_and_not_judged_anew(tmp_path):
     drawn = succeeded("claims", "--list", "--figure", 7, folder=tmp_path).splitlines()
     listed = [row["id"] for row in rows if 7 in row["figures"]]
     assert [line.split()[0] for line in drawn[:-3] if line[0] != " "] == listed != []
-
-
-@pytest.mark.parametrize("collection", collections(), ids=lambda one: one.name)
-def test_groups_are_listed_with_their_questions(collection):
-    lines = succeeded("groups", "--collection", collection.name, "--root", ROOT).splitlines()
-    assert [line.split()[0] for line in lines] == list(collection.groups)
-    assert all(line.endswith("?") for line in lines)
 
 
 @pytest.mark.parametrize(
@@ -190,7 +182,7 @@ def test_run_by_another_method(folder):
         (["simulate", "nonsense"], ["nonsense: no such figure group, groups of the paper: ", "the extensions: "]),
         (["simulate", "theory"], ["params.yaml: cannot be read"]),
         (["draw", "theory"], ["data/theory.nc: no such file"]),
-        (["groups", "--collection", "extras"], ["extras: no such collection, must be one of paper, extensions"]),
+        (["claims", "--collection", "extras"], ["extras: no such collection, must be one of paper, extensions"]),
         (["keys", "magic"], ["no key of a scene begins with magic", "protocol"]),
     ],
 )

@@ -29,11 +29,9 @@ COMMANDS = {
     "continue": (["continue", "result.nc", "--to", "2"], ["result.nc"]),
     "simulate": (["simulate", "theory", "--params", "params.yaml"], ["params.yaml"]),
     "draw": (["draw", "theory", "--data", "theory/fig01_predictions.png"], ["theory"]),
-    "summary": (["summary", "--data", "preparation.nc"], ["preparation.nc"]),
     "export": (["export", "result.nc"], ["result.nc"]),
     "plot": (["plot", "result.pdf"], ["result.pdf"]),
-    "claims": (["claims", "--data", "data", "--others", "others.nc"], ["data/torque.nc", "others.nc"]),
-    "report": (["report", "--root", "."], ["data/torque.nc", "figures/claims.json", "figures/a.png"]),
+    "claims": (["claims"], ["data/torque.nc", "extensions/summary.nc"]),
 }
 
 
@@ -47,14 +45,13 @@ def inputs(tmp_path_factory) -> Path:
     (folder / "scene.yaml").write_text(SCENE)
     (folder / "table.yaml").write_text(TABLE)
     (folder / "disks.nc").write_text("x,z,radius\n2,1,1\n4,1,1\n")
-    for name in ("data", "figures", "theory"):
+    for name in ("data", "extensions", "figures", "theory"):
         (folder / name).mkdir()
     store.write(folder / "data" / "torque.nc", xr.Dataset())
     events = xr.Dataset({name: ("event", ["first_opening"]) for name in preparations.COLUMNS})
     for name, one in events.variables.items():
         one.attrs = {"long_name": name, "units": "1"}
-    store.write(folder / "preparation.nc", {"events": events}, {"group": "preparation"})
-    shutil.copy(folder / "preparation.nc", folder / "others.nc")
+    store.write(folder / "extensions" / "summary.nc", {"events": events}, {"group": "preparation"})
     for path in ("figures/claims.json", "figures/a.png"):
         (folder / path).write_text("{}")
     shutil.copy(ROOT / "params.yaml", folder)

@@ -27,7 +27,7 @@ from granular_response_paper.registry import PAPER, Collection, GroupError, coll
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C, where PyYAML has it: every process reads these files
 COLLECTIONS = collections()
-STAGES = {"simulate": "pipeline.simulation", "draw": "pipeline.drawing", "summary": "claims.preparations"}
+STAGES = {"simulate": "pipeline.simulation", "draw": "pipeline.drawing"}
 IDS = {"ids": lambda one: one.name}
 
 

@@ -36,7 +36,7 @@ def check(summary: Path = OUTPUT) -> None:
     simulated = re.search(rf"^  simulate@{PREPARATION}:\n(?:   .*\n)*?{written}", read_text(lock), re.MULTILINE)
     if simulated and simulated[1] != store.read_attributes(summary).get("source_md5"):
         raise ClaimsError(
-            f"{summary}: is older than {PREPARATION}.nc of {lock}; renew it by dvc repro summary in {summary.parent}"
+            f"{summary}: is older than {PREPARATION}.nc of {lock}; renew it by dvc repro claims in {summary.parent}"
         )
 
 

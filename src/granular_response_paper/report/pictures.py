@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-import base64
-import io
-import os
 import re
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from PIL import Image
 
 from granular_response.inputs import read_json
-from granular_response.machine import threads
 from granular_response_paper import captions
 from granular_response_paper.registry import collection_of, group_path
 
 #: Pixels of the page per pixel of a drawn picture, which has 200 to an inch, and the most of a picture.
 SHOWN, WIDEST = 0.62, 680
-
-#: How hard smooth maps are compressed, from 0 to 100.
-MAP_QUALITY = 85
 
 #: Of 255: a picture that is brighter on average is a plot on white paper, which a dark page shows inverted.
 PAPER = 160.0
@@ -38,7 +29,6 @@ class Picture:
 
     stem: str
     group: str
-    source: str  #: address of the picture, or a data URI with it
     width: int
     height: int
     shown: int  #: width on a wide screen in pixels of the page
@@ -86,17 +76,14 @@ class Picture:
         return f"{self.title}. {self.alternative}".strip()
 
 
-def collect(folder: Path, page: Path, *, embedded: bool = False) -> list[Picture]:
-    """All pictures ``folder/GROUP/STEM.png`` with their captions, by stem.
+def collect(folder: Path) -> list[Picture]:
+    """All pictures ``GROUP/STEM.png`` of a folder with their captions, by stem, as a page in the folder shows them.
 
-    The page in the folder ``page`` shows the files, or holds them if they are ``embedded``. Raises ValueError if a file
-    of captions is none.
+    Raises ValueError if a file of captions is none.
     """
     said = _said(folder)
     paths = sorted(folder.glob("*/*.png"), key=lambda path: (path.stem, path.parent.name))
-    with threads.using(threads.cores()), threads.mapping() as several:
-        found = several(partial(shown, page=page, embedded=embedded), paths)
-    return [replace(plain, **said.get((plain.group, plain.stem), {})) for plain in found]
+    return [_shown(path, said.get((path.parent.name, path.stem), {})) for path in paths]
 
 
 def _said(folder: Path) -> dict[tuple[str, str], dict[str, str]]:
@@ -113,36 +100,9 @@ def _said(folder: Path) -> dict[tuple[str, str], dict[str, str]]:
     return found
 
 
-def shown(path: Path, page: Path, *, embedded: bool = False) -> Picture:
-    """A drawn picture as the page in a folder shows it.
-
-    Embedded it has as many pixels as drawn in 256 colours, a third as large as the PNG; a smooth map is in all colours,
-    with little loss, which is smaller.
-    """
+def _shown(path: Path, texts: dict[str, str]) -> Picture:
     with Image.open(path) as image:
-        plain = image.convert("RGB")
-    source = Path(os.path.relpath(path, page)).as_posix()
-    if embedded:
-        few = plain.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).convert("RGB")
-        source = min(_webp(few, lossless=True, quality=76), _webp(plain, quality=MAP_QUALITY), key=len)
-    return Picture(
-        path.stem,
-        path.parent.name,
-        source,
-        plain.width,
-        plain.height,
-        min(round(SHOWN * plain.width), WIDEST),
-        bool(np.asarray(plain.reduce(8)).mean() > PAPER),
-    )
-
-
-def address(image: bytes, name: str, embedded: bool) -> tuple[str, int, int]:
-    """Of a PNG that stands beside the page under a name, or in it if ``embedded``, with its width and height."""
-    with Image.open(io.BytesIO(image)) as picture:
-        return (_webp(picture, lossless=True, quality=76) if embedded else name), picture.width, picture.height
-
-
-def _webp(image: Image.Image, **options: Any) -> str:
-    buffer = io.BytesIO()
-    image.save(buffer, format="WEBP", method=4, **options)
-    return "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode()
+        width, height = image.size
+        plot = float(np.asarray(image.convert("RGB").reduce(8)).mean()) > PAPER
+    shown = min(round(SHOWN * width), WIDEST)
+    return Picture(path.stem, path.parent.name, width, height, shown, plot, **texts)
