@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import fcntl
-import os
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from copy import deepcopy
 from functools import lru_cache
 from pathlib import Path
@@ -86,8 +82,7 @@ def simulate(
     Finished tasks of its sweeps are kept beside the output until it is whole, so a run that was interrupted
     continues; rest states are kept there for other groups.
 
-    Raises what ``parameters`` raises, and GroupError while another run makes the same file, or where its parameters
-    leave nothing to be measured.
+    Raises what ``parameters`` raises, and GroupError where its parameters leave nothing to be measured.
     """
     function = group_member(group, "simulate", "simulate")
     given, described = parameters(group, parameter_file)
@@ -96,8 +91,7 @@ def simulate(
     kept = _checkpoint(output)
     folders = {"checkpoint": kept, "rest_states": output.parent.absolute() / REST_STATES}
     packages = dict.fromkeys((PACKAGE, collection_of(group).package.partition(".")[0]))
-    resources = using(workers=workers, progress=progress, packages=(*packages,), **folders)
-    with _alone(kept, output), resources:
+    with using(workers=workers, progress=progress, packages=(*packages,), **folders):
         try:
             datasets = function(described)
         except SceneError as error:
@@ -119,28 +113,3 @@ def finished(group: str, output: Path | None = None) -> int:
 
 def _checkpoint(output: Path) -> Path:
     return output.parent / f".{output.stem}.checkpoint"
-
-
-@contextmanager
-def _alone(folder: Path, output: Path) -> Iterator[None]:
-    """Hold the checkpoint of ``output`` against other runs, which would remove it when they are done.
-
-    The folder itself is locked, so a run that was killed leaves no lock behind. Where there can be no folder, or the
-    file system knows no locks, nothing is held: checkpoints are optional.
-    """
-    held = None
-    with suppress(OSError):
-        folder.mkdir(parents=True, exist_ok=True)
-        held = os.open(folder, os.O_RDONLY)
-        try:
-            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            os.close(held)
-            raise GroupError(f"{output}: another run is making it; wait for it, or give another --output") from None
-    try:
-        yield
-    finally:
-        if held is not None:
-            with suppress(OSError):
-                folder.rmdir()  # if nothing was kept
-            os.close(held)
