@@ -81,7 +81,7 @@ def test_without_friction_forces_are_in_proportion_to_the_confinement(datasets):
 
 def test_between_walls_two_peaks_come_where_the_older_study_finds_them(datasets, parameters):
     one = of(datasets, "walls").isel(slab=0)
-    slab = frictionless.Slab(int(one["layers"]), int(one["disks_per_row"]), float(one["normal_stiffness"]))
+    slab = frictionless.OrderedSlab(int(one["layers"]), int(one["disks_per_row"]), float(one["normal_stiffness"]))
     scene = slab.scene(parameters.base.updated({"contact.friction": 0.0}))
     forces = tuple(np.geomspace(0.2, 4.0, 12).tolist())
     event = next(one for one in frictionless.solve(scene, forces, 0.1, (), False).events if one.name == "crossover")

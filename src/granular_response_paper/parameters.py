@@ -111,6 +111,20 @@ class Common(Checked):
     method: Method = Field(description="protocol.method of the scenes.")
 
 
+class Loading(Description):
+    """Growing forces on a slab, in mean disk weights."""
+
+    friction: Ratio = Field(description="Between disks.")
+    forces: Growing
+
+
+class EqualRows(Description):
+    """The text's own geometry: as many disks in every row."""
+
+    layers: Count
+    disks: Count
+
+
 class SceneGroup(Common):
     """A group whose scenes are changes to one base scene."""
 

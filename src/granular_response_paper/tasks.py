@@ -8,13 +8,13 @@ from typing import Any, TypeVar
 
 from granular_response.sweeps.tasks import map_tasks
 
-Outcome = TypeVar("Outcome")
+Found = TypeVar("Found")
 Place = TypeVar("Place", bound=Hashable)
 
 
 def computed(
-    tasks: Mapping[Place, Callable[[], Outcome]], what: str, *, work: Callable[[Place], Any] | None = None
-) -> dict[Place, Outcome]:
+    tasks: Mapping[Place, Callable[[], Found]], what: str, *, work: Callable[[Place], Any] | None = None
+) -> dict[Place, Found]:
     """What each task gives, computed wherever there is room, in the order of ``tasks``.
 
     A task is a call with its arguments, ``functools.partial(compute, scene, ...)``: of a function of a module, with

@@ -7,7 +7,7 @@ import reduced
 
 from granular_response.solvers.problem import Problem
 from granular_response_paper.groups.frictionless_crossover import simulate as study
-from granular_response_paper.groups.frictionless_crossover.simulate.slab import Slab, new_neighbours, settle
+from granular_response_paper.groups.frictionless_crossover.simulate.slab import OrderedSlab, new_neighbours, settle
 
 BASE = study.Parameters(**reduced.parameters("frictionless_crossover")).base
 
@@ -58,7 +58,7 @@ def test_stored_states_give_the_stored_measurements(datasets) -> None:
 
 
 def test_new_neighbours_are_touching_pairs_that_were_apart() -> None:
-    problem = Problem.from_scene(Slab(3, 7, 3000.0).scene(BASE))
+    problem = Problem.from_scene(OrderedSlab(3, 7, 3000.0).scene(BASE))
     packing = problem.packing
     pushed = packing.position.copy()
     pushed[:, 0] *= 0.999
@@ -76,7 +76,7 @@ def test_new_neighbours_are_touching_pairs_that_were_apart() -> None:
 
 def test_soft_disks_are_settled_by_dynamics() -> None:
     """Where the lattice does not hold, the rest state comes from the fall; elsewhere from the minimum."""
-    soft, stiff = Slab(8, 24, 20.0), Slab(8, 24, 3000.0)
+    soft, stiff = OrderedSlab(8, 24, 20.0), OrderedSlab(8, 24, 3000.0)
     packing = Problem.from_scene(soft.scene(BASE)).packing
     fallen, held = settle(soft.scene(BASE)), settle(stiff.scene(BASE))
     assert fallen.certificate.stable

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from granular_response_paper.parameters import Checks, Path, SceneGroup
+from granular_response.scene.base import Fraction, Ratio
+from granular_response_paper.parameters import Checked, Checks, Path, SceneGroup
+
+
+class Material(Checked):
+    """What packings of a case are made of."""
+
+    polydispersity: Fraction = Field(description="delta.")
+    friction: Ratio = Field(description="Between disks.")
 
 
 class SurveyedGroup(SceneGroup):

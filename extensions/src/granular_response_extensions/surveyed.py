@@ -30,7 +30,7 @@ from granular_response_paper.registry import group_member
 from granular_response_paper.survey.simulate import MECHANICS, Block
 from granular_response_paper.tasks import computed
 
-Outcome = TypeVar("Outcome")
+Found = TypeVar("Found")
 #: A record of what tells packings of a group apart.
 Key = TypeVar("Key", bound=Hashable)
 #: What a group calls a packing by.
@@ -83,7 +83,7 @@ def dataset(outcomes: Mapping[Any, Any]) -> xr.Dataset:
     return found.assign_coords(table(list(outcomes), ALONG).variables)
 
 
-def read(path: str | Path, key: type[Key], kind: type[Outcome]) -> dict[Key, Outcome]:
+def read(path: str | Path, key: type[Key], kind: type[Found]) -> dict[Key, Found]:
     """Stored outcomes of a ``kind`` by their keys, in double precision.
 
     Raises StoreError if the file cannot be read, or holds no packings of this kind.
@@ -113,11 +113,11 @@ def measured(
     group: Group,
     what: str,
     packings: Callable[..., Mapping[Place, Any]],
-    task: Callable[[Group, Any], Callable[[], Outcome]],
-    kind: type[Outcome],
+    task: Callable[[Group, Any], Callable[[], Found]],
+    kind: type[Found],
     *,
     work: Callable[[Place], Any] | None = None,
-) -> dict[Place, Outcome]:
+) -> dict[Place, Found]:
     """The outcomes of a group by their places: computed, or as the survey has stored them.
 
     ``packings(group, surveyed=...)`` are what tells them apart, of the survey or all others; ``task`` simulates one.
@@ -128,7 +128,7 @@ def measured(
     return computed(own, what, work=work) | chosen(group.survey_file, kind, packings(group, surveyed=True))
 
 
-def chosen(path: str | None, kind: type[Outcome], keys: Mapping[Place, Any]) -> dict[Place, Outcome]:
+def chosen(path: str | None, kind: type[Found], keys: Mapping[Place, Any]) -> dict[Place, Found]:
     """The outcomes of some packings, by their places in a group; without any, no file is needed.
 
     Raises what :func:`read` raises, and StoreError if one of them is not there: the message names the first.

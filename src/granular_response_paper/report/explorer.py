@@ -59,7 +59,7 @@ PAPER: tuple[tuple[float, float, str, str, tuple[str, ...]], ...] = (
 
 
 @dataclass(frozen=True)
-class Slab:
+class ExploredSlab:
     """A slab at rest and under k growing forces."""
 
     states: tuple[xr.Dataset, ...]  #: with one list of contacts; rest is the first state of each
@@ -92,7 +92,7 @@ def payload(friction: Datasets, phase: Datasets | None = None) -> dict[str, Any]
     }
 
 
-def _described(slab: Slab, contacts: _Contacts, study: Datasets) -> dict[str, Any]:
+def _described(slab: ExploredSlab, contacts: _Contacts, study: Datasets) -> dict[str, Any]:
     """A slab as the page has it; ``study`` has the stored events."""
     measured = slab.measured
     x, response = measured["x"].values, measured["floor_response"].values
@@ -123,7 +123,7 @@ def _rounded(values: FloatArray, digits: int) -> list[float]:
     return [round(float(value), digits) for value in values]
 
 
-def _about(slab: Slab) -> str:
+def _about(slab: ExploredSlab) -> str:
     """The parameters in words."""
     contact, walls = slab.scene.contact, slab.scene.resolved_wall.friction
     ratio = f", k_T/k_N = {contact.stiffness_ratio:g}" if slab.friction or walls else ""
@@ -142,7 +142,7 @@ def _here(datasets: Datasets, friction: float, names: Sequence[str]) -> str:
     return ", ".join(text(Quantity.bracket(*ends), "mg") for ends in events)
 
 
-def _slabs(datasets: Datasets) -> Iterator[Slab]:
+def _slabs(datasets: Datasets) -> Iterator[ExploredSlab]:
     """The slabs of Figs. 6 to 9 and 16: the load path, then dynamics from rest from its first force on."""
     for friction in FRICTIONS:
         name = f"states_mu_{friction:g}"
@@ -166,7 +166,7 @@ def _slabs(datasets: Datasets) -> Iterator[Slab]:
                     rows.append(measured[MEASURED].isel(force=int(here[0])))
         scene = Scene.from_text(datasets[name].attrs["scene"])
         shown = xr.concat(rows, "force", coords="minimal", compat="override")
-        yield Slab(tuple(states for states, _ in sources), chosen, shown, friction, scene, motion)
+        yield ExploredSlab(tuple(states for states, _ in sources), chosen, shown, friction, scene, motion)
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ class _Contacts:
     height: float
 
     @classmethod
-    def of(cls, slab: Slab) -> _Contacts:
+    def of(cls, slab: ExploredSlab) -> _Contacts:
         rest = slab.states[0].isel(state=0)
         first, second = rest["contact_disk"].values, rest["contact_partner"].values
         place = rest["position"].values.astype(float)

@@ -19,7 +19,7 @@ Ends = tuple[Positive, Positive]
 LATTICE = 60.0
 
 
-class Case(Description):
+class LoadedPacking(Description):
     """One packing under one load."""
 
     packing: str = Field(description="A name among the packings.")
@@ -36,7 +36,7 @@ class Case(Description):
 class Parameters(SceneGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, "packing", "loads")] = Field(description="Material and preparation.")
     packings: dict[str, Packing]
-    cases: Annotated[tuple[Case, ...], AfterValidator(some)]
+    cases: Annotated[tuple[LoadedPacking, ...], AfterValidator(some)]
     largest_move: Positive = Field(description="Of the loaded disk, beyond which a packing does not hold the force.")
     depths: Count = Field(description="Lines below the load, a mean radius apart.")
     reach: Count = Field(description="Of profiles, to both sides of the load, in radii.")
@@ -59,7 +59,7 @@ class Parameters(SceneGroup):
         """Places of profiles from the load, half a radius apart."""
         return np.arange(-self.reach, self.reach + 0.5, 0.5)
 
-    def scene_of(self, case: Case, realization: int) -> Scene:
+    def scene_of(self, case: LoadedPacking, realization: int) -> Scene:
         """One realization, with a load of one disk weight."""
         packing = self.packings[case.packing].model_copy(update={"realization": realization})
         whole: dict[str, Any] = dict(self.base) | {"packing": packing}

@@ -7,19 +7,17 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, Fraction, Part, Positive, Ratio
-from granular_response_extensions.parameters import SurveyedGroup
+from granular_response.scene.base import Count, Part, Positive
+from granular_response_extensions.parameters import Material, SurveyedGroup
 from granular_response_paper.parameters import UNIT_LOAD, Checks, Growing, over, some
 
 #: Keys of the scenes that cases decide.
 OF_CASES = ("packing.polydispersity", "packing.realization", "contact.friction", "loads")
 
 
-class Case(Description):
-    """Packings of one material."""
+class CycledMaterial(Material):
+    """Packings under a load that turns."""
 
-    polydispersity: Fraction = Field(description="delta.")
-    friction: Ratio = Field(description="Between disks.")
     realizations: Count = Field(1, description="One is all there are of a lattice.")
     surveyed: Annotated[int, Field(strict=True, ge=0)] = Field(
         0, description="Further realizations, that the survey simulates."
@@ -31,7 +29,7 @@ class Case(Description):
 class Parameters(SurveyedGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of the lattices.")
     disordered: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of all others.")
-    cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials.")
+    cases: Annotated[tuple[CycledMaterial, ...], AfterValidator(some)] = Field(description="Materials.")
     left: Part = Field(
         description="A loop is reversible if it leaves no floor force changed by more than this part of the largest "
         "change under the load."
@@ -48,7 +46,7 @@ class Parameters(SurveyedGroup):
         materials = {(case.polydispersity, case.friction) for case in self.cases}
         yield "cases", len(materials) == len(self.cases), "must have each material once"
 
-    def of(self, case: Case, realization: int) -> Scene:
+    def of(self, case: CycledMaterial, realization: int) -> Scene:
         """The scene of one packing."""
         base = self.disordered if case.polydispersity else self.scene
         return base.updated(

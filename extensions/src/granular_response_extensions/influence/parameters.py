@@ -7,21 +7,20 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, Fraction, Positive, Ratio
+from granular_response.scene.base import Count, Positive
+from granular_response_extensions.parameters import Material
 from granular_response_paper.parameters import MATERIAL, UNIT_LOAD, Checks, Counts, Positives, SceneGroup, over, some
 
 
-class Case(Description):
-    """Packings of one material."""
+class Packings(Material):
+    """Packings of one material, whose walls rub as the disks."""
 
-    polydispersity: Fraction = Field(description="delta.")
-    friction: Ratio = Field(description="Between disks and of the walls.")
     realizations: Count = Field(1, description="One is all there are of a lattice.")
 
 
 class Parameters(SceneGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, *MATERIAL, "loads")] = Field(description="Base scene.")
-    cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials.")
+    cases: Annotated[tuple[Packings, ...], AfterValidator(some)] = Field(description="Materials.")
     separations: Counts = Field(description="Of the two halves of a load from its disk, in places of the row.")
     margin: Positive = Field(description="From the side walls, within which no load is looked at, in radii.")
     fitted: Positives = Field(description="Least and largest height over distance of the halves that are fitted.")

@@ -7,9 +7,9 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio, allowed
-from granular_response_extensions.parameters import SurveyedGroup
-from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Checked, Checks, Growing, over, some
+from granular_response.scene.base import Count, Index, Part, Positive, allowed
+from granular_response_extensions.parameters import Material, SurveyedGroup
+from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Checked, Checks, Growing, Loading, over, some
 
 Rows = Annotated[int, Field(strict=True, ge=5), allowed("must be a whole number from 5 on")]
 Margin = Annotated[float, Field(strict=True, ge=0, lt=0.4), allowed("must be from 0 to below 0.4")]
@@ -20,11 +20,9 @@ _OF_A_LATTICE = (
 )  # fmt: skip
 
 
-class Case(Checked):
-    """Packings of one material."""
+class SizedMaterial(Material):
+    """Packings of several sizes; the floor rubs as the disks."""
 
-    polydispersity: Fraction = Field(description="delta.")
-    friction: Ratio = Field(description="Between disks and of the floor.")
     layers: Annotated[tuple[Rows, ...], AfterValidator(some)] = Field(description="Sizes.")
     realizations: Annotated[tuple[Index, ...], AfterValidator(some)] = Field(description="As many for each size.")
     surveyed: tuple[Index, ...] = Field((), description="Further ones for each size, that the survey simulates.")
@@ -41,19 +39,17 @@ class Case(Checked):
         yield "realizations", each, "must be 1 or more for each of the layers, with those of the survey"
 
 
-class Slab(Description):
+class LoadedSlab(Loading):
     """A slab under a growing force."""
 
-    friction: Ratio = Field(description="Between disks.")
-    forces: Growing = Field(description="In mean disk weights.")
     shown: Positive = Field(description="The force whose map is drawn, or the next one above it.")
 
 
-class Loaded(Checked):
+class LoadedSlabs(Checked):
     """Incremental moduli of lattices under load."""
 
     scene: Annotated[Scene, over(UNIT_LOAD, *_OF_A_LATTICE)] = Field(default=UNIT_LOAD, description="A lattice.")
-    slabs: Annotated[tuple[Slab, ...], AfterValidator(some)] = Field(description="One for each friction.")
+    slabs: Annotated[tuple[LoadedSlab, ...], AfterValidator(some)] = Field(description="One for each friction.")
     widths: Growing = Field(description="w of the Gaussian over which fields are averaged, in radii.")
     smoothing: Positive = Field(description="w of the Gaussian under which floor responses are compared, in radii.")
     horizontal_waves: Count = Field(description="Highest half waves of body forces along x.")
@@ -72,8 +68,8 @@ class Parameters(SurveyedGroup):
     margin: Margin = Field(description="Part of the rows at either end over which no modulus is averaged.")
     width: Positive = Field(description="w of the Gaussian over the response, in radii.")
     wide: Part = Field(description="w of a second one, as a part of the height.")
-    cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Disordered packings.")
-    loaded: Loaded = Field(description="Lattices under load.")
+    cases: Annotated[tuple[SizedMaterial, ...], AfterValidator(some)] = Field(description="Disordered packings.")
+    loaded: LoadedSlabs = Field(description="Lattices under load.")
 
     @property
     def surveyed(self) -> bool:

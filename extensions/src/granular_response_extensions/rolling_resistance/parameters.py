@@ -7,18 +7,20 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from granular_response.scene import PilePacking, Scene
-from granular_response.scene.base import Count, Description, NonNegative, Positive
-from granular_response_paper.parameters import UNIT_LOAD, Checks, Coefficients, Growing, Rows, SceneGroup, over, some
+from granular_response.scene.base import Count, NonNegative, Positive
+from granular_response_paper.parameters import (
+    UNIT_LOAD,
+    Checks,
+    Coefficients,
+    Loading,
+    Rows,
+    SceneGroup,
+    over,
+    some,
+)
 
 _ROLLING = ("contact.rolling_friction", "wall.rolling_friction")
 _PILE = Scene(packing=PilePacking(), loads=())
-
-
-class Slab(Description):
-    """A slab under a growing force."""
-
-    friction: Positive = Field(description="Between disks.")
-    forces: Growing = Field(description="In mean disk weights.")
 
 
 class Parameters(SceneGroup):
@@ -35,7 +37,7 @@ class Parameters(SceneGroup):
     tolerance: Positive = Field(description="Width of the bracket of the least friction that holds a pile.")
     moved: Positive = Field(description="A pile holds if no disk moves farther on its way to rest, in radii.")
     scene: Annotated[Scene, over(UNIT_LOAD, "contact.friction", "loads", *_ROLLING)] = Field(description="The slab.")
-    slabs: Annotated[tuple[Slab, ...], AfterValidator(some)] = Field(description="One for each friction.")
+    slabs: Annotated[tuple[Loading, ...], AfterValidator(some)] = Field(description="One for each friction.")
     slab_rolling_frictions: Coefficients = Field(description="Of disks in slabs.")
     shown_forces: tuple[Positive, Positive] = Field(description="Whose stresses are stored: a small and a large one.")
     torques: tuple[Positive, Positive] = Field(

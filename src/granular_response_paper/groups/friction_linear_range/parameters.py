@@ -7,15 +7,17 @@ from typing import Annotated
 from pydantic import Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, NonNegative, Positive, Ratio
-from granular_response_paper.parameters import UNIT_LOAD, Checks, Coefficients, Growing, SceneGroup, over
-
-
-class Extra(Description):
-    """Further forces at one friction."""
-
-    friction: Ratio
-    forces: Growing
+from granular_response.scene.base import Description, NonNegative, Positive, Ratio
+from granular_response_paper.parameters import (
+    UNIT_LOAD,
+    Checks,
+    Coefficients,
+    EqualRows,
+    Growing,
+    Loading,
+    SceneGroup,
+    over,
+)
 
 
 class End(Description):
@@ -33,20 +35,16 @@ class FrictionAxis(Description):
     tolerance: Positive = Field(description="Width of the bracket, as a coefficient of friction.")
 
 
-class LargeForces(Description):
+class LargeForces(Loading):
     """Fig. 16b: dynamics from rest to each force."""
 
-    friction: Ratio
-    forces: Growing
     ramp_time: NonNegative
     time_step: Positive
 
 
-class EqualRows(Description):
-    """The text's own geometry: as many disks in every row."""
+class EqualRowsPaths(EqualRows):
+    """Load paths of it."""
 
-    layers: Count
-    disks: Count
     frictions: Coefficients
     forces: Growing
 
@@ -56,12 +54,12 @@ class Parameters(SceneGroup):
     frictions: Coefficients = Field(description="Of Fig. 6.")
     forces: Growing = Field(description="Of Fig. 6, in mean disk weights.")
     ends: tuple[End, ...] = ()
-    extra_forces: tuple[Extra, ...] = ()
+    extra_forces: tuple[Loading, ...] = Field((), description="Further ones at one friction.")
     states_of: Coefficients = Field(description="Frictions whose states are stored and whose events are all located.")
     asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
     friction_axis: FrictionAxis
     dynamics: LargeForces
-    equal_rows: EqualRows
+    equal_rows: EqualRowsPaths
 
     def checks(self) -> Checks:
         every = self.frictions

@@ -12,7 +12,7 @@ from granular_response.theory.slab import Floor
 from granular_response_paper.parameters import SIZE, UNIT_LOAD, Checked, Checks, Rows, SceneGroup, over, some
 
 
-class Case(Checked):
+class DepthSeries(Checked):
     """One material and shape, at several depths."""
 
     friction: Ratio = Field(description="Between disks.")
@@ -31,7 +31,7 @@ class Parameters(SceneGroup):
         Scene, over(UNIT_LOAD, *SIZE, "contact.friction", "wall.friction", "preparation.gravity", "loads")
     ] = Field(description="Base scene; contact.stiffness_ratio is that of packings with friction.")
     force: Positive = Field(description="Small, in mean disk weights.")
-    cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials and shapes.")
+    cases: Annotated[tuple[DepthSeries, ...], AfterValidator(some)] = Field(description="Materials and shapes.")
 
     def checks(self) -> Checks:
         yield "scene.contact.stiffness_ratio", self.scene.contact.stiffness_ratio > 0.0, "must be above 0"

@@ -7,11 +7,11 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, Index, NonNegative, Positive
-from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, over, some
+from granular_response.scene.base import Description, Index, NonNegative, Positive
+from granular_response_paper.parameters import UNIT_LOAD, EqualRows, Growing, SceneGroup, over, some
 
 
-class Protocol(Description):
+class LoadRamp(Description):
     """How a force is applied, and the forces between which the response loses its symmetry."""
 
     ramp_time: NonNegative
@@ -32,18 +32,16 @@ class Copies(Description):
     seed: Index
 
 
-class Held(Description):
+class DisplacedEquilibria(Description):
     """Equilibria that are displaced a little under constant force."""
 
     forces: Growing
     displacement: Positive
 
 
-class EqualRows(Description):
-    """The text's own geometry: as many disks in every row; and the forces between which symmetry is lost there."""
+class EqualRowsBracket(EqualRows):
+    """The forces between which symmetry is lost there."""
 
-    layers: Count
-    disks: Count
     between: tuple[NonNegative, Positive]
 
 
@@ -53,7 +51,7 @@ class Parameters(SceneGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, "loads", "protocol.ramp_time", "protocol.time_step")] = UNIT_LOAD
     asymmetry: Positive = Field(description="Above which symmetry counts as lost.")
     tolerance: Positive = Field(description="Width of the brackets, in mean disk weights.")
-    protocols: Annotated[tuple[Protocol, ...], AfterValidator(some)] = Field(description="Ramps and steps to try.")
-    equal_rows: EqualRows
+    protocols: Annotated[tuple[LoadRamp, ...], AfterValidator(some)] = Field(description="Ramps and steps to try.")
+    equal_rows: EqualRowsBracket
     copies: Copies
-    held: Held
+    held: DisplacedEquilibria

@@ -30,7 +30,7 @@ from granular_response.studies import Happening, LoadPath, Measures, by_motion
 from granular_response.studies.measures import FIRST_OPENING, REACHES_FLOOR, TWO_PEAKS
 from granular_response.studies.path import NARROW
 from granular_response_extensions.crossover_scaling.parameters import Parameters
-from granular_response_extensions.crossover_scaling.simulate.series import Slab, packings, power_table, slabs
+from granular_response_extensions.crossover_scaling.simulate.series import ScaledSlab, packings, power_table, slabs
 from granular_response_extensions.surveyed import measured
 from granular_response_paper.datasets import labelled
 from granular_response_paper.records import axes, column, columns, record, table
@@ -48,7 +48,7 @@ EVENTS = {
 
 
 @record
-class Outcome:
+class SlabEvents:
     """What a task leaves behind; arrays along its forces."""
 
     confinement: float = column(f"mean force of horizontal contacts in the central third at rest {WEIGHTS}")
@@ -67,7 +67,7 @@ class Outcome:
 
 def compute(
     scene: Scene, visible: float, first_force: float, factor: float, most_forces: int, tolerance: float
-) -> Outcome:
+) -> SlabEvents:
     """The path of one slab; the parameters are those of the group.
 
     Raises what ``rest_state`` and load paths raise.
@@ -95,7 +95,7 @@ def compute(
     small = path.at(SMALL * confinement)
     change = (small.pairs.normal_force - rest.normal_force) / abs(small.load_factor)
     falling = measures.near & rest.touching & (change < 0.0)
-    return Outcome(
+    return SlabEvents(
         confinement,
         float((rest.normal_force[falling] / -change[falling]).min()),
         brackets,
@@ -106,7 +106,7 @@ def compute(
     )
 
 
-def task(asked: Parameters, slab: Slab) -> partial[Outcome]:
+def task(asked: Parameters, slab: ScaledSlab) -> partial[SlabEvents]:
     """One of these slabs."""
     given = asked.visible, asked.first_force, asked.factor, asked.most_forces, asked.tolerance
     return partial(compute, slab.scene(asked.base), *given)
@@ -117,7 +117,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
     Raises SweepError if a slab cannot be solved.
     """
-    done = measured(parameters, "slabs", packings, task, Outcome, work=lambda slab: slab.work)
+    done = measured(parameters, "slabs", packings, task, SlabEvents, work=lambda slab: slab.work)
     found, stored = slabs(parameters), packings(parameters, surveyed=True)
     of, data = table([slab for _, slab in found], "slab"), table([done[slab] for _, slab in found], "slab")
     brackets = {}

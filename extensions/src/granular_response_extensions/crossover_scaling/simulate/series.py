@@ -22,7 +22,7 @@ PAPERS_LAYERS = 15
 
 
 @record
-class Slab:
+class ScaledSlab:
     """One slab; series share what they have in common."""
 
     layers: int = column("number of rows of the slab")
@@ -47,7 +47,7 @@ class Slab:
         return self.layers**2 * self.disks_per_row * (20.0 if self.friction else 1.0)
 
 
-def slabs(parameters: Parameters) -> list[tuple[Series, Slab]]:
+def slabs(parameters: Parameters) -> list[tuple[Series, ScaledSlab]]:
     """Series, each with one of its slabs; a slab that is in several series is there as often."""
     found = []
     for one in parameters.series:
@@ -56,12 +56,12 @@ def slabs(parameters: Parameters) -> list[tuple[Series, Slab]]:
             # odd, so that a row has a disk in the middle
             disks = 2 * int(np.ceil((layers * across - 1e-9 - 1.0) / 2.0)) + 1
             force = constant * (layers / PAPERS_LAYERS if one.confined == "as weight" else 1.0)
-            slab = Slab(layers, disks, one.friction, layers * stiffness, force, one.sides == "periodic")
+            slab = ScaledSlab(layers, disks, one.friction, layers * stiffness, force, one.sides == "periodic")
             found.append((one, slab))
     return found
 
 
-def packings(parameters: Parameters, *, surveyed: bool) -> dict[Slab, Slab]:
+def packings(parameters: Parameters, *, surveyed: bool) -> dict[ScaledSlab, ScaledSlab]:
     """The slabs of the survey, or all others, each once."""
     found = slabs(parameters)
     left = {slab for series, slab in found if slab.layers in series.surveyed}

@@ -21,7 +21,7 @@ from granular_response.state import FLOOR, FloatArray
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import RADII
 from granular_response.studies import LoadPath
-from granular_response_extensions.experiments.parameters import LATTICE, Case, Parameters
+from granular_response_extensions.experiments.parameters import LATTICE, LoadedPacking, Parameters
 from granular_response_extensions.experiments.simulate.widths import DEFINITIONS, FITS, lengths, powers
 from granular_response_paper.datasets import labelled, pictured
 from granular_response_paper.records import axes, column, labels, record, table
@@ -37,7 +37,7 @@ VERTICAL, BETWEEN = 90.0, 75.0
 
 
 @record
-class Outcome:
+class PackingProfiles:
     """One packing under its load."""
 
     moved: float = column(f"how far the load moves its disk {RADII}")
@@ -47,7 +47,7 @@ class Outcome:
 
 
 @record
-class Statistics:
+class MeanProfiles:
     """Of the mean over the packings that hold the force: the value, and 95 % of the bootstrap draws."""
 
     force: FloatArray = column("magnitude of added forces per length and load", "depth", "x", "estimate")
@@ -65,7 +65,7 @@ class Statistics:
     offset: FloatArray = column(f"the straight line at depth 0 {RADII}", "definition", "estimate")
 
 
-def measure(asked: Parameters, case: Case, realization: int) -> Outcome:
+def measure(asked: Parameters, case: LoadedPacking, realization: int) -> PackingProfiles:
     """One packing; raises what the solvers raise."""
     path, force = LoadPath.of(asked.scene_of(case, realization)), case.force
     disk = int(path.problem.load_disk[0])
@@ -80,11 +80,11 @@ def measure(asked: Parameters, case: Case, realization: int) -> Outcome:
         found[:, k] = [line_stress(one, height, middle + asked.x, asked.width) / force for one in (sizes, added)]
         borne = line_forces(added, height)[1].sum() + at_wall[at_side & (z > height)].sum()
         lack = max(lack, float(abs(borne - load) / load))
-    return Outcome(float(np.linalg.norm(loaded.position[disk] - start)), float(start[1]), lack, found)
+    return PackingProfiles(float(np.linalg.norm(loaded.position[disk] - start)), float(start[1]), lack, found)
 
 
 def statistics(asked: Parameters, x: FloatArray, height: float, force: FloatArray, stress: FloatArray) -> dict:
-    """The fields of :class:`Statistics` of mean profiles (depth, x); ``height`` is that of the load."""
+    """The fields of :class:`MeanProfiles` of mean profiles (depth, x); ``height`` is that of the load."""
     depth = np.arange(1.0, asked.depths + 1.0)
     ring = depth[(depth >= asked.ring[0]) & (depth <= asked.ring[1]) & (depth < height)]
     used = (depth >= asked.fitted[0]) & (depth <= asked.fitted[1] * height)
@@ -107,18 +107,18 @@ def statistics(asked: Parameters, x: FloatArray, height: float, force: FloatArra
     }  # fmt: skip
 
 
-def mean_of(asked: Parameters, x: FloatArray, outcomes: list[Outcome]) -> Statistics:
+def mean_of(asked: Parameters, x: FloatArray, outcomes: list[PackingProfiles]) -> MeanProfiles:
     """Of the packings that hold the force; nan with fewer than three."""
     held = [one for one in outcomes if one.moved <= asked.largest_move]
     if len(held) < 3:
         value = statistics(asked, x, 0.0, *np.full((2, asked.depths, len(x)), np.nan))
-        return Statistics(**{name: np.full((*np.shape(one), 3), np.nan) for name, one in value.items()})
+        return MeanProfiles(**{name: np.full((*np.shape(one), 3), np.nan) for name, one in value.items()})
     profiles, height = np.stack([one.profiles for one in held]), float(np.mean([one.height for one in held]))
     value = statistics(asked, x, height, *profiles.mean(axis=0))
     parts = weights(len(held), asked.draws, asked.seed) / len(held)
     drawn = [statistics(asked, x, height, *one) for one in np.einsum("wr,rkdx->wkdx", parts, profiles)]
     ends = {name: np.quantile([draw[name] for draw in drawn], CONFIDENCE, axis=0) for name in value}
-    return Statistics(**{name: np.stack([one, *ends[name]], axis=-1) for name, one in value.items()})
+    return MeanProfiles(**{name: np.stack([one, *ends[name]], axis=-1) for name, one in value.items()})
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:

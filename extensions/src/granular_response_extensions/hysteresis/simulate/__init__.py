@@ -25,31 +25,31 @@ from granular_response.state import FloatArray
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_extensions.hysteresis.parameters import Parameters
-from granular_response_extensions.hysteresis.simulate.loops import EVENTS, Packing, Shown, Turn
+from granular_response_extensions.hysteresis.simulate.loops import EVENTS, CycledPacking, ShownLoop, Turn
 from granular_response_extensions.surveyed import measured
 from granular_response_paper.datasets import labelled
 from granular_response_paper.records import axes, column, columns, labels, parts, record, stacked, table
 
 
 @record
-class Bracket:
+class EventBracket:
     low: float = column(f"force before the event {WEIGHTS}; 0: happened at the first one")
     high: float = column(f"force at which it has happened {WEIGHTS}; nan: not up to low")
 
 
 @record
-class Outcome:
-    """One packing; ``measured`` has a :class:`Turn` in each line, ``brackets`` a :class:`Bracket` of EVENTS."""
+class PackingLoops:
+    """One packing; ``measured`` has a :class:`Turn` in each line, ``brackets`` a :class:`EventBracket` of EVENTS."""
 
     measured: FloatArray = column("; ".join(one.long_name for one in columns(Turn).values()), "line", "quantity")
     brackets: FloatArray = column(
         f"forces {WEIGHTS} before and at: {', '.join(EVENTS)}; nan: not up to low", "event", "bracket"
     )
-    shown: Shown | None = None  #: not of the survey's
+    shown: ShownLoop | None = None  #: not of the survey's
 
 
 @record
-class Key:
+class PackingKey:
     """What tells a packing from others."""
 
     polydispersity: float = column("polydispersity")
@@ -70,13 +70,13 @@ def grid(forces: Sequence[float], increments: int) -> list[float]:
 
 def compute(
     scene: Scene, forces: Sequence[float], increments: int, left: float, width: float, tolerance: float
-) -> Outcome:
+) -> PackingLoops:
     """One packing.
 
     ``width`` is that of the Gaussian at x = 0; 0 for a lattice, whose response is not smoothed. Raises what
     ``LoadPath.of`` and ``loaded_states`` raise.
     """
-    packing = Packing(scene, width)
+    packing = CycledPacking(scene, width)
     path, loads = packing.path, grid(forces, increments)
     first = [path.rest, *path.through(loads[1:])]
     found = []
@@ -86,7 +86,7 @@ def compute(
         further = loaded_states(packing.problem, first[turn], ways)[1]
         states = common_candidates([*first[: turn + 1], *further], packing.problem.packing.radius)
         found.append(packing.turn(states, turn, force, forces[0]))
-    return Outcome(
+    return PackingLoops(
         np.array([astuple(turn) for turn, _ in found], float),
         np.array(packing.events(forces, left, tolerance)),
         found[-1][1],
@@ -98,12 +98,12 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     cases, along = parameters.cases, ("case", "realization")
     # roughly how long a packing takes: friction, then how far it is loaded
     work = [case.forces[-1] * (1.0 + 10.0 * (case.friction > 0.0)) for case in cases]
-    outcomes = measured(parameters, "packings", packings, task, Outcome, work=lambda place: work[place[0]])
+    outcomes = measured(parameters, "packings", packings, task, PackingLoops, work=lambda place: work[place[0]])
     coordinates = labels("case", cases, polydispersity="polydispersity", friction="friction between disks")
     loops = table({at: Turn(*row) for at, row in parts(outcomes, "measured").items()}, *along, "turn")
     force = stacked({(c,): case.forces for c, case in enumerate(cases)}, float)
     loops["force"] = variable(("case", "turn"), force, f"force at which the load turns {WEIGHTS}")
-    events = table({at: Bracket(*ends) for at, ends in parts(outcomes, "brackets").items()}, *along, "event")
+    events = table({at: EventBracket(*ends) for at, ends in parts(outcomes, "brackets").items()}, *along, "event")
     events["definition"] = variable("event", list(EVENTS.values()), "what counts as the event")
     shown = table([outcomes[c, 0].shown for c in range(len(cases))], "case")
     shown = shown.assign_coords(coordinates | axes(branch=(("loading", "unloading", "loading again"), "way")))
@@ -117,17 +117,17 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     return labelled(datasets, parameters.base)
 
 
-def packings(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int], Key]:
+def packings(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int], PackingKey]:
     """The packings of the survey, or all others, by their cases and realizations."""
     return {
-        (c, r): Key(case.polydispersity, case.friction, r)
+        (c, r): PackingKey(case.polydispersity, case.friction, r)
         for c, case in enumerate(parameters.cases)
         for r in range(case.realizations + case.surveyed)
         if (r >= case.realizations) == surveyed
     }
 
 
-def task(parameters: Parameters, key: Key) -> partial[Outcome]:
+def task(parameters: Parameters, key: PackingKey) -> partial[PackingLoops]:
     """One of these packings."""
     case = next(one for one in parameters.cases if (one.polydispersity, one.friction) == astuple(key)[:2])
     width = parameters.width if case.polydispersity else 0.0

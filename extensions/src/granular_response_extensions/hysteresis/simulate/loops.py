@@ -65,7 +65,7 @@ class Turn:
 
 
 @record
-class Shown:
+class ShownLoop:
     """What is drawn of the first packing of a case: the loop to the largest force."""
 
     load: FloatArray = column(f"load {WEIGHTS}", "branch", "point")
@@ -122,7 +122,7 @@ def keep_books(problem: Problem, states: Sequence[State]) -> Books:
     return Books(done, stored(problem, states[-1]) - stored(problem, states[0]), pairs, walls, crosses)
 
 
-class Packing:
+class CycledPacking:
     """A packing, its first loading, and what is measured on it."""
 
     def __init__(self, scene: Scene, width: float) -> None:
@@ -148,7 +148,7 @@ class Packing:
             self.known_left[force] = float(left / under)
         return self.known_left[force]
 
-    def turn(self, states: Sequence[State], turn: int, force: float, smallest: float) -> tuple[Turn, Shown]:
+    def turn(self, states: Sequence[State], turn: int, force: float, smallest: float) -> tuple[Turn, ShownLoop]:
         """What is found on the ``states`` of two loops from rest on, which turn at place ``turn`` and at ``force``.
 
         ``smallest`` is the force up to which the response counts as linear.
@@ -177,7 +177,7 @@ class Packing:
             **second_loop.loop("_again"),
         )
         ways = np.array([[(state.load_factor, self.sunk(state)) for state in branch] for branch in branches])
-        return measured, Shown(ways[..., 0], ways[..., 1], added, self.measures.x)
+        return measured, ShownLoop(ways[..., 0], ways[..., 1], added, self.measures.x)
 
     def events(self, forces: Sequence[float], left: float, tolerance: float) -> list[tuple[float, float]]:
         """Brackets of ``EVENTS``; see the module."""

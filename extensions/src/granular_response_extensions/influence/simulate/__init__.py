@@ -32,7 +32,7 @@ FITS = ("all", "without the lowest", "without the highest")
 
 
 @record
-class Outcome:
+class PackingInfluence:
     difference: FloatArray = column(
         "what a unit force and two halves of it differ by, summed over the floor disks", "row", "separation"
     )
@@ -44,7 +44,7 @@ class Outcome:
     total: FloatArray = column("sum of the absolute answers of all floor disks to a unit vertical force", "disk")
 
 
-def compute(scene: Scene, separations: tuple[int, ...], margin: float, fitted: tuple[float, ...]) -> Outcome:
+def compute(scene: Scene, separations: tuple[int, ...], margin: float, fitted: tuple[float, ...]) -> PackingInfluence:
     """One packing. Raises what ``rest_state`` raises."""
     problem = Problem.from_scene(scene)
     rest, packing = rest_state(problem), problem.packing
@@ -54,7 +54,7 @@ def compute(scene: Scene, separations: tuple[int, ...], margin: float, fitted: t
     spacing = packing.width / float(np.max(packing.row_count))
     exponent = [decay(height, difference[:, k], spacing * apart, fitted) for k, apart in enumerate(separations)]
     middle = np.array([0.5 * packing.width, 0.0])
-    return Outcome(
+    return PackingInfluence(
         difference, height, spacing, np.array(exponent), rest.position - middle, packing.radius,
         np.abs(found).sum(axis=0),
     )  # fmt: skip

@@ -21,7 +21,7 @@ from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.solvers.strain import FOLLOWING
 from granular_response_extensions.moduli.parameters import Parameters
 from granular_response_extensions.moduli.simulate.loaded import loaded_slabs
-from granular_response_extensions.moduli.simulate.response import PLACES, SOLIDS, Outcome, compute, symmetric
+from granular_response_extensions.moduli.simulate.response import PLACES, SOLIDS, PackingModuli, compute, symmetric
 from granular_response_extensions.surveyed import measured
 from granular_response_paper.datasets import labelled
 from granular_response_paper.parameters import SIZE, material
@@ -31,7 +31,7 @@ FRICTION = "friction between disks and of the floor"
 
 
 @record
-class Disordered:
+class PackingKey:
     """What tells a packing from others."""
 
     polydispersity: float = column("polydispersity")
@@ -46,17 +46,17 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     return packed | labelled({"slabs": loaded_slabs(parameters)}, parameters.lattice)
 
 
-def packings(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, int], Disordered]:
+def packings(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, int], PackingKey]:
     """The packings of the survey, or all others, by their places: of the case, of its size, and the realization."""
     return {
-        (c, s, r): Disordered(case.polydispersity, case.friction, case.layers[s], r)
+        (c, s, r): PackingKey(case.polydispersity, case.friction, case.layers[s], r)
         for c, case in enumerate(parameters.cases)
         for s, (own, further) in enumerate(zip(case.realizations, case.further, strict=True))
         for r in (range(own, own + further) if surveyed else range(own))
     }
 
 
-def task(parameters: Parameters, one: Disordered) -> partial[Outcome]:
+def task(parameters: Parameters, one: PackingKey) -> partial[PackingModuli]:
     """One of these packings."""
     p, (layers, disks_per_row) = parameters, SIZE
     size = {layers: one.layers, disks_per_row: p.disks_per_layer * one.layers, "packing.sides": "periodic"}
@@ -68,7 +68,7 @@ def task(parameters: Parameters, one: Disordered) -> partial[Outcome]:
 def _packings(parameters: Parameters) -> xr.Dataset:
     cases = parameters.cases
     # the largest first: two workers then end together
-    outcomes = measured(parameters, "packings", packings, task, Outcome, work=lambda at: cases[at[0]].layers[at[1]])
+    outcomes = measured(parameters, "packings", packings, task, PackingModuli, work=lambda p: cases[p[0]].layers[p[1]])
     found = table(outcomes, "case", "size", "realization").rename(matrices="stiffness")
     layers = stacked({(c,): case.layers for c, case in enumerate(cases)}, float)
     surveyed = np.nan_to_num(stacked({(c,): case.further for c, case in enumerate(cases)}, float))

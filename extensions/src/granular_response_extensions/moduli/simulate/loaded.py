@@ -24,7 +24,7 @@ from granular_response.state import SLIDING, FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.studies import LoadPath, Measures, two_peaks
 from granular_response.theory.moduli import peak_criterion
-from granular_response_extensions.moduli.parameters import Loaded, Parameters
+from granular_response_extensions.moduli.parameters import LoadedSlabs, Parameters
 from granular_response_extensions.moduli.simulate.response import apart
 from granular_response_extensions.moduli.simulate.solid import Solid, fitted, triangles
 from granular_response_paper.records import axes, column, labels, parts, places, record, table
@@ -36,7 +36,7 @@ STEP = 1e-5
 
 
 @record
-class Fit:
+class FittedModuli:
     """Moduli by one family of loads and one width of the averages."""
 
     predicted: FloatArray = column("the same of the elastic slab with the moduli", "floor_disk")
@@ -55,7 +55,7 @@ class Step:
     criterion: FloatArray = column("r by body forces, least width", "triangle")
     sliding: FloatArray = column(f"centres of sliding contacts of disks {RADII}", "contact", "axis")
     tangent_error: float = column("largest lack of K against the next equilibrium, per largest force")
-    fits: dict[tuple[int, ...], Fit]
+    fits: dict[tuple[int, ...], FittedModuli]
 
 
 @record
@@ -81,7 +81,7 @@ def loads(problem: Problem, state: State, along_x: int, along_z: int) -> dict[st
     return {"body": body, "surface": [force_on(problem, disk, axis) for disk, axis in product(top, (0, 1))]}
 
 
-def respond(scene: Scene, loaded: Loaded, forces: tuple[float, ...]) -> Loading:
+def respond(scene: Scene, loaded: LoadedSlabs, forces: tuple[float, ...]) -> Loading:
     """One slab. Raises what the solvers raise."""
     path = LoadPath.of(scene)
     measures, problem = Measures(path), path.problem
@@ -109,7 +109,7 @@ def respond(scene: Scene, loaded: Loaded, forces: tuple[float, ...]) -> Loading:
             predicted = solid.floor_forces(solid.answer(moduli, disk))[disks]
             depth = solid.reached(criteria[-1], middle[0], measures.lattice_constant)
             difference = float(apart(smooth(predicted), smooth(measured)))
-            fits[place] = Fit(predicted, difference, double(predicted), depth)
+            fits[place] = FittedModuli(predicted, difference, double(predicted), depth)
         pairs, slides = state.pairs, np.abs(state.pairs.status) == SLIDING
         centre = state.position[pairs.first] - 0.5 * state.pair_separation() - middle
         grown = (floor_force(after, disks) - floor_force(state, disks)) / (after.load_factor - state.load_factor)

@@ -28,7 +28,7 @@ _PER = "per largest pressure of the slab"
 
 
 @record
-class Outcome:
+class PackingModuli:
     height: float = column(f"height of the slab {RADII}")  #: distance of the rows times their number
     coordination: float = column("contacts per disk that bears something")  #: floor included
     at_limit: float = column("contacts at the Coulomb limit, taken to stick")
@@ -101,7 +101,7 @@ def apart(one: FloatArray, other: FloatArray) -> FloatArray:
     return np.asarray(np.abs(one - other).max(axis=-1) / other.max(axis=-1))
 
 
-def compute(scene: Scene, margin: float, width: float, wide: float) -> Outcome:
+def compute(scene: Scene, margin: float, width: float, wide: float) -> PackingModuli:
     """One disordered packing, with responses smoothed over ``width`` radii and ``wide`` heights.
 
     Raises what ``rest_state`` raises.
@@ -118,7 +118,7 @@ def compute(scene: Scene, margin: float, width: float, wide: float) -> Outcome:
     mean = each.mean(axis=0)
     solids = np.stack([*solids, nearest_isotropic(solids[-1])])
     predicted = np.stack([prediction(solid, height, period, floor, widths) for solid in solids])
-    return Outcome(
+    return PackingModuli(
         height, float(count[count >= 2].mean()), at_limit(problem, rest), matrices, alone, mean, predicted,
         apart(each, predicted[SOLIDS.index("free")]).mean(axis=0), apart(mean, predicted),
     )  # fmt: skip

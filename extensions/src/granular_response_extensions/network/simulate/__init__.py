@@ -38,7 +38,7 @@ FORCES, MOBILIZATION, ANGLES = np.linspace(0.0, 6.0, 25), np.linspace(0.0, 1.0, 
 
 
 @record
-class Statistics:
+class NetworkStatistics:
     """Of one state; nan for one that is not found."""
 
     force_density: FloatArray = column("probability density of normal forces over their local mean", "force")
@@ -59,7 +59,7 @@ class Statistics:
     )
 
 
-def measure(path: LoadPath, state: State, load: float, asked: Parameters) -> Statistics:
+def measure(path: LoadPath, state: State, load: float, asked: Parameters) -> NetworkStatistics:
     """Statistics of a state under the vertical ``load`` (mean disk weights)."""
     friction, pairs, walls, width = path.scene.contact.friction, state.pairs, state.walls, path.problem.packing.width
     height, highest = network.contact_centre(state)[:, 1], state.position[:, 1].max() - VERTICAL_MARGIN
@@ -76,7 +76,7 @@ def measure(path: LoadPath, state: State, load: float, asked: Parameters) -> Sta
     limited = np.count_nonzero(pairs.near_limit(friction, asked.margin) & live)
     limited += np.count_nonzero(walls.near_limit(path.scene.wall.friction, asked.margin) & live_walls)
     components, equations = (2 * contacts - limited, 3 * bearing) if friction else (contacts, 2 * bearing)
-    return Statistics(
+    return NetworkStatistics(
         force_density=density(forces, FORCES),
         force_mean=float(forces.mean()),
         tail_variation=float(excess.std() / excess.mean()),
@@ -118,7 +118,7 @@ def cut_imbalance(path: LoadPath, state: State, load: float) -> float:
     return float(worst)
 
 
-def compute(scene: Scene, asked: Parameters) -> list[Statistics]:
+def compute(scene: Scene, asked: Parameters) -> list[NetworkStatistics]:
     """One packing at rest and, if it bears it, under the force; ``scene`` has one load, of unit force."""
     path = LoadPath.of(scene)
     disk = path.problem.load_disk[0]

@@ -66,7 +66,7 @@ AGAINST = ("linear_range", "first_opening", "crossover")
 
 
 @dataclass(frozen=True)
-class Outcome:
+class PreparedSlab:
     prepared: Prepared
     measured: xr.Dataset
     events: list[slab.Event]
@@ -75,7 +75,7 @@ class Outcome:
 
 def compute(
     way: str, scene: Scene, taps: tuple[int, float, float], forces: tuple[float, ...], asymmetry: float
-) -> Outcome:
+) -> PreparedSlab:
     """A slab settled as its ``scene`` says, tapped (number, amplitude, duration) and loaded by each of the forces."""
     problem = Problem.from_scene(scene)
     path = studies.LoadPath.of(scene, tapped(problem, rest_state(problem), *taps))
@@ -89,10 +89,10 @@ def compute(
     mobilized = Mobilized(packing["polydispersity"], packing["realization"], *taps[:2], part, against)
     gravity, contact = scene.preparation, scene.contact
     given = gravity.gravity, gravity.ramp_time, contact.damping_ratio, contact.friction, scene.wall.friction
-    return Outcome(Prepared(way, *given), slab.measured(measures, states), events, mobilized)
+    return PreparedSlab(Prepared(way, *given), slab.measured(measures, states), events, mobilized)
 
 
-def tasks(parameters: Parameters) -> dict[tuple[Any, ...], partial[Outcome]]:
+def tasks(parameters: Parameters) -> dict[tuple[Any, ...], partial[PreparedSlab]]:
     """A task for each part, way and realization, and for the taps of each, by what sorts them as they are stored."""
     found = {}
     for p, part in enumerate(parameters.parts):
@@ -129,5 +129,5 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     return labelled(datasets, parameters.base)
 
 
-def _prepared(outcomes: Sequence[Outcome], dimension: str) -> Mapping[Any, xr.Variable]:
+def _prepared(outcomes: Sequence[PreparedSlab], dimension: str) -> Mapping[Any, xr.Variable]:
     return table([one.prepared for one in outcomes], dimension).variables

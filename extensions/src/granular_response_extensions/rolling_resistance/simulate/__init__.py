@@ -33,7 +33,7 @@ CASES = ("supported", "free", "resisting")
 
 
 @record
-class Pile:
+class RestingPile:
     """A pile that has come to rest."""
 
     moved: float = column(f"largest displacement of a disk on the way to rest {RADII}")
@@ -46,7 +46,7 @@ class Pile:
 
 
 @record
-class Threshold(Pile):
+class Threshold(RestingPile):
     """The least friction that holds a pile, between two that were tried; and the pile that the larger one holds."""
 
     low: float = column("largest coefficient of friction that was seen not to hold the pile; 0 for none")
@@ -67,21 +67,21 @@ def standing(scene: Scene, layers: int, friction: float, rolling: float | None, 
     return alone.updated(rough | rolls | slow)
 
 
-def settle(scene: Scene) -> Pile:
+def settle(scene: Scene) -> RestingPile:
     """The pile at rest; raises what ``rest_state`` raises."""
     problem = Problem.from_scene(scene)
     rest, start = rest_state(problem), problem.packing.position
     bottom = np.flatnonzero(start[:, 1] < start[:, 1].min() + 0.5)
     force, x = floor_force(rest, bottom), start[bottom, 0] - 0.5 * problem.packing.width
     moved, loose = np.linalg.norm(rest.position - start, axis=1).max(), (rest.contact_count() < 2).sum()
-    return Pile(float(moved), float(loose), central_dip(x, force), x, force)
+    return RestingPile(float(moved), float(loose), central_dip(x, force), x, force)
 
 
 def threshold(parameters: Parameters, layers: int, rolling: float, ramp: float) -> Threshold:
     """Halves the range of friction. A pile that finds no stable equilibrium is not held."""
 
     @cache
-    def held(friction: float) -> Pile | None:
+    def held(friction: float) -> RestingPile | None:
         try:
             pile = settle(standing(parameters.pile, layers, friction, rolling, ramp))
         except NotSettled:

@@ -17,12 +17,13 @@ from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.studies import LoadPath, Measures, first_opening, two_peaks
-from granular_response_extensions.rolling_resistance.parameters import Parameters, Slab
+from granular_response_extensions.rolling_resistance.parameters import Parameters
+from granular_response_paper.parameters import Loading
 from granular_response_paper.records import column, record
 
 
 @record
-class Fit:
+class CosseratFit:
     """The couple stress that a load adds, as that of a Cosserat solid."""
 
     modulus: float = column("couple stress per gradient of the rotation, in k_N times radii squared")
@@ -31,7 +32,7 @@ class Fit:
 
 
 @record
-class Loaded(Fit):
+class LoadedStress(CosseratFit):
     """The slab under one of the forces that are shown."""
 
     floor_response: FloatArray = column("floor response per force", "floor_disk")
@@ -42,7 +43,7 @@ class Loaded(Fit):
 
 
 @record
-class Turned(Fit):
+class Turned(CosseratFit):
     """The slab under a torque, which couples and antisymmetric stress share on each line between two rows."""
 
     depth: FloatArray = column(f"depth of a line below the loaded disk {RADII}", "line")
@@ -57,17 +58,17 @@ class Turned(Fit):
 
 
 @record
-class Response:
+class RollingSlab:
     """A slab under a growing force, under each force that is shown, and under each torque on the loaded disk alone."""
 
     x: FloatArray = column(f"position from the loaded disk {RADII}", "floor_disk")
     opening: FloatArray = column(f"force of the first opening, before and after {WEIGHTS}", "end")
     crossover: FloatArray = column(f"force from which on there are two peaks, before and after {WEIGHTS}", "end")
-    loaded: tuple[Loaded, ...]
+    loaded: tuple[LoadedStress, ...]
     turned: tuple[Turned, ...]
 
 
-def respond(parameters: Parameters, slab: Slab, rolling: float) -> Response:
+def respond(parameters: Parameters, slab: Loading, rolling: float) -> RollingSlab:
     """One slab; stresses are those that the load adds. Raises what the solvers raise."""
     scene = parameters.base.updated({"contact.friction": slab.friction, "contact.rolling_friction": rolling})
     path, width = LoadPath.of(scene), parameters.stress_width
@@ -78,13 +79,13 @@ def respond(parameters: Parameters, slab: Slab, rolling: float) -> Response:
     lines = coarse.grid_points(top[0] + measures.x, np.linspace(0.0, top[1], parameters.heights))
     inner = coarse.grid_points(top[0] + measures.x[measures.interior], np.arange(width, top[1] - width, 0.5 * width))
 
-    def under(state: State) -> Loaded:
+    def under(state: State) -> LoadedStress:
         response = measures.response(state)
         stress = coarse.coarse_grained_stress(coarse.load_forces(rest, state), lines, width)
         couple = np.linalg.norm(_couple_stress(problem, rest, state, lines, width), axis=-1)
         across, needed = moments(problem, state, state.position[:, 0] < (top[0] + measures.x[1:-1])[:, None])
         largest = float(np.abs(across).max())
-        return Loaded(
+        return LoadedStress(
             *fit(problem, rest, state, inner, width),
             floor_response=response,
             width=half_maximum_width(measures.x, response),
@@ -114,11 +115,13 @@ def respond(parameters: Parameters, slab: Slab, rolling: float) -> Response:
         )
 
     twisted = tuple(map(turned, parameters.torques, twist.through(parameters.torques)))
-    return Response(measures.x, opening, crossover, tuple(map(under, map(path.at, parameters.shown_forces))), twisted)
+    return RollingSlab(
+        measures.x, opening, crossover, tuple(map(under, map(path.at, parameters.shown_forces))), twisted
+    )
 
 
 def fit(problem: Problem, rest: State, loaded: State, points: FloatArray, width: float) -> tuple[float, float, float]:
-    """The numbers of :class:`Fit` by the stress at ``points`` (..., 2)."""
+    """The numbers of :class:`CosseratFit` by the stress at ``points`` (..., 2)."""
     contact = problem.scene.contact
     couple = _couple_stress(problem, rest, loaded, points, width)
     # gradient of the mean turn of the disks, weighted by the stress's Gaussian

@@ -27,7 +27,7 @@ ON_AXIS = 1.1
 
 
 @record
-class Scalars:
+class AddedStress:
     """What the load adds to one slab, in numbers."""
 
     misalignment: float = column("mean angle between added force and contact line, weighted with |force|, in degrees")
@@ -100,7 +100,7 @@ def stress_dataset(asked: Parameters, packing: Packing, disk: int, pairs: Sequen
         mean_square(antisymmetric) / mean_square(pressure),
     )
     scalars = [
-        Scalars(np.degrees(force_misalignment(a, b)), *axis_measures(a, b, disk), *numbers)
+        AddedStress(np.degrees(force_misalignment(a, b)), *axis_measures(a, b, disk), *numbers)
         for (a, b), *numbers in zip(pairs, *of_fields, strict=True)
     ]
     of = "of the added forces per applied force, in 1/mean radius, compression positive"

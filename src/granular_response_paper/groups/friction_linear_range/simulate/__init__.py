@@ -22,7 +22,7 @@ from granular_response.state import State
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.friction_linear_range.parameters import EqualRows, Parameters
+from granular_response_paper.groups.friction_linear_range.parameters import EqualRowsPaths, Parameters
 from granular_response_paper.records import axes, variables
 from granular_response_paper.tasks import computed
 
@@ -63,7 +63,7 @@ def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = No
     )
 
 
-def equal_rows(scene: Scene, given: EqualRows) -> list[slab.Event]:
+def equal_rows(scene: Scene, given: EqualRowsPaths) -> list[slab.Event]:
     """Events on the path of a slab with as many disks in every row; its load is half a radius off the middle."""
     path = studies.LoadPath.of(scene, packing=slab.equal_rows(given.layers, given.disks))
     path.through(given.forces)

@@ -23,7 +23,12 @@ import xarray as xr
 
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.groups.frictionless_crossover.parameters import Parameters
-from granular_response_paper.groups.frictionless_crossover.simulate.slab import EVENTS, Outcome, Slab, solve
+from granular_response_paper.groups.frictionless_crossover.simulate.slab import (
+    EVENTS,
+    OrderedSlab,
+    SlabResponse,
+    solve,
+)
 from granular_response_paper.records import axes, stacked, table, variables
 from granular_response_paper.slab_response import events_dataset
 from granular_response_paper.tasks import computed
@@ -33,6 +38,9 @@ LEFT_OUT = ("third_peak_prominence", "sliding_contacts", "asymmetry_sign", "mobi
 
 #: Dips at x = 0, per largest response, from which on a response can be said to have two peaks; the event has 0.001.
 DIPS = (0.0, 0.005, 0.01, 0.02)
+
+#: What was found, by slab.
+Found = Mapping[OrderedSlab, SlabResponse]
 
 #: What is kept of the open region at close forces.
 REGION = ("teardrop_depth", "teardrop_width", "reaches_floor", "layers", "normal_stiffness")
@@ -61,12 +69,12 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     }
 
 
-def studies(parameters: Parameters) -> dict[str, tuple[list[Slab], tuple[float, ...]]]:
+def studies(parameters: Parameters) -> dict[str, tuple[list[OrderedSlab], tuple[float, ...]]]:
     """Slabs and the forces on them by dataset: the slab whose states are kept, then those of several depths, ..."""
     rows = parameters.scene.packing.build().row_count
-    main = Slab(len(rows), int(rows[0]), parameters.scene.contact.normal_stiffness)
+    main = OrderedSlab(len(rows), int(rows[0]), parameters.scene.contact.normal_stiffness)
     sizes, widths = (
-        [Slab(layers, across, stiffness) for stiffness in parameters.size_stiffnesses for layers, across in shapes]
+        [OrderedSlab(*shape, stiffness) for stiffness in parameters.size_stiffnesses for shape in shapes]
         for shapes in (parameters.sizes, parameters.widths)
     )
     return {
@@ -78,10 +86,10 @@ def studies(parameters: Parameters) -> dict[str, tuple[list[Slab], tuple[float, 
     }
 
 
-def tasks(parameters: Parameters) -> dict[Slab, partial[Outcome]]:
+def tasks(parameters: Parameters) -> dict[OrderedSlab, partial[SlabResponse]]:
     """One task for each different slab, with all forces on it."""
     asked = studies(parameters)
-    forces: dict[Slab, set[float]] = {}
+    forces: dict[OrderedSlab, set[float]] = {}
     for slabs, several in asked.values():
         for slab in slabs:
             forces.setdefault(slab, set()).update(several)
@@ -99,7 +107,7 @@ def tasks(parameters: Parameters) -> dict[Slab, partial[Outcome]]:
     }
 
 
-def stiffnesses(outcomes: Mapping[Slab, Outcome], slabs: Sequence[Slab], forces: Sequence[float]) -> xr.Dataset:
+def stiffnesses(outcomes: Found, slabs: Sequence[OrderedSlab], forces: Sequence[float]) -> xr.Dataset:
     """As :func:`along`, and the crossovers by other dips."""
     crossovers = [[(one.low, one.high) for one in outcomes[slab].events[len(EVENTS) :]] for slab in slabs]
     between = f"forces {WEIGHTS} between which the dip at x = 0 comes to exceed this one; nan if not up to the first"
@@ -111,9 +119,7 @@ def stiffnesses(outcomes: Mapping[Slab, Outcome], slabs: Sequence[Slab], forces:
     )
 
 
-def along(
-    dimension: str, outcomes: Mapping[Slab, Outcome], slabs: Sequence[Slab], forces: Sequence[float]
-) -> xr.Dataset:
+def along(dimension: str, outcomes: Found, slabs: Sequence[OrderedSlab], forces: Sequence[float]) -> xr.Dataset:
     """Measurements on slabs along ``dimension`` and ``force``, and the brackets of their events.
 
     Slabs have different numbers of floor disks: ``floor_response`` and ``x`` run over ``floor_place``, from

@@ -29,7 +29,7 @@ EVENTS = {
 
 
 @record
-class Slab:
+class OrderedSlab:
     """An ordered frictionless slab under a force on the middle disk of its top row."""
 
     layers: int = column("number of rows of the slab")
@@ -43,7 +43,7 @@ class Slab:
 
 
 @record
-class Outcome:
+class SlabResponse:
     """What a task leaves behind."""
 
     rest_asymmetry: float = column(
@@ -58,7 +58,7 @@ class Outcome:
 
 def solve(
     scene: Scene, forces: tuple[float, ...], tolerance: float, dips: Sequence[float], keep_states: bool
-) -> Outcome:
+) -> SlabResponse:
     """Settle a slab, load it step by step, measure it and locate its events.
 
     ``tolerance`` is the width of the brackets of events, per force at which they happen; ``dips`` are those of which
@@ -78,7 +78,7 @@ def solve(
 
     asked |= {f"dip {dip:g}": exceeds(dip) for dip in dips}
     level = (network.lattice_direction(rest) == network.HORIZONTAL) & measures.near
-    return Outcome(
+    return SlabResponse(
         rest_asymmetry(packing.position, rest, packing.width),
         new_neighbours(packing.position, rest),
         int(np.count_nonzero(level & ~rest.pairs.touching)),

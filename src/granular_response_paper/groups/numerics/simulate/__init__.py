@@ -23,7 +23,7 @@ from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.numerics.parameters import Parameters
 from granular_response_paper.groups.numerics.simulate import runs
-from granular_response_paper.groups.numerics.simulate.runs import Readings, Response
+from granular_response_paper.groups.numerics.simulate.runs import Readings, StoppedResponse
 from granular_response_paper.records import table_along
 from granular_response_paper.tasks import computed
 
@@ -123,7 +123,7 @@ def _readings(found: Sequence[Readings], every: int, **along: tuple[Sequence[Any
     return table_along(found, **along).assign_coords(step=step)
 
 
-def _responses(found: Sequence[Response], x: xr.Variable, **along: tuple[Sequence[Any], str]) -> xr.Dataset:
+def _responses(found: Sequence[StoppedResponse], x: xr.Variable, **along: tuple[Sequence[Any], str]) -> xr.Dataset:
     """With how far they are from the first."""
     first = found[0].floor_response
     compared = [

@@ -98,7 +98,7 @@ def swing(scene: Scene, steps: int, read_every: int) -> Readings:
 
 
 @record
-class Response:
+class StoppedResponse:
     """The response to one load by the paper's protocol, and what its stop criteria read."""
 
     floor_response: FloatArray = column("vertical floor force that the load adds, per applied force", "floor_disk")
@@ -112,23 +112,23 @@ class Response:
     kinetic_energy: float = column("kinetic energy per disk at the stop")
 
 
-def respond(scene: Scene) -> Response:
+def respond(scene: Scene) -> StoppedResponse:
     """Without its difference from another one."""
     problem, rest, loaded = rest_and_loaded(scene)
     response = per_load(problem, rest, loaded, bottom(problem.packing))
     names = ("network_fixed_steps", "sliding_contacts", "mean_acceleration", "loose_disks", "kinetic_energy")
-    return Response(response, np.nan, *(float(getattr(loaded.reached, name)) for name in names))
+    return StoppedResponse(response, np.nan, *(float(getattr(loaded.reached, name)) for name in names))
 
 
 @record
-class Disordered:
+class DisorderedResponse:
     """The smoothed response of one disordered slab."""
 
     stopped: FloatArray = column("smoothed floor response per applied force, of runs that stop early, in 1/radius", "x")
     finished: FloatArray = column("smoothed floor response per applied force, in equilibrium, in 1/radius", "x")
 
 
-def disordered(scene: Scene, x: Sequence[float], width: float) -> Disordered:
+def disordered(scene: Scene, x: Sequence[float], width: float) -> DisorderedResponse:
     """Without and with a static finish.
 
     Runs that stop at 1e-13 before the finish give the same response but for a thousandth of it, in 1.7 times the time.
@@ -140,7 +140,7 @@ def disordered(scene: Scene, x: Sequence[float], width: float) -> Disordered:
         place = rest.position[disks, 0] - rest.position[problem.load_disk[0], 0]
         return smoothed_response(x, place, per_load(problem, rest, loaded, disks), width)
 
-    return Disordered(response(scene.updated({"protocol.static_finish": False})), response(scene))
+    return DisorderedResponse(response(scene.updated({"protocol.static_finish": False})), response(scene))
 
 
 @record

@@ -48,7 +48,7 @@ VARIANTS = {
 
 
 @record
-class Outcome:
+class VariantResponse:
     floor_response: FloatArray = column("floor response per applied force", "floor_disk")
     kinetic_energy: float = column(
         "kinetic energy per disk where the dynamics stopped, in mean weight times mean radius"
@@ -57,7 +57,7 @@ class Outcome:
     x: FloatArray = column("lattice position from the loaded disk in mean radii", "floor_disk")
 
 
-def compute(scene: Scene, variant: Variant, steps: int) -> Outcome:
+def compute(scene: Scene, variant: Variant, steps: int) -> VariantResponse:
     """The floor response of one variant; after ``steps`` by a friction law of its own, which need not have a rest."""
     scene = scene.updated({"protocol.method": "dynamics", **variant.both})
     rest = rest_state(Problem.from_scene(scene))
@@ -76,7 +76,7 @@ def compute(scene: Scene, variant: Variant, steps: int) -> Outcome:
     energy = loaded.reached.kinetic_energy
     if energy is None:
         energy = certificate.kinetic_energy if certificate else np.nan
-    return Outcome(
+    return VariantResponse(
         floor_response=floor_response(rest, loaded, bottom, total),
         x=problem.packing.position[bottom, 0] - problem.packing.position[problem.load_disk[0], 0],
         kinetic_energy=float(energy),
@@ -114,7 +114,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     }
 
 
-def compared(outcomes: Sequence[Outcome]) -> xr.Dataset:
+def compared(outcomes: Sequence[VariantResponse]) -> xr.Dataset:
     """The outcomes of all variants, and how far each is from the reference."""
     found = table(outcomes, "variant")
     response, x = found["floor_response"].values, found["x"].variable.isel(variant=0)

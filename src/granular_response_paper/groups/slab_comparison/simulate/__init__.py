@@ -26,7 +26,7 @@ from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.slab_comparison.parameters import Case, Parameters
+from granular_response_paper.groups.slab_comparison.parameters import DepthSeries, Parameters
 from granular_response_paper.records import column, labels, record, table
 from granular_response_paper.tasks import computed
 
@@ -38,7 +38,7 @@ _COMPARED = f"largest difference within {COMPARED:g} slab heights of the load, p
 
 
 @record
-class Slab:
+class Comparison:
     floor_response: FloatArray = column("floor response per force", "floor_disk")
     elastic: FloatArray = column("share of the elastic slab with the same moduli, floor and walls", "floor_disk")
     x: FloatArray = column(f"position from the loaded disk {RADII}", "floor_disk")
@@ -51,7 +51,7 @@ class Slab:
     sliding: int = column("contacts of disks that slide under the force")
 
 
-def compute(base: Scene, case: Case, layers: int, force: float) -> tuple[Slab, State]:
+def compute(base: Scene, case: DepthSeries, layers: int, force: float) -> tuple[Comparison, State]:
     """The response to the force and to half of it beside that of elastic slabs, and the state under the force.
 
     ``base`` has one load of unit force. Raises what the solvers raise.
@@ -71,7 +71,7 @@ def compute(base: Scene, case: Case, layers: int, force: float) -> tuple[Slab, S
     }
     near = np.abs(x) <= COMPARED * np.sqrt(3.0) * layers
     apart = {floor: float(np.abs(response - values)[near].max() / values.max()) for floor, values in elastic.items()}
-    slab = Slab(
+    slab = Comparison(
         floor_response=response,
         elastic=elastic[case.floor],
         x=x,
@@ -105,7 +105,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     return labelled({"slabs": dataset.assign_attrs(force=force, stiffness_ratio=base.contact.stiffness_ratio)})
 
 
-def _scene(case: Case, layers: int, base: Scene) -> Scene:
+def _scene(case: DepthSeries, layers: int, base: Scene) -> Scene:
     """A slab with the loaded disk in the middle: rows and disks of a row both odd or both even."""
     disks = case.disks_per_layer * layers
     return base.updated(

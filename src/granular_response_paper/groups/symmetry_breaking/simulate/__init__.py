@@ -29,7 +29,7 @@ from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.sweeps.rest import rest_of
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.symmetry_breaking.parameters import Copies, Parameters, Protocol
+from granular_response_paper.groups.symmetry_breaking.parameters import Copies, LoadRamp, Parameters
 from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.tasks import computed
 
@@ -50,7 +50,7 @@ class BracketResult:
     states: tuple[State, ...]  #: the last symmetric and the first asymmetric one, if there are both
 
 
-def ramps(asked: Parameters, rest: State, protocol: Protocol) -> list[BracketResult]:
+def ramps(asked: Parameters, rest: State, protocol: LoadRamp) -> list[BracketResult]:
     """Bracket the loss of symmetry for one duration of the ramp, by one time step after another.
 
     A further time step is tried where the one before it lost its symmetry, and over all forces only if it does not
@@ -66,7 +66,7 @@ def ramps(asked: Parameters, rest: State, protocol: Protocol) -> list[BracketRes
 
 
 def bracket(
-    asked: Parameters, rest: State, protocol: Protocol, time_step: float, first: tuple[float, float] | None
+    asked: Parameters, rest: State, protocol: LoadRamp, time_step: float, first: tuple[float, float] | None
 ) -> BracketResult:
     """For one time step; the loss is looked for between ``first`` before anywhere else."""
     path = studies.LoadPath.of(protocol.scene(asked.scene, time_step), rest)
@@ -78,7 +78,11 @@ def bracket(
 
 
 def narrowed(
-    asked: Parameters, path: studies.LoadPath, protocol: Protocol, time_step: float, first: tuple[float, float] | None
+    asked: Parameters,
+    path: studies.LoadPath,
+    protocol: LoadRamp,
+    time_step: float,
+    first: tuple[float, float] | None,
 ) -> slab.Event:
     """Where the states of a path lose their symmetry; see :func:`bracket`."""
     measures, above = studies.Measures(path), asked.asymmetry
