@@ -139,11 +139,6 @@ def question(group: str) -> str:
     return str(_templates(group)["question"])
 
 
-def stems(group: str) -> list[str]:
-    """The pictures that a group has templates for, by file stem."""
-    return [name for name in _templates(group) if name != "question"]
-
-
 def of_scene(scene: Scene, *, frictions: Value | None = None, **others: Value | None) -> dict[str, Value]:
     """The parameters that every caption has, of a group's base scene; ``others`` replace or add, None leaves out.
 

@@ -10,6 +10,8 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
@@ -63,6 +65,25 @@ def packing(polydispersity: float) -> str:
 def material(polydispersity: float, friction: float) -> str:
     """A name for titles and legends."""
     return f"{packing(polydispersity)}, {style.equals(style.FRICTION, friction)}"
+
+
+def contact_networks(
+    rest: xr.Dataset, states: Sequence[xr.Dataset], names: Sequence[str], *, height: float, **key: Any
+) -> Figure:
+    """A panel for each state, in which the contacts differ from those at ``rest``, and one key below them."""
+    figure, (panels,) = style.figure(1, len(states), height=height)
+    handles: dict[str, LineCollection] = {}
+    for axes, loaded in zip(panels, states, strict=True):
+        handles |= network.draw_state_changes(axes, rest, loaded)
+    titles(panels, names)
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), **key)
+    return figure
+
+
+def added_forces(data: xr.Dataset) -> tuple[FloatArray, float]:
+    """(state, m, 2) what a load adds at the contacts of pairs and walls, and the largest of these forces."""
+    added = np.concatenate([data["contact_added_force"].values, data["wall_added_force"].values], axis=1)
+    return added, float(np.linalg.norm(added, axis=-1).max())
 
 
 def zero(*panels: Axes) -> None:

@@ -70,7 +70,7 @@ def test_fields_of_a_template_are_filled_in_and_lists_put_in_words():
 @pytest.mark.parametrize("group", [name for one in collections() for name in one.groups])
 def test_every_picture_has_a_title_of_its_own_and_a_short_text(group):
     templates = captions._templates(group)
-    stems = captions.stems(group)
+    stems = [name for name in templates if name != "question"]
     titles = [templates[stem]["title"] for stem in stems]
     assert len(set(titles)) == len(stems)
     for stem in stems:

@@ -73,8 +73,8 @@ def datasets_read(collection: Collection) -> tuple[str, ...]:
 def write(root: Path = Path(), *, collection: Collection = PAPER) -> Path:
     """Write the page of a collection below its folder ``root``, and what stands beside it; returns its path.
 
-    Raises ClaimsError, ReportError or StoreError for a table of claims, a ``captions.json`` or a dataset that cannot be
-    read, OSError if a file cannot be written.
+    Raises ClaimsError, ReportError or StoreError for a table of claims or a dataset that cannot be read, OSError if a
+    file cannot be written.
     """
     for name, content in files(root, collection).items():
         atomic.write_bytes(root / FIGURES / name, content)
@@ -130,10 +130,7 @@ def files(root: Path, collection: Collection = PAPER) -> dict[str, bytes]:
     Pictures and datasets that are not there yet are left out, and so are links to files that are not.
     """
     claims, folder = table.read(root / table.OUTPUT), root / FIGURES
-    try:
-        shown = pictures.collect(folder)
-    except ValueError as error:
-        raise ReportError(str(error)) from None
+    shown = pictures.collect(folder)
     own, checkout = collection == PAPER, root / os.path.relpath(".", collection.folder)
     paths = {group: root / "data" / f"{group}.nc" for group in EXPLORED if own}
     data = {group: store.read(path) for group, path in paths.items() if path.exists()}

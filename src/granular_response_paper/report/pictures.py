@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -77,32 +79,19 @@ class Picture:
 
 
 def collect(folder: Path) -> list[Picture]:
-    """All pictures ``GROUP/STEM.png`` of a folder with their captions, by stem, as a page in the folder shows them.
-
-    Raises ValueError if a file of captions is none.
-    """
-    said = _said(folder)
+    """All pictures ``GROUP/STEM.png`` of a folder with their captions, by stem, as a page in the folder shows them."""
+    said = {path.parent.name: read_json(path) for path in folder.glob(f"*/{captions.FILE}")}
     paths = sorted(folder.glob("*/*.png"), key=lambda path: (path.stem, path.parent.name))
-    return [_shown(path, said.get((path.parent.name, path.stem), {})) for path in paths]
+    return [_shown(path, said.get(path.parent.name, {}).get(path.stem)) for path in paths]
 
 
-def _said(folder: Path) -> dict[tuple[str, str], dict[str, str]]:
-    """The texts of each picture, by group and stem."""
-    found = {}
-    for path in folder.glob(f"*/{captions.FILE}"):
-        try:
-            for stem, entry in read_json(path).items():
-                given = captions.Caption("", "", entry.get("parameters", {})).whole.strip()
-                texts = {"name": entry.get("title", ""), "alternative": entry["alternative"], "parameters": given}
-                found[path.parent.name, stem] = texts | {"caption": entry["caption"].removesuffix(given).strip()}
-        except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
-            raise ValueError(f"{path}: holds no captions: {type(error).__name__} {error}") from None
-    return found
-
-
-def _shown(path: Path, texts: dict[str, str]) -> Picture:
+def _shown(path: Path, said: Mapping[str, Any] | None) -> Picture:
     with Image.open(path) as image:
         width, height = image.size
         plot = float(np.asarray(image.convert("RGB").reduce(8)).mean()) > PAPER
-    shown = min(round(SHOWN * width), WIDEST)
-    return Picture(path.stem, path.parent.name, width, height, shown, plot, **texts)
+    texts = {}
+    if said:
+        given = captions.Caption("", "", said["parameters"]).whole.strip()
+        texts = {"name": said["title"], "alternative": said["alternative"], "parameters": given}
+        texts["caption"] = said["caption"].removesuffix(given).strip()
+    return Picture(path.stem, path.parent.name, width, height, min(round(SHOWN * width), WIDEST), plot, **texts)

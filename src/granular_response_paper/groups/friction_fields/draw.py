@@ -12,7 +12,7 @@ from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box, FloatArray
 from granular_response_paper.captions import RADIUS, Caption, Datasets, lettered, of_group, of_scene, values
-from granular_response_paper.panels import Contacts, family, force_key, forces, note, titles
+from granular_response_paper.panels import Contacts, added_forces, family, force_key, forces, note, titles
 
 from .parameters import Parameters
 
@@ -102,8 +102,7 @@ def _force_chains(data: xr.Dataset) -> Figure:
     figure, panels = style.figure(2, len(frictions), height=4.2)
     width, disk, load = float(data["width"]), int(data["loaded_disk"]), float(data["force"])
     radius = data["radius"].values
-    added = np.concatenate([data["contact_added_force"].values, data["wall_added_force"].values], axis=1)
-    strongest = float(np.linalg.norm(added, axis=-1).max())
+    added, strongest = added_forces(data)
     for index, position in enumerate(data["position"].values):
         contacts = Contacts.of(data, position)
         x, z = position[disk]

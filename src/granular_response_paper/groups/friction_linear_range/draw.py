@@ -11,10 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response.plot.network import draw_state_changes
 from granular_response.state import OPEN, SLIDING
 from granular_response_paper.captions import RADIUS, WEIGHT, Caption, Datasets, Value, of_group, of_scene
-from granular_response_paper.panels import among, family, grey_limit, label_ends, note, titles, zero
+from granular_response_paper.panels import among, contact_networks, family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import Parameters
 
@@ -305,12 +304,7 @@ def _plot_profiles(panel: Axes, curves: xr.Dataset, along: Literal["force", "fri
 def _contacts(states: xr.Dataset, friction: float) -> Figure:
     """Figs. 8 and 9: the central third, one panel for each force."""
     stored, shown = states["force"].values, contact_forces(states)
-    figure, axes = style.figure(1, len(shown), height=2.1)
-    handles: dict[str, Any] = {}
-    for panel, force in zip(axes[0], shown, strict=True):
-        loaded = states.isel(state=int(np.flatnonzero(stored == force)[0]))
-        handles |= draw_state_changes(panel, states.isel(state=0), loaded)
+    loaded = [states.isel(state=int(np.flatnonzero(stored == force)[0])) for force in shown]
     mu = style.equals(style.FRICTION, friction)
-    titles(axes[0], [f"{mu}, {style.equals(style.F_EXT, force, style.WEIGHT)}" for force in shown])
-    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), columnspacing=1.2)
-    return figure
+    names = [f"{mu}, {style.equals(style.F_EXT, force, style.WEIGHT)}" for force in shown]
+    return contact_networks(states.isel(state=0), loaded, names, height=2.1, columnspacing=1.2)

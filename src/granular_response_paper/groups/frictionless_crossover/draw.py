@@ -8,15 +8,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
-from granular_response.plot.network import draw_state_changes
 from granular_response_paper.captions import WEIGHT, Caption, Datasets, bracket, of_group, of_scene, values
-from granular_response_paper.panels import family, grey_limit, label_ends, note, titles, zero
+from granular_response_paper.panels import contact_networks, family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import Parameters
 
@@ -171,15 +169,9 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
 
 
 def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
-    chosen = nearest(states["force"].values, NETWORK_FORCES)
-    figure, (panels,) = style.figure(1, len(chosen), height=2.05)
-    handles: dict[str, LineCollection] = {}
-    for axes, k in zip(panels, chosen, strict=True):
-        handles |= draw_state_changes(axes, rest.isel(state=0), states.isel(force=k))
-    forces = states["force"].values[chosen]
-    titles(panels, [style.equals(style.F_EXT, force, style.WEIGHT) for force in forces])
-    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
-    return figure
+    loaded = [states.isel(force=k) for k in nearest(states["force"].values, NETWORK_FORCES)]
+    names = [style.equals(style.F_EXT, float(one["force"]), style.WEIGHT) for one in loaded]
+    return contact_networks(rest.isel(state=0), loaded, names, height=2.05)
 
 
 def _teardrop(sizes: xr.Dataset) -> Figure:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
 from granular_response_paper.captions import RADIUS, Caption, Datasets, of_group, of_scene
-from granular_response_paper.panels import Contacts, force_key, forces, titles
+from granular_response_paper.panels import Contacts, added_forces, force_key, forces, titles
 
 from .parameters import Parameters
 
@@ -56,8 +56,7 @@ def _chains(data: xr.Dataset) -> Figure:
     rows = (len(torques) + 2) // 3
     height = np.ptp(limits["ylim"]) / np.ptp(limits["xlim"]) * style.DOUBLE / 3.0 + 0.2
     figure, panels = style.figure(rows, 3, height=float(height) * rows)
-    added = np.concatenate([data["contact_added_force"].values, data["wall_added_force"].values], axis=1)
-    largest = float(np.linalg.norm(added, axis=-1).max())
+    added, largest = added_forces(data)
     for index, axes in enumerate(panels.ravel()):
         style.no_axes(axes)
         if index >= len(torques):
