@@ -10,8 +10,9 @@ from granular_response.plot import style
 from granular_response.plot.network import draw_disks
 from granular_response.state import FloatArray
 
-#: Disks are drawn smaller than they are, so that the springs have room between them; the bonds have length 2.
-_RADIUS = 0.36
+#: Disks are drawn smaller than they are, so that the springs have room between them; the bonds have length 2. Of coils,
+#: to each side.
+_RADIUS, _AMPLITUDE = 0.36, 0.085
 _COLOUR = {"n": style.BLUE, "t": style.VERMILION}
 
 
@@ -50,22 +51,22 @@ def _bond(axes: Axes, start: FloatArray, end: FloatArray, family: str, outside: 
 
     near, far = 0.13, 0.62
     surface = float(np.sqrt(_RADIUS**2 - near**2))
-    axes.plot(*_coil(at(surface, -near), at(2.0 - surface, -near), 9, 0.085).T, color=_COLOUR["n"], linestyle="-")
+    axes.plot(*_coil(at(surface, -near), at(2.0 - surface, -near), 9).T, color=_COLOUR["n"], linestyle="-")
     for arm in ([at(surface, near), at(1.0, near)], [at(2.0, _RADIUS), at(2.0, far), at(1.0, far)]):
         axes.plot(*np.transpose(arm), color=style.MUTED, linewidth=0.9, linestyle="-")
-    axes.plot(*_coil(at(1.0, near), at(1.0, far), 4, 0.085).T, color=_COLOUR["t"], linestyle="-")
+    axes.plot(*_coil(at(1.0, near), at(1.0, far), 4).T, color=_COLOUR["t"], linestyle="-")
     for kind, (x, z) in (("n", at(1.0, -0.35)), ("t", at(0.74, 0.43))):
         axes.text(x, z, f"$k_{family}^{kind}$", color=_COLOUR[kind], ha="center", va="center", fontsize=11)
 
 
-def _coil(start: FloatArray, end: FloatArray, turns: int, amplitude: float) -> FloatArray:
+def _coil(start: FloatArray, end: FloatArray, turns: int) -> FloatArray:
     """(n, 2) zigzag spring from ``start`` to ``end`` with a straight piece at each end."""
     length = np.linalg.norm(end - start)
     along = (end - start) / length
     across = np.array([-along[1], along[0]])
     lead = 0.14 * length
     steps = np.linspace(lead, length - lead, 2 * turns + 1)
-    swing = amplitude * np.where(np.arange(2 * turns + 1) % 2 == 0, -1.0, 1.0)
+    swing = _AMPLITUDE * np.where(np.arange(2 * turns + 1) % 2 == 0, -1.0, 1.0)
     swing[[0, -1]] = 0.0
     distance = np.concatenate([[0.0], steps, [length]])
     side = np.concatenate([[0.0], swing, [0.0]])

@@ -119,7 +119,7 @@ def _errors(datasets: Datasets) -> Figure:
         if np.isfinite(middle):
             axes.axvline(middle, ymax=0.78, color=style.MUTED, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
         for k, look in family(range(len(distances)), of="length"):
-            _mean_with_error(axes, force, errors[name].values[:, k], look, "")
+            _mean_with_error(axes, force, errors[name].values[:, k], look)
             ends = (f"{distances[k]:g}", float(force[-1]), float(errors[name].values[:, k, -1].mean()), look["color"])
             labels.setdefault(name, []).append(ends)
         style.paper_value(axes, LINEAR_UNTIL, f"paper: {LINEAR_UNTIL:g}", at=0.2)
@@ -130,7 +130,7 @@ def _errors(datasets: Datasets) -> Figure:
     last = FORCES["fig24_superposition"]
     profiles = errors["row_error"].sel(force=last).values
     for k, look in family(range(len(distances)), of="length"):
-        _mean_with_error(deep, errors["gap"].values, profiles[:, k], look, "")
+        _mean_with_error(deep, errors["gap"].values, profiles[:, k], look)
     deep.set(yscale="log", ylim=(1e-4, 1.5), xlabel=rf"depth below the loads$\,/\,{style.RADIUS}$", xlim=(0.0, None))
     (median,) = contacts.plot([], [], color=style.MUTED, linewidth=0.8, linestyle=(0, (4, 2)))
     deep.legend([dotted, median], ["single load", "linear range ends, median"], loc="lower left")
@@ -144,11 +144,11 @@ def _errors(datasets: Datasets) -> Figure:
     return figure
 
 
-def _mean_with_error(axes: Axes, at: FloatArray, values: FloatArray, look: dict[str, Any], label: str) -> None:
+def _mean_with_error(axes: Axes, at: FloatArray, values: FloatArray, look: dict[str, Any]) -> None:
     """Mean over realizations (first axis) with a band of its standard error, if there are several."""
     mean = values.mean(axis=0)
     if len(values) == 1:
-        axes.plot(at, mean, **look, label=label)
+        axes.plot(at, mean, **look)
         return
     error = values.std(axis=0, ddof=1) / np.sqrt(len(values))
-    banded(axes, at, mean, (np.maximum(mean - error, 1e-9), mean + error), look, alpha=0.18, label=label)
+    banded(axes, at, mean, (np.maximum(mean - error, 1e-9), mean + error), look, alpha=0.18)
