@@ -18,7 +18,7 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
-from claims_data import PILE, pile_study
+from claims_data import PILE, pile_study, preparation_study
 from commands import LIBRARY, LONGEST, PAPER, SCENE, call, process, python, refused, succeeded
 from places import DATA, ROOT
 
@@ -94,9 +94,19 @@ def test_stored_claims_are_listed_and_not_judged_anew(tmp_path):
     said = [text for row in rows for text in (row["here"], row["paper"], row["cases"]) if text]
     assert len(lines) == len(said) + 3 and all(text in line for text, line in zip(said, lines, strict=False))
     assert re.search(r"4 of \d+ statements on ordered slabs", lines[-3]) and "halved or doubled" in lines[-1]
-    drawn = succeeded("claims", "--list", "--figure", 7, folder=tmp_path).splitlines()
+    drawn = succeeded("claims", "--figure", 7, folder=tmp_path).splitlines()
     listed = [row["id"] for row in rows if 7 in row["figures"]]
     assert [line.split()[0] for line in drawn[:-3] if line[0] != " "] == listed != []
+
+
+def test_the_claims_of_the_extensions_come_with_the_summary_that_the_paper_reads(tmp_path):
+    store.write(tmp_path / "data" / "preparation.nc", preparation_study(), {"group": "preparation"})
+    said = succeeded("claims", "--collection", "extensions", folder=tmp_path)
+    assert said.startswith("summary.nc\nfigures/claims.json: ")
+    assert store.read_attributes(tmp_path / "summary.nc")["group"] == "preparation"
+    (tmp_path / "summary.nc").unlink()
+    succeeded("claims", "--collection", "extensions", "--data", "data", folder=tmp_path)
+    assert not (tmp_path / "summary.nc").exists()  # it belongs to the stored table alone
 
 
 @pytest.mark.parametrize(
