@@ -98,14 +98,14 @@ WIDEST, LONGEST, LEAST = 4.5, 4.0, 0.01
 
 
 @dataclass(frozen=True)
-class Contacts:
+class ContactLines:
     """Contacts of a state as :func:`forces` draws them: those of pairs of disks, then those with walls."""
 
     point: FloatArray  #: (m, 2)
     normal: FloatArray  #: (m, 2), towards the first disk
 
     @classmethod
-    def of(cls, data: xr.Dataset, position: FloatArray) -> Contacts:
+    def of(cls, data: xr.Dataset, position: FloatArray) -> ContactLines:
         """From the contacts and walls of a state's dataset."""
         radius, disk, wall = (data[name].values for name in ("radius", "wall_disk", "wall_index"))
         first, second = data["contact_disk"].values, data["contact_partner"].values
@@ -117,7 +117,7 @@ class Contacts:
 
 
 def forces(
-    axes: Axes, contacts: Contacts, vector: FloatArray, largest: float, *, shown: np.ndarray | None = None,
+    axes: Axes, contacts: ContactLines, vector: FloatArray, largest: float, *, shown: np.ndarray | None = None,
     longest: float = LONGEST,
 ) -> None:  # fmt: skip
     """Forces as lines along them, as long and as wide as they are large, as in Figs. 2, 13 and 17 of the paper.
@@ -140,7 +140,7 @@ def force_key(
     if not largest > 0.0:
         return
     along = np.array([[1.0, 0.0]])
-    forces(axes, Contacts(np.array([at]), along), size * along, largest, longest=longest)
+    forces(axes, ContactLines(np.array([at]), along), size * along, largest, longest=longest)
     end = at[0] + 0.5 * longest * size / largest, at[1]
     note(axes, f"${size:g}\\,{unit}$" if unit else f"${size:g}$", end, (5.0, 0.0), va="center", fontsize=8)
 

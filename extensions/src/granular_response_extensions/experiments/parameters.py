@@ -12,7 +12,7 @@ from granular_response.scene.base import Count, Description, Index, Positive
 from granular_response.state import FloatArray
 from granular_response_paper.parameters import UNIT_LOAD, Checks, SceneGroup, over, some
 
-Packing = Annotated[SlabPacking | PouredPacking, Field(discriminator="kind")]
+AnyPacking = Annotated[SlabPacking | PouredPacking, Field(discriminator="kind")]
 Ends = tuple[Positive, Positive]
 
 #: Direction of the lattice below the horizontal, in degrees.
@@ -35,7 +35,7 @@ class LoadedPacking(Description):
 
 class Parameters(SceneGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, "packing", "loads")] = Field(description="Material and preparation.")
-    packings: dict[str, Packing]
+    packings: dict[str, AnyPacking]
     cases: Annotated[tuple[LoadedPacking, ...], AfterValidator(some)]
     largest_move: Positive = Field(description="Of the loaded disk, beyond which a packing does not hold the force.")
     depths: Count = Field(description="Lines below the load, a mean radius apart.")

@@ -26,7 +26,7 @@ class Way(Checked):
         yield "changes", set(self.changes) <= set(PREPARES), f"must have keys among {', '.join(PREPARES)}"
 
 
-class Taps(Description):
+class TapSeries(Description):
     """Taps of a slab at rest: the box moves by one period of a triangular wave of vertical acceleration, up first."""
 
     number: Count
@@ -34,7 +34,7 @@ class Taps(Description):
     durations: tuple[Positive, ...] = Field(min_length=1, description="Of the period, in sqrt(R/g).")
 
 
-class Part(Description):
+class SlabFamily(Description):
     """Slabs of one friction between disks, ordered or with one polydispersity."""
 
     friction: Ratio
@@ -43,7 +43,7 @@ class Part(Description):
     to: Positive = Field(description="Largest force, in mean disk weights.")
     polydispersity: Fraction = Field(default=0.0, description="delta; the largest disks touch in the initial lattice.")
     realizations: Count = Field(default=1, description="Of the disorder.")
-    taps: Taps | None = Field(default=None, description="Before the load, in each combination; none: untapped.")
+    taps: TapSeries | None = Field(default=None, description="Before the load, in each combination; none: untapped.")
 
     @property
     def tapped(self) -> list[tuple[int, float, float]]:
@@ -59,7 +59,7 @@ class Parameters(SceneGroup):
     ] = UNIT_LOAD
     ways: tuple[Way, ...] = Field(min_length=1, description="The first one is what the others are compared with.")
     forces: Growing = Field(description="In mean disk weights.")
-    parts: tuple[Part, ...] = Field(min_length=1, description="The first one is ordered and untapped.")
+    parts: tuple[SlabFamily, ...] = Field(min_length=1, description="The first one is ordered and untapped.")
     asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
 
     def checks(self) -> Checks:

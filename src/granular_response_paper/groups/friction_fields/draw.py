@@ -12,7 +12,7 @@ from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box, FloatArray
 from granular_response_paper.captions import RADIUS, Caption, Datasets, lettered, of_group, of_scene, values
-from granular_response_paper.panels import Contacts, added_forces, family, force_key, forces, note, titles
+from granular_response_paper.panels import ContactLines, added_forces, family, force_key, forces, note, titles
 
 from .parameters import Parameters
 
@@ -67,7 +67,7 @@ def _findings(datasets: Datasets) -> dict[str, str]:
     data, stress, profiles = datasets["forces"], datasets["stress"], datasets["profiles"]
     turned = []
     for index, position in enumerate(data["position"].values):
-        vector, point = data["contact_added_force"].values[index], Contacts.of(data, position).point
+        vector, point = data["contact_added_force"].values[index], ContactLines.of(data, position).point
         size = np.linalg.norm(vector, axis=1)
         centre = position[int(data["loaded_disk"])]
         near = np.linalg.norm(point[: len(size)] - centre, axis=1) < NEAR_LOAD
@@ -104,7 +104,7 @@ def _force_chains(data: xr.Dataset) -> Figure:
     radius = data["radius"].values
     added, strongest = added_forces(data)
     for index, position in enumerate(data["position"].values):
-        contacts = Contacts.of(data, position)
+        contacts = ContactLines.of(data, position)
         x, z = position[disk]
         inside = np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0
         near = np.abs(contacts.point[:, 0] - 0.5 * width) <= width / 6.0 + 1.0

@@ -16,7 +16,7 @@ from granular_response.plot import network, style
 from granular_response.plot.field import draw_field
 from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, Box
 from granular_response_paper.captions import RADIUS, Caption, Datasets, of_group, of_scene
-from granular_response_paper.panels import Contacts, force_key, forces, note, titles
+from granular_response_paper.panels import ContactLines, force_key, forces, note, titles
 
 from .parameters import Parameters
 
@@ -104,7 +104,7 @@ def _forces(axes: Axes, one: xr.Dataset, strongest: float) -> None:
     position, radius = one["position"].values, one["radius"].values
     network.draw_disks(axes, position, radius, facecolor=style.DISKS, edgecolor="none")
     touching = np.where(one["contact_status"].values[:, None] != 0, one["contact_force"].values, 0.0)
-    forces(axes, Contacts.of(one, position), np.concatenate([touching, one["wall_force"].values]), strongest)
+    forces(axes, ContactLines.of(one, position), np.concatenate([touching, one["wall_force"].values]), strongest)
     _clipped_at_walls(axes, one)
 
 

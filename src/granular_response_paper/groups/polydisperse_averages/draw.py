@@ -18,7 +18,7 @@ from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
 from granular_response_paper.captions import RADIUS, Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import (
     DASHED,
-    Contacts,
+    ContactLines,
     banded,
     different,
     family,
@@ -178,7 +178,7 @@ def _forces(data: xr.Dataset) -> Figure:
     radius, position = data["radius"].values, data["position"].values
     top = float((position[..., 1] + radius).max())
     x, z = position[1, disk]
-    under_gravity, contacts = (Contacts.of(data, one) for one in position)
+    under_gravity, contacts = (ContactLines.of(data, one) for one in position)
     added = loaded - resting
     force = style.equals(style.F_EXT, load, style.WEIGHT)
     wide = figure.add_subplot(grid[0, :])

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
 from granular_response_paper.captions import RADIUS, Caption, Datasets, of_group, of_scene
-from granular_response_paper.panels import Contacts, added_forces, force_key, forces, titles
+from granular_response_paper.panels import ContactLines, added_forces, force_key, forces, titles
 
 from .parameters import Parameters
 
@@ -35,7 +35,7 @@ def _finding(data: xr.Dataset, angle: float) -> str:
     parts = []
     for state in (0, -1):
         position, vector = data["position"].values[state], data["contact_added_force"].values[state]
-        point = Contacts.of(data, position).point[: len(vector)]
+        point = ContactLines.of(data, position).point[: len(vector)]
         near = np.linalg.norm(point - position[disk], axis=1) < NEAR
         size = np.linalg.norm(vector[near], axis=1)
         within = np.abs(vector[near] @ along) > np.cos(np.radians(ALONG)) * size
@@ -64,7 +64,7 @@ def _chains(data: xr.Dataset) -> Figure:
         position = data["position"].values[index]
         inside = (np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0) & (position[:, 1] >= low - 1.0)
         network.draw_disks(axes, position[inside], radius[inside], facecolor=style.DISKS, edgecolor="none")
-        contacts = Contacts.of(data, position)
+        contacts = ContactLines.of(data, position)
         x, z = contacts.point.T
         shown = (x >= left) & (x <= right) & (z >= low)
         forces(axes, contacts, added[index], largest, shown=shown)
