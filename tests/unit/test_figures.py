@@ -112,7 +112,7 @@ def test_lines_of_forces_and_their_key_have_one_scale():
     """Length and width are proportional to the force, as the captions of Figs. 2, 13 and 17 ask."""
     axes = style.figure()[1][0, 0]
     along = np.array([[0.6, 0.8], [1.0, 0.0]])
-    contacts = panels.Contacts(np.array([[1.0, 2.0], [5.0, 2.0]]), along)
+    contacts = panels.ContactLines(np.array([[1.0, 2.0], [5.0, 2.0]]), along)
     panels.forces(axes, contacts, np.array([[3.0, 4.0], [2.5, 0.0]]), 5.0)
     panels.force_key(axes, (8.0, 6.0), 1.0, 5.0, style.WEIGHT)
     drawn, key = axes.collections
@@ -131,7 +131,7 @@ def test_contacts_with_walls_come_last_and_their_normals_point_inwards():
             "wall_disk": ("wall_contact", [0, 1]), "wall_index": ("wall_contact", [FLOOR, LEFT_WALL]),
         }
     )  # fmt: skip
-    found = panels.Contacts.of(data, np.array([[3.0, 1.0], [1.0, 1.0]]))
+    found = panels.ContactLines.of(data, np.array([[3.0, 1.0], [1.0, 1.0]]))
     np.testing.assert_allclose(found.point, [[2.0, 1.0], [3.0, 0.0], [0.0, 1.0]])
     np.testing.assert_allclose(found.normal, [[2.0, 0.0], [0.0, 1.0], [1.0, 0.0]])
 
