@@ -14,7 +14,7 @@ from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.timestep import stability_limit
 from granular_response.state import FloatArray
-from granular_response_paper.groups.stability import simulate as time_steps
+from stress import time_steps
 
 #: Where it happens, far from side walls.
 FAR = 500.0

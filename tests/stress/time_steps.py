@@ -1,21 +1,18 @@
-"""Numerical stability: which time steps settle, cycle or blow up, against the predicted limit.
+"""Which time steps settle, cycle or blow up, against the predicted limit.
 
 A packing at rest is kicked, in raw dynamics with no guard on the step. The rest state is solved with a safe step. It is
 then knocked about a little, so that contacts neither open nor slide at first: whether the kick dies out is the linear
 stability of the integrator in this packing. Beyond the limit the motion grows until contacts open and slide, and either
-goes on for ever or blows up. Random scenes, collisions and rolling in closed form are tests (``tests/stress``).
+goes on for ever or blows up.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.errors import SolveError
 from granular_response.scene import Scene
@@ -24,31 +21,9 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states, rest_state
 from granular_response.solvers.timestep import stability_limit
 from granular_response.state import State
-from granular_response.store.variables import WEIGHTS
-from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.stability.parameters import (
-    BLOWS_UP,
-    CYCLES,
-    NO_REST,
-    OUTCOMES,
-    SETTLES,
-    Axis,
-    Parameters,
-)
-from granular_response_paper.records import column, record, table_along
-from granular_response_paper.tasks import computed
 
-#: Axes of the time-step maps: what each one changes in the scene, and what it is.
-AXES: dict[str, tuple[str, str]] = {
-    "normal_stiffness": ("contact.normal_stiffness", "normal stiffness in mean disk weights per mean radius"),
-    "stiffness_ratio": ("contact.stiffness_ratio", "tangential over normal stiffness"),
-    "damping_ratio": ("contact.damping_ratio", "dashpot over its critical value"),
-    "friction": ("contact.friction", "coefficient of friction between disks"),
-    "wall_friction": ("wall.friction", "coefficient of friction of the walls"),
-    "wall_stiffness": ("wall.normal_stiffness", "normal stiffness of walls in mean disk weights per mean radius"),
-    "polydispersity": ("packing.polydispersity", "polydispersity"),
-    "load": ("loads", f"applied force {WEIGHTS}"),
-}
+#: What becomes of a kick.
+SETTLES, CYCLES, BLOWS_UP, NO_REST = 0, 1, 2, 3
 #: Largest velocity of the kick, in units of the mean overlap times the frequency of a contact.
 KICK = 1e-3
 #: Parts into which a run is divided to see whether the energy still falls.
@@ -60,14 +35,11 @@ LOOK_EVERY = 100
 GROWN, FALLEN = 1e10, 0.3
 
 
-@record
-class Steps:
+class Steps(NamedTuple):
     """One scene and integrator."""
 
-    limit: float = column("predicted largest stable time step in sqrt(radius/g)")
-    outcome: NDArray[np.int8] = column(
-        "what becomes of a kick: " + ", ".join(f"{code} {text}" for code, text in enumerate(OUTCOMES)), "ratio"
-    )
+    limit: float  #: predicted largest stable time step in sqrt(radius/g)
+    outcome: list[int]  #: what becomes of a kick, for each ratio
 
 
 def tried(scene: Scene, integrators: Sequence[str], ratios: Sequence[float], steps: int, seed: int) -> list[Steps]:
@@ -77,12 +49,12 @@ def tried(scene: Scene, integrators: Sequence[str], ratios: Sequence[float], ste
     try:
         problem, state, load = prepared(problem)
     except SolveError:
-        return [Steps(limit, np.full(len(ratios), NO_REST, np.int8)) for limit in limits]
+        return [Steps(limit, [NO_REST] * len(ratios)) for limit in limits]
     kicked = kick(problem, state, seed)
     found = []
     for name, limit in zip(integrators, limits, strict=True):
         outcomes = [outcome(problem, kicked, load, name, ratio * limit, steps) for ratio in ratios]
-        found.append(Steps(limit, np.array(outcomes, np.int8)))
+        found.append(Steps(limit, outcomes))
     return found
 
 
@@ -136,23 +108,3 @@ def outcome(problem: Problem, kicked: State, load: float, integrator: str, step:
         held = held and int((dynamics.contact_count() >= 2).sum()) >= bearing
         energy.append(now)
     return SETTLES if max(energy[PARTS // 2 :]) < FALLEN * start else CYCLES
-
-
-def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``time_step_AXIS`` for each of ``time_steps.axes``."""
-    p = parameters.time_steps
-    tasks = {}
-    for name, values in p.axes.items():
-        for k, value in enumerate(values):
-            loads = [{"disk": "top-centre", "force": [0.0, -value]}] if value else []
-            changes = {AXES[name][0]: loads if name == "load" else value}
-            scene = p.scene.updated({**changes, "protocol.time_step": "auto"})  # safe to come to rest with
-            tasks[name, k] = partial(tried, scene, p.integrators, p.ratios, p.steps, parameters.seed)
-    found = computed(tasks, "time steps")
-
-    def along(name: Axis) -> xr.Dataset:
-        axis, ratio = (p.axes[name], AXES[name][1]), (p.ratios, "time step over the predicted limit")
-        several: dict[Any, Steps] = {(i, k): one for k in range(len(axis[0])) for i, one in enumerate(found[name, k])}
-        return table_along(several, integrator=(p.integrators, "integrator"), **{name: axis}, ratio=ratio)
-
-    return labelled({f"time_step_{name}": along(name) for name in p.axes})
