@@ -259,7 +259,7 @@ if __name__ == "__main__":
 """
 
 
-@pytest.mark.parametrize(("workers", "done"), [(1, 2), (4, 1), (4, 3)])
+@pytest.mark.parametrize(("workers", "done"), [(1, 0), (1, 2), (4, 0), (4, 3)])
 def test_a_terminal_that_interrupts_has_one_line(tmp_path, workers, done):
     """The signal goes to all processes of the terminal, those that are only just importing too."""
     script = tmp_path / "script.py"
