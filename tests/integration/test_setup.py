@@ -1,6 +1,7 @@
 """Set-up and the whole check on a machine that has nothing: what they decide. No package is installed here."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -242,6 +243,21 @@ def test_the_check_runs_the_commands_of_the_readme_and_shows_what_they_say(check
         f"{one}: 3 passed" for one in ("reproduce", "test", "lint", "docs", "wheels")
     ]
     assert "nothing differs" in out
+
+
+def test_the_check_has_what_packages_are_reached_by_and_nothing_else_of_the_user(check, monkeypatch):
+    proxies = {f"{one}_proxy" for one in ("http", "https", "all", "no")}
+    reaching = proxies | {one.upper() for one in proxies} | {"SSL_CERT_FILE", "REQUESTS_CA_BUNDLE"}
+    for name in (*reaching, "PYTHONPATH", "MPLBACKEND", "FORCE_COLOR", "DVC_ROOT", "PIP_USER"):
+        monkeypatch.setenv(name, "/some where")
+    for name in ("SSL_CERT_DIR", "CURL_CA_BUNDLE"):
+        monkeypatch.delenv(name, raising=False)
+    status, out, err = check(BLOCKS.format("env"))
+    assert status == 0, err
+    found = dict(re.findall(r"^(\w+)=(.*)$", out, re.M))
+    own = {"PATH", "HOME", "LANG", "TERM", "CI", "DVC_SITE_CACHE_DIR", "PWD", "SHLVL", "_", "PIP_NO_CACHE_DIR"}
+    assert {name for name, value in found.items() if value == "/some where"} == reaching
+    assert {name for name in found if not name.startswith("PIP_")} <= own | reaching
 
 
 @pytest.mark.parametrize(
