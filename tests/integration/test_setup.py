@@ -1,5 +1,7 @@
 """Set-up and the whole check on a machine that has nothing: what they decide. No package is installed here."""
 
+import fcntl
+import json
 import os
 import re
 import shutil
@@ -14,11 +16,18 @@ from places import ROOT
 
 #: In place of pip: writes down what it was asked, and knows the settings in the file ``settings`` of the folder.
 PIP = """
-import pathlib, sys
+import json, pathlib, sys
+from urllib.parse import quote
 if sys.argv[1:3] == ["config", "list"]:
     sys.exit(print(pathlib.Path("settings").read_text(), end=""))
 with open("asked", "a") as asked:
     print(*sys.argv[1:], file=asked)
+for k, word in enumerate(sys.argv):
+    if word == "--editable":
+        note = pathlib.Path(__file__).parents[1] / f"granular_response{k}.dist-info" / "direct_url.json"
+        note.parent.mkdir(exist_ok=True)
+        url = "file://" + quote(str(pathlib.Path(sys.argv[k + 1]).absolute()))
+        note.write_text(json.dumps({"url": url, "dir_info": {"editable": True}}))
 sys.exit(pathlib.Path("pip-fails").exists())
 """
 
@@ -118,6 +127,42 @@ def test_an_environment_that_is_not_whole_is_made_anew(setup, damage):
     assert not Path(".venv/of-before").exists()
 
 
+def test_an_environment_of_somebody_is_not_lost(setup, capsys):
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", ".venv"], check=True)
+    Path(".venv/mine").touch()
+    whole(setup)
+    (aside,) = Path().glob(".venv-before-*")
+    assert (aside / "mine").exists() and not Path(".venv/mine").exists()
+    assert f".venv was not made by this set-up, and is {aside} now" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("elsewhere", [False, True], ids=["copied", "editable"])
+def test_packages_that_another_clone_has_put_there_are_replaced(setup, elsewhere):
+    whole(setup)
+    note = next(Path(".venv").glob("lib/python*/site-packages/*.dist-info/direct_url.json"))
+    note.write_text(json.dumps({"url": "file:///other", "dir_info": {"editable": True} if elsewhere else {}}))
+    assert setup.usable() and not setup.installed("paper")
+    whole(setup)
+
+
+def test_the_next_set_up_waits_for_what_a_killed_one_has_started(setup):
+    """Else both write into the environment."""
+    setup.make()
+    Path(".venv/.begun").unlink()
+    (code,) = Path(".venv").glob("lib/python*/site-packages/pip/__main__.py")
+    code.write_text("import sys\nif sys.argv[1] == 'wheel':\n    print('begun', flush=True)\n    open('gate').read()\n")
+    os.mkfifo("gate")
+    run = subprocess.Popen([sys.executable, "-I", setup.__file__], stdout=subprocess.PIPE, text=True)
+    assert run.stdout.readline().startswith("Installing") and run.stdout.readline() == "begun\n"
+    run.kill()
+    run.wait()
+    with open(setup.__file__) as held:
+        with pytest.raises(BlockingIOError):
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        open("gate", "w").close()  # now it ends
+        fcntl.flock(held, fcntl.LOCK_EX)
+
+
 def test_an_environment_is_made_within_the_checkout_where_a_link_leads_out_of_it(setup, tmp_path):
     """What the link leads to is somebody else's."""
     elsewhere = tmp_path / "elsewhere"
@@ -209,6 +254,14 @@ def test_a_path_that_a_tool_misreads_is_refused_in_one_line(tmp_path, sign):
     done = subprocess.run([sys.executable, "-I", script], capture_output=True, text=True)
     assert done.returncode == 1 and done.stderr.count("\n") == 1
     assert f"the path has a {sign}, which" in done.stderr and str(script.parents[1]) in done.stderr
+
+
+def test_a_path_that_is_not_utf_8_is_refused_in_one_line(tmp_path):
+    script = Path(os.fsdecode(os.fsencode(tmp_path) + b"/a\xffb")) / ".ci" / "setup"
+    script.parent.mkdir(parents=True)
+    shutil.copy(ROOT / ".ci" / "setup", script)
+    done = subprocess.run([sys.executable, "-I", script], capture_output=True, text=True)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1 and "path or locale is not UTF-8" in done.stderr
 
 
 @pytest.fixture
