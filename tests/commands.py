@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import multiprocessing
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -28,6 +29,8 @@ loads: [{disk: top-centre, force: [0.0, -1.0]}]
 """
 #: Of a command, in seconds.
 LONGEST = 600.0
+#: What a command says each minute that it takes, as it may on a busy machine that compiles.
+_EACH_MINUTE = re.compile(r"^[^:\n]+: \S+ of \S+, \d+ s\n", re.M)
 #: What worker processes and commands of tests import, with what the test modules do whose functions they run.
 IMPORTED = [
     "granular_response.api.sweep",
@@ -63,7 +66,9 @@ def process(
 ) -> subprocess.CompletedProcess[str]:
     """``granular-response ARGUMENTS``, or that of ``package``, in a new process; ``options`` of ``subprocess.run``."""
     command = [sys.executable, "-m", package or package_of(*arguments), *map(str, arguments)]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
+    done.stderr = _EACH_MINUTE.sub("", done.stderr)
+    return done
 
 
 def python(*arguments: object, folder: str | Path | None = None, **environment: str) -> str:
@@ -94,8 +99,8 @@ def call(
         child.join(LONGEST)
         if child.is_alive():
             child.kill()
-        said = (one.read_text(encoding="utf-8", errors="replace") for one in streams)
-        return subprocess.CompletedProcess(argv, child.exitcode, *said)
+        out, err = (one.read_text(encoding="utf-8", errors="replace") for one in streams)
+        return subprocess.CompletedProcess(argv, child.exitcode, out, _EACH_MINUTE.sub("", err))
 
 
 def succeeded(*arguments: object, folder: str | Path | None = None) -> str:

@@ -66,7 +66,7 @@ def test_version():
 def test_run_and_show(folder):
     finished = process("run", "scene.yaml", "-o", "out/result.nc", folder=folder)
     assert finished.returncode == 0, finished.stderr
-    assert finished.stderr == ""  # no progress where nobody looks
+    assert finished.stderr == ""  # no bar where nobody looks
     assert "out/result.nc: 14 disks" in finished.stdout and "replaces" not in finished.stdout
     attributes = store.read_attributes(folder / "out" / "result.nc")
     assert 0 < attributes["wall_clock_seconds"] < 600
@@ -250,6 +250,7 @@ def test_an_interrupted_command_ends_quietly(tmp_path):
     command = [sys.executable, "-m", "granular_response", "run", "scene.yaml", "-o", "result.nc"]
     run = subprocess.Popen(
         command, cwd=tmp_path, stdin=child, stdout=child, stderr=child, start_new_session=True,
+        env=os.environ | {"TERM": "xterm"},
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # jobs in the background ignore it
     )  # fmt: skip
     os.close(child)
@@ -268,7 +269,8 @@ def test_an_interrupted_command_ends_quietly(tmp_path):
     os.close(parent)
     assert run.returncode == 130
     assert b"Traceback" not in output and b"Aborted" not in output
-    assert output.count(b"granular-response: ") == output.count(b"granular-response: interrupted\r\n") == 1
+    said = re.findall(rb"granular-response: (\w+)", output)
+    assert [one for one in said if one != b"compiling"] == [b"interrupted"]  # kernels may be compiled or not
     assert not (tmp_path / "result.nc").exists()
 
 

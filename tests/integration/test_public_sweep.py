@@ -1,7 +1,6 @@
 """Sweeps and events by the public namespace alone."""
 
 import contextlib
-import io
 import json
 import os
 import pickletools
@@ -17,11 +16,9 @@ import xarray as xr
 from commands import python
 from places import ROOT
 from refusals import refuses
-from rich.console import Console
 
 import granular_response as gr
 from granular_response.api import sweep as sweeping
-from granular_response.api import terminal
 from granular_response.scene import SceneError
 from granular_response.studies import EventNotBracketed
 from granular_response.sweeps.errors import SweepError
@@ -347,19 +344,6 @@ def test_a_sweep_says_what_it_was_made_from(tmp_path):
     of_ways = gr.preparations(SCENE, ways, workers=1, progress=False).attrs
     assert of_ways["measure"] == "granular_response.api.sweep.floor_response"
     assert json.loads(of_ways["axes"])["preparation"][1]["gravity"] == "frictionless"
-
-
-def test_a_log_file_gets_a_line_a_minute_and_what_is_kept_at_once(monkeypatch):
-    now = [1000.0]
-    monkeypatch.setattr(terminal.time, "monotonic", lambda: now[0])
-    log = io.StringIO()
-    with terminal.TerminalProgress(Console(file=log)) as progress:
-        progress(206, 400, "kept")
-        assert log.getvalue() == "206 of 400 kept\n"
-        for done in range(206, 401):
-            progress(done, 400, "scenes")
-            now[0] += 1.0
-    assert log.getvalue().splitlines()[1:] == [f"scenes: {206 + k} of 400, {k} s" for k in (60, 120, 180)]
 
 
 CLUSTER = ROOT / "examples" / "cluster"

@@ -1,6 +1,9 @@
 """Set-up and the whole check on a machine that has nothing: what they decide. No package is installed here."""
 
+import fcntl
+import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -13,11 +16,18 @@ from places import ROOT
 
 #: In place of pip: writes down what it was asked, and knows the settings in the file ``settings`` of the folder.
 PIP = """
-import pathlib, sys
+import json, pathlib, sys
+from urllib.parse import quote
 if sys.argv[1:3] == ["config", "list"]:
     sys.exit(print(pathlib.Path("settings").read_text(), end=""))
 with open("asked", "a") as asked:
     print(*sys.argv[1:], file=asked)
+for k, word in enumerate(sys.argv):
+    if word == "--editable":
+        note = pathlib.Path(__file__).parents[1] / f"granular_response{k}.dist-info" / "direct_url.json"
+        note.parent.mkdir(exist_ok=True)
+        url = "file://" + quote(str(pathlib.Path(sys.argv[k + 1]).absolute()))
+        note.write_text(json.dumps({"url": url, "dir_info": {"editable": True}}))
 sys.exit(pathlib.Path("pip-fails").exists())
 """
 
@@ -25,7 +35,7 @@ sys.exit(pathlib.Path("pip-fails").exists())
 @pytest.fixture
 def setup(tmp_path, monkeypatch):
     """The script, as that of a checkout in a new folder whose environments have the pip above."""
-    checkout = tmp_path / "a größe's #1 (100 %; a&b)"
+    checkout = tmp_path / "a größe's #1 (100 %; $a&b)"
     for name in (".ci/setup", "requirements.lock", "pyproject.toml", "src/granular_response_paper", "extensions"):
         source = ROOT / name
         name = f"{name}/pyproject.toml" if source.is_dir() else name
@@ -71,12 +81,13 @@ def asked():
 
 def whole(setup):
     setup.main([])
-    assert setup.usable() and setup.installed("paper") and len(asked()) == 2
+    assert setup.usable() and setup.installed("paper") and len(asked()) == 3
 
 
 def test_versions_come_first_then_the_packages_of_the_checkout_and_nothing_twice(setup, capsys):
     setup.main([])
-    versions, own = asked()
+    built, versions, own = asked()
+    assert built.startswith("wheel --no-deps --constraint requirements.lock") and setup.BUILT in built
     assert "--constraint requirements.lock hatchling editables" in versions and "--no-build-isolation" not in versions
     assert own.count("--editable") == 3 and "--no-deps" in own and "--no-build-isolation" in own
     setup.main([])
@@ -116,6 +127,42 @@ def test_an_environment_that_is_not_whole_is_made_anew(setup, damage):
     assert not Path(".venv/of-before").exists()
 
 
+def test_an_environment_of_somebody_is_not_lost(setup, capsys):
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", ".venv"], check=True)
+    Path(".venv/mine").touch()
+    whole(setup)
+    (aside,) = Path().glob(".venv-before-*")
+    assert (aside / "mine").exists() and not Path(".venv/mine").exists()
+    assert f".venv was not made by this set-up, and is {aside} now" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("elsewhere", [False, True], ids=["copied", "editable"])
+def test_packages_that_another_clone_has_put_there_are_replaced(setup, elsewhere):
+    whole(setup)
+    note = next(Path(".venv").glob("lib/python*/site-packages/*.dist-info/direct_url.json"))
+    note.write_text(json.dumps({"url": "file:///other", "dir_info": {"editable": True} if elsewhere else {}}))
+    assert setup.usable() and not setup.installed("paper")
+    whole(setup)
+
+
+def test_the_next_set_up_waits_for_what_a_killed_one_has_started(setup):
+    """Else both write into the environment."""
+    setup.make()
+    Path(".venv/.begun").unlink()
+    (code,) = Path(".venv").glob("lib/python*/site-packages/pip/__main__.py")
+    code.write_text("import sys\nif sys.argv[1] == 'wheel':\n    print('begun', flush=True)\n    open('gate').read()\n")
+    os.mkfifo("gate")
+    run = subprocess.Popen([sys.executable, "-I", setup.__file__], stdout=subprocess.PIPE, text=True)
+    assert run.stdout.readline().startswith("Installing") and run.stdout.readline() == "begun\n"
+    run.kill()
+    run.wait()
+    with open(setup.__file__) as held:
+        with pytest.raises(BlockingIOError):
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        open("gate", "w").close()  # now it ends
+        fcntl.flock(held, fcntl.LOCK_EX)
+
+
 def test_an_environment_is_made_within_the_checkout_where_a_link_leads_out_of_it(setup, tmp_path):
     """What the link leads to is somebody else's."""
     elsewhere = tmp_path / "elsewhere"
@@ -151,7 +198,7 @@ def test_another_python_is_taken_only_where_it_was_asked_for(setup, monkeypatch)
     setup.main([])
     assert asked() == []
     setup.main(["--this-python"])
-    assert len(asked()) == 2
+    assert len(asked()) == 3
 
 
 def test_what_pip_did_not_end_is_done_again(setup):
@@ -199,7 +246,7 @@ def test_a_python_that_makes_no_environments_names_the_package_that_is_missing(s
     assert not Path(".venv").exists()
 
 
-@pytest.mark.parametrize("sign", [":", "$", "[", "{", "}"])
+@pytest.mark.parametrize("sign", [":", "[", "{", "}"])
 def test_a_path_that_a_tool_misreads_is_refused_in_one_line(tmp_path, sign):
     script = tmp_path / f"a{sign}b" / ".ci" / "setup"
     script.parent.mkdir(parents=True)
@@ -207,6 +254,14 @@ def test_a_path_that_a_tool_misreads_is_refused_in_one_line(tmp_path, sign):
     done = subprocess.run([sys.executable, "-I", script], capture_output=True, text=True)
     assert done.returncode == 1 and done.stderr.count("\n") == 1
     assert f"the path has a {sign}, which" in done.stderr and str(script.parents[1]) in done.stderr
+
+
+def test_a_path_that_is_not_utf_8_is_refused_in_one_line(tmp_path):
+    script = Path(os.fsdecode(os.fsencode(tmp_path) + b"/a\xffb")) / ".ci" / "setup"
+    script.parent.mkdir(parents=True)
+    shutil.copy(ROOT / ".ci" / "setup", script)
+    done = subprocess.run([sys.executable, "-I", script], capture_output=True, text=True)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1 and "path or locale is not UTF-8" in done.stderr
 
 
 @pytest.fixture
@@ -242,6 +297,21 @@ def test_the_check_runs_the_commands_of_the_readme_and_shows_what_they_say(check
         f"{one}: 3 passed" for one in ("reproduce", "test", "lint", "docs", "wheels")
     ]
     assert "nothing differs" in out
+
+
+def test_the_check_has_what_packages_are_reached_by_and_nothing_else_of_the_user(check, monkeypatch):
+    proxies = {f"{one}_proxy" for one in ("http", "https", "all", "no")}
+    reaching = proxies | {one.upper() for one in proxies} | {"SSL_CERT_FILE", "REQUESTS_CA_BUNDLE"}
+    for name in (*reaching, "PYTHONPATH", "MPLBACKEND", "FORCE_COLOR", "DVC_ROOT", "PIP_USER"):
+        monkeypatch.setenv(name, "/some where")
+    for name in ("SSL_CERT_DIR", "CURL_CA_BUNDLE"):
+        monkeypatch.delenv(name, raising=False)
+    status, out, err = check(BLOCKS.format("env"))
+    assert status == 0, err
+    found = dict(re.findall(r"^(\w+)=(.*)$", out, re.M))
+    own = {"PATH", "HOME", "LANG", "TERM", "CI", "DVC_SITE_CACHE_DIR", "PWD", "SHLVL", "_", "PIP_NO_CACHE_DIR"}
+    assert {name for name, value in found.items() if value == "/some where"} == reaching
+    assert {name for name in found if not name.startswith("PIP_")} <= own | reaching
 
 
 @pytest.mark.parametrize(

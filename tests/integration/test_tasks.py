@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import python
+from commands import LONGEST, python
 from refusals import refuses
 
 from granular_response.scene import Contact, Scene, Wall
@@ -44,10 +44,19 @@ def fail_at_three(item):
     return item
 
 
-def note(item, folder, die_at=None, always=False):
-    """Leave a mark for each start; kill this process at one item, the first time or always."""
+def wait(seconds):
+    time.sleep(seconds)
+
+
+def note(item, folder, die_at=None, always=False, gate=None):
+    """Leave a mark for each start; kill this process at one item, the first time or always.
+
+    From the item ``gate`` on it waits for a file of that name.
+    """
     with open(Path(folder) / str(item), "a") as file:
         file.write(f"{os.getpid()}\n")
+    while gate is not None and item >= gate and not (Path(folder) / "gate").exists():
+        time.sleep(0.02)
     if item == die_at and (always or len(starts(folder, item)) == 1):
         os.kill(os.getpid(), signal.SIGKILL)
     time.sleep(0.05)
@@ -251,28 +260,29 @@ def test_an_interrupted_sweep_continues(tmp_path):
 INTERRUPTED = """
 import sys
 sys.path.insert(0, sys.argv[1])
-from test_tasks import map_tasks, slow_first
+from test_tasks import map_tasks, wait
 if __name__ == "__main__":
+    workers, ended = map(int, sys.argv[2:])
     def progress(done, total, what):
         print(done, flush=True)
-    map_tasks(slow_first, [0] * 400, workers=int(sys.argv[2]), progress=progress)
+    map_tasks(wait, [0.0] * ended + [3600.0] * 8, workers=workers, progress=progress)
 """
 
 
-@pytest.mark.parametrize(("workers", "done"), [(1, 2), (4, 1), (4, 3)])
+@pytest.mark.parametrize(("workers", "done"), [(1, 0), (1, 2), (4, 0), (4, 3)])
 def test_a_terminal_that_interrupts_has_one_line(tmp_path, workers, done):
     """The signal goes to all processes of the terminal, those that are only just importing too."""
     script = tmp_path / "script.py"
     script.write_text(INTERRUPTED)
     run = subprocess.Popen(
-        [sys.executable, script, Path(__file__).parent, str(workers)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True, start_new_session=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        [sys.executable, script, Path(__file__).parent, str(workers), str(done)],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        start_new_session=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )  # fmt: skip
     while int(run.stdout.readline()) < done:
         pass
     os.killpg(run.pid, signal.SIGINT)
-    said = run.communicate(timeout=300)[1].splitlines()
-    assert len(said) == 1 and re.fullmatch(r"interrupted; \d+ of 400 tasks are done", said[0]), said
+    assert run.communicate(timeout=LONGEST)[1] == f"interrupted; {done} of {done + 8} tasks are done\n"
     assert run.returncode == -signal.SIGINT
 
 
@@ -311,7 +321,7 @@ import functools, sys
 sys.path.insert(0, sys.argv[1])
 from test_tasks import map_tasks, note
 if __name__ == "__main__":
-    map_tasks(functools.partial(note, folder=sys.argv[2]), range(40), workers=2, checkpoint=sys.argv[3])
+    map_tasks(functools.partial(note, folder=sys.argv[2], gate=20), range(40), workers=2, checkpoint=sys.argv[3])
 """
 
 
@@ -320,7 +330,7 @@ def test_a_killed_sweep_continues_and_leaves_no_workers(tmp_path):
     marks.mkdir()
     script.write_text(KILLED)
     run = subprocess.Popen([sys.executable, script, Path(__file__).parent, marks, kept])
-    deadline = time.monotonic() + 600
+    deadline = time.monotonic() + LONGEST
     workers: set[int] = set()
     while len(list(kept.rglob("*.kept"))) < 5 or len(workers) < 2:  # one that begins later would leave its mark later
         assert time.monotonic() < deadline
@@ -333,9 +343,9 @@ def test_a_killed_sweep_continues_and_leaves_no_workers(tmp_path):
         time.sleep(0.05)
     done = len(list(kept.rglob("*.kept")))
     before = sum(len(starts(marks, item)) for item in range(40))
-    assert done < 40
-    task = functools.partial(note, folder=marks)
-    task.keywords["folder"] = str(marks)  # as the script had it
+    assert done <= 20
+    (marks / "gate").touch()
+    task = functools.partial(note, folder=str(marks), gate=20)  # as the script had it
     assert map_tasks(task, range(40), workers=1, checkpoint=kept) == [item * item for item in range(40)]
     assert sum(len(starts(marks, item)) for item in range(40)) - before == 40 - done
 
@@ -509,7 +519,12 @@ class TestExecutors:
         marks.mkdir()
         task = functools.partial(note, folder=marks, die_at=12)
         with cluster.get_client() as client:
-            result = map_tasks(task, range(16), executor=client.get_executor(), checkpoint=tmp_path / "kept")
+            options = {"executor": client.get_executor(), "checkpoint": tmp_path / "kept"}
+            try:
+                result = map_tasks(task, range(16), **options)
+            except SweepError as error:  # Dask looks at a task after it has its result: a death in between loses that
+                assert " was lost: ValueError: too many values to unpack" in str(error)
+                result = map_tasks(task, range(16), **options)
         assert result == [item * item for item in range(16)]
         again = [item for item in range(16) if len(starts(marks, item)) > 1]
         assert 12 in again

@@ -2,7 +2,6 @@
 
 import io
 import json
-import time
 from pathlib import Path
 
 import numpy as np
@@ -147,18 +146,50 @@ def test_an_interruption_and_what_goes_on_from_it_are_said(group, monkeypatch, c
     assert capsys.readouterr().err == ""
 
 
-def test_progress_on_a_terminal_shows_time_left_after_a_while():
-    stream = io.StringIO()
-    console = Console(file=stream, force_terminal=True, width=100)
-    with terminal.TerminalProgress(console, patience=0.2) as progress:
-        progress(0, 4, "scenes")
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """A list with the time, which passes where a test says so."""
+    now = [1000.0]
+    monkeypatch.setattr(terminal.time, "monotonic", lambda: now[0])
+    return now
+
+
+def test_progress_on_a_terminal_shows_time_left_after_a_while(monkeypatch, clock):
+    monkeypatch.setenv("TERM", "xterm")
+    stream = Terminal()
+    console = Console(file=stream, width=100, color_system=None, get_time=lambda: clock[0])
+    with terminal.TerminalProgress(console) as progress:
+        progress(0, 4, "paths")
         assert stream.getvalue() == ""
-        time.sleep(0.3)
-        progress(1, 4, "scenes")
-        time.sleep(0.2)
-        progress(2, 4, "scenes")
-        time.sleep(0.2)
-        progress(0, 1, "paths")
+        clock[0] += 3.0
+        progress(1, 4, "paths")
+        for done in range(3):
+            clock[0] += 10.0
+            progress(done, 4, "scenes")
     shown = stream.getvalue()
-    for part in ("scenes", "50 %", "left", "paths"):
+    for part in ("paths", "scenes", "50 %", "left 0:00:20"):
         assert part in shown
+
+
+@pytest.mark.parametrize(
+    ("stream", "variables"),
+    [(io.StringIO, {}), (io.StringIO, {"FORCE_COLOR": "1"}), (Terminal, {"TERM": "dumb"})],
+    ids=["file", "file with forced colours", "dumb terminal"],
+)
+def test_where_no_bar_can_move_there_is_a_line_a_minute_and_what_is_kept_at_once(monkeypatch, clock, stream, variables):
+    monkeypatch.setenv("TERM", "xterm")
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    log = stream()
+    with terminal.TerminalProgress(Console(file=log)) as progress:
+        progress(206, 400, "kept")
+        assert log.getvalue() == "206 of 400 kept\n"
+        for done in range(206, 401):
+            progress(done, 400, "scenes")
+            clock[0] += 1.0
+    assert log.getvalue().splitlines()[1:] == [f"scenes: {206 + k} of 400, {k} s" for k in (60, 120, 180)]

@@ -37,8 +37,9 @@ def shown(progress: Callable[..., Any] | bool) -> Iterator[Callable[..., Any] | 
 class TerminalProgress:
     """A line with bar, elapsed time and time left on standard error: ``progress(done, total, what)``.
 
-    Each new ``what`` starts over. Silent for ``patience`` seconds. A notebook gets a line of text; what is neither a
-    terminal nor a notebook, a log file, a line after each ``pause`` seconds. What a checkpoint has is said at once.
+    Each new ``what`` starts over. Silent for ``patience`` seconds. A notebook gets a line of text; a log file, and a
+    terminal that moves no cursor (``TERM=dumb``), a line after each ``pause`` seconds. What a checkpoint has is said at
+    once.
     """
 
     def __init__(self, console: Console | None = None, patience: float = 2.0, pause: float = 60.0) -> None:
@@ -75,7 +76,7 @@ class TerminalProgress:
                 self._console.file.write(f"\r{what or 'working'}: {done:.4g} of {total:.4g}, {elapsed}")
                 self._told = now
             return
-        if not self._console.is_terminal:
+        if not (self._console.is_interactive and self._console.file.isatty()):  # colours can be forced upon a file
             if now - self._logged >= self._pause:
                 self._logged, elapsed = now, f"{now - self._started:.0f} s"
                 self._console.file.write(f"{what or 'working'}: {done:.4g} of {total:.4g}, {elapsed}\n")

@@ -204,7 +204,7 @@ def _is_own(kind: Any) -> bool:
 
 @cache
 def cache_folder() -> Path | None:
-    """The folder for machine code of these sources; None where nothing may be written.
+    """The folder for machine code of these sources; None where nothing may be written, and a warning says so.
 
     In ``NUMBA_CACHE_DIR`` if that is set. A checkout keeps it in its own ``__pycache__``, else the user's cache does. A
     package that pip installed keeps it outside of itself, in the user's cache or in the environment's ``var/cache``, so
@@ -219,6 +219,7 @@ def cache_folder() -> Path | None:
             continue
         if os.access(folder, os.W_OK | os.X_OK):
             return folder
+    _log.warning("no folder for machine code can be written, so kernels are compiled in every process")
     return None
 
 

@@ -95,7 +95,7 @@ class Memory:
 
     def has(self, name: str | None) -> bool:
         """Whether there is a file for a value."""
-        return name is not None and self._path(name).is_file()
+        return name is not None and os.path.isfile(self._path(name))
 
     def load(self, name: str | None) -> Any:
         """The value under a name, or MISSING."""

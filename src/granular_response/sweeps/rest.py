@@ -8,6 +8,8 @@ whether it finds a state or computes it.
 
 from __future__ import annotations
 
+import os
+
 from ..scene import Scene
 from ..solvers import solution as solvers
 from ..solvers.problem import Problem
@@ -33,7 +35,7 @@ def rest_state(problem: Problem) -> State:
     state = memory.load(kept)
     if isinstance(state, State):
         return state
-    if not memory.shelf.is_dir():  # the first one of these sources
+    if not os.path.isdir(memory.shelf):  # the first one of these sources
         memory.clear()
     with memory.making(kept):
         state = memory.load(kept)  # another process may just have made it

@@ -116,16 +116,7 @@ def map_tasks(
     workers, progress = given.workers if workers is None else workers, progress or given.progress
     folder = checkpoint or given.checkpoint
     memory = Memory(folder, parts, given.packages) if folder and items else None
-    names = [memory.name(function, item) if memory else None for item in items]
-    results: list[Any] = [memory.load(name) if memory else MISSING for name in names]
-    todo = [index for index, result in enumerate(results) if result is MISSING]
-    done = len(items) - len(todo)
-    if done:
-        LOG.info("%d of %d %s kept", done, len(items), what)
-    if progress:
-        if done:
-            progress(done, len(items), KEPT)
-        progress(done, len(items), what)
+    done = 0
 
     def finish(index: int, result: Any) -> None:
         nonlocal done
@@ -136,9 +127,19 @@ def map_tasks(
         if progress:
             progress(done, len(items), what)
 
-    task = functools.partial(_alone, function, given.rest_states)
-    count = min(workers or threads.cores(), len(todo))
     try:
+        names = [memory.name(function, item) if memory else None for item in items]
+        results: list[Any] = [memory.load(name) if memory else MISSING for name in names]
+        todo = [index for index, result in enumerate(results) if result is MISSING]
+        done = len(items) - len(todo)
+        if done:
+            LOG.info("%d of %d %s kept", done, len(items), what)
+        if progress:
+            if done:
+                progress(done, len(items), KEPT)
+            progress(done, len(items), what)
+        task = functools.partial(_alone, function, given.rest_states)
+        count = min(workers or threads.cores(), len(todo))
         if executor is not None:
             with _interruptions() as look:
                 _submitted(executor, task, items, deque(todo), {}, len(todo), look, finish)
