@@ -60,7 +60,7 @@ figure: ## Draw one figure of the paper: make figure FIGURE=17, or one figure gr
 	@$(MAKE) --no-print-directory setup
 	@group=$$(.ci/figure "$(GROUP)" "$(FIGURE)") && $(PY) -m dvc repro --quiet draw@$$group < /dev/null && .ci/figure --drawn $$group
 
-## For own work on it
+## For own work on it (CONTRIBUTING.md has stress tests and comparisons besides)
 survey: setup ## Run the large ensembles of disordered slabs and larger packings: 70 minutes on two cores; continues where it was
 	$(PY) -m dvc repro survey/dvc.yaml
 	$(PY) survey/document.py
@@ -68,16 +68,16 @@ survey: setup ## Run the large ensembles of disordered slabs and larger packings
 test: tools ## Run all tests and the linters (JOBS=2 for two processes)
 	$(PY) -m pytest -n $(JOBS) --dist worksteal
 
-fuzz: tools ## Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
+fuzz: tools # Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
 	GRANULAR_RESPONSE_FUZZ=$(EXAMPLES) $(PY) -m pytest -m hypothesis -n $(JOBS)
 
-broken: tools ## Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (ten minutes)
+broken: tools # Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (ten minutes)
 	PYTHONPATH=tests $(PY) tests/integration/broken_files.py $(BROKEN) --output tests/data/broken_files.json
 
-scenes: tools ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (half an hour; goes on where it was interrupted)
+scenes: tools # Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (half an hour; goes on where it was interrupted)
 	$(PY) -W ignore tests/unlike_scenes.py $(SCENES) --output tests/data/random_scenes.json
 
-coverage: tools ## What the unit tests reach but for compiled kernels; fails below the floor in pyproject.toml
+coverage: tools # What the unit tests reach but for compiled kernels; fails below the floor in pyproject.toml
 	$(PY) -m coverage run -m pytest tests/unit
 	$(PY) -m coverage report --show-missing --skip-covered
 
@@ -96,16 +96,16 @@ docs: tools ## Build the documentation site into docs/_build/html, running every
 package: tools ## Build sdist and wheel, and try the wheel in a fresh environment
 	.ci/package $(PY) $(PYTHON)
 
-wheels: setup ## Ask the package index whether each pinned package has a wheel for Python 3.11 to 3.14 (two minutes)
+wheels: setup # Ask the package index whether each pinned package has a wheel for Python 3.11 to 3.14 (two minutes)
 	.ci/wheels $(PY) 3.11 3.12 3.13 3.14
 
-matrix: tools ## The same for each of Python 3.11 to 3.13 that there is
+matrix: tools # The same for each of Python 3.11 to 3.13 that there is
 	.ci/package $(PY) python3.11 python3.12 python3.13
 
 benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
 	$(PY) -m dvc repro benchmarks/dvc.yaml
 
-arena: setup ## Steps, responses and bounces beside other codes that are installed; says how to install those that are not
+arena: setup # Steps, responses and bounces beside other codes that are installed; says how to install those that are not
 	cd benchmarks && for name in bounces arena responses; do ../$(PY) -m peers.$$name peers/$$name.json || exit; done
 	$(PY) benchmarks/document.py
 

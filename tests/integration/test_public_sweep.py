@@ -286,10 +286,17 @@ def test_an_event_along_the_load_needs_loads():
 def test_what_solve_warns_of_is_said_once():
     with pytest.warns(UserWarning) as said:
         gr.sweep(SCENE, {"preparation.ramp_time": [100.0, 3.0], "packing.layers": [3, 4]}, workers=1, progress=False)
-    lines = [str(warning.message) for warning in said]
-    assert [line.partition(" (")[0] for line in lines] == [
-        "2 of 4 combinations: preparation.ramp_time = 3.0 has no effect"
-    ]
+    (line,) = [str(warning.message) for warning in said]
+    first = "the first: preparation.ramp_time = 3.0, packing.layers = 3"
+    assert line.startswith(f"2 of 4 combinations ({first}): preparation.ramp_time = 3.0 has no effect")
+
+
+def test_a_warning_of_one_preparation_names_it():
+    ways = {"frictionless": {"gravity": "frictionless"}, "at once": {"gravity": "at-once", "ramp_time": 3.0}}
+    with pytest.warns(UserWarning) as said:
+        gr.preparations(SCENE.updated({"contact.friction": 0.2}), ways, workers=1, progress=False)
+    (line,) = [str(warning.message) for warning in said]
+    assert line.startswith("1 of 2 combinations (preparation = Preparation(ramp_time=3.0)): preparation.ramp_time")
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import re
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import get_args
 
 import matplotlib.pyplot as plt
 import pytest
@@ -14,8 +15,10 @@ from markdown_it import MarkdownIt
 from places import ROOT
 from printed import rounded
 
+import granular_response as gr
 from granular_response.cli import scene_reference
 from granular_response.scene import Scene, SceneError
+from granular_response.scene.scene import AnyPacking
 from granular_response_paper.claims.claim import ClaimsError
 
 sys.path.insert(0, str(ROOT / "docs"))
@@ -176,6 +179,12 @@ def test_the_reference_says_what_the_scene_allows():
     assert not keys["loads[].disk"].default and not keys["packing.kind"].default
     assert keys["loads[].force"].unit == "mg"
     assert keys["loads[].displacement"].unit == keys["loads[].disk.x"].unit == "mean radius"
+
+
+def test_every_kind_of_packing_has_a_section_and_a_public_name():
+    kinds = set(get_args(AnyPacking))
+    assert kinds == {section.model for section in scene_reference.sections() if section.place == "packing"}
+    assert kinds <= {getattr(gr, name) for name in gr.__all__}
 
 
 def test_descriptions_within_a_text_are_those_of_the_package():

@@ -180,6 +180,7 @@ def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
     assert small.groups == ("example",)
     assert simulation.simulate("example", workers=1) == Path("data/example.nc")
     assert Path("figures/example/example.png") in drawing.draw("example")
+    assert "Friction " in Path("figures/example/captions.json").read_text("utf-8")  # what the data show, above the text
     response = store.read("data/example.nc")["response"]["floor_response"].values
     assert response.shape == (2, 13) and abs(response.sum(axis=1) - 1.0).max() < 0.2
 

@@ -59,6 +59,59 @@ def test_the_response_at_a_place(result):
         refuses(ValueError, "must be", result.response_at, **mistake)
 
 
+#: Two disks on the floor between smooth walls 4 R apart, and one on both: it presses on each with half its force.
+THREE = gr.Scene.from_arrays(
+    x=[1.0, 3.0, 2.0],
+    z=[1.0, 1.0, 1.0 + np.sqrt(3.0)],
+    radius=1.0,
+    width=4.0,
+    scene={"loads": [{"disk": 2, "force": [0.0, -2.0]}]},
+)
+
+
+def test_a_profile_of_sensors_is_that_of_three_disks():
+    """By hand: 1.5 weights on each floor disk, and 1 more under 2 mg. The paper's disks are 7.5 mm wide."""
+    three, units, weight = gr.solve(THREE), gr.LaboratoryUnits(), 3.286096e-3
+    rest = three.floor_profile(units, 7.5, state=0)
+    assert rest.values == pytest.approx([1.5 * weight, 1.5 * weight], rel=1e-6)
+    assert rest["x"].values == pytest.approx([3.75, 11.25]) and (rest.units, rest["x"].units) == ("N", "mm")
+    added = three.floor_profile(units, 7.5)
+    assert added.values == pytest.approx([weight, weight], rel=1e-6)
+    whole = three.floor_profile(units, 7.5, added=False)
+    assert whole.values == pytest.approx([2.5 * weight, 2.5 * weight], rel=1e-6)
+    wide = three.floor_profile(units, 10.0)  # the last one is 5 mm wide
+    assert wide["x"].values == pytest.approx([5.0, 12.5])
+    part = three.floor_profile(units, [0.0, 5.0, 9.0])  # the second disk is outside
+    assert part["x"].values == pytest.approx([2.5, 7.0]) and part.values == pytest.approx([weight, 0.0], rel=1e-6)
+    for mistake in (0.0, -1.0, np.nan, "wide", [3.0], [3.0, 2.0], [[1.0, 2.0]]):
+        refuses(ValueError, "^sensors = .*: must be a width in mm", three.floor_profile, units, mistake)
+    refuses(ValueError, "added: a load adds nothing", three.floor_profile, units, 7.5, state=0, added=True)
+
+
+@pytest.mark.parametrize("sides", ["walls", "periodic"])
+def test_the_forces_on_sensors_sum_to_the_weight_of_all_disks(sides):
+    """Between smooth walls and periodic sides the floor bears all, in sensors of any width."""
+    units = gr.LaboratoryUnits(radius=2e-3, thickness=5e-3, density=2500.0)
+    slab = gr.solve(gr.Scene.from_dict(SMALL).updated({"packing.sides": sides, "packing.polydispersity": 0.05}))
+    weight = len(slab.rest.position) * np.pi * 2e-3**2 * 5e-3 * 2500.0 * 9.8  # N, of disks of the mean mass
+    applied = 4.0 * units.unit("force")
+    for width in (2.0, 7.0, 1000.0):
+        rest, added = slab.floor_profile(units, width, state=0), slab.floor_profile(units, width)
+        assert float(rest.sum()) == pytest.approx(weight, rel=1e-9)
+        assert float(added.sum()) == pytest.approx(applied, rel=1e-9)
+
+
+def test_a_profile_of_sensors_has_a_band_over_preparations():
+    units, ways = gr.LaboratoryUnits(), {"at once": {}, "frictionless": {"gravity": "frictionless"}}
+    profile = lambda result: result.floor_profile(units, 15.0)  # noqa: E731
+    found = gr.preparations(SMALL, ways, profile, workers=1, progress=False)
+    base = gr.Scene.from_dict(SMALL)
+    both = [profile(gr.solve(base.updated({"preparation": way}))) for way in ways.values()]
+    np.testing.assert_array_equal(found["floor_profile_low"], np.minimum(*both))
+    np.testing.assert_array_equal(found["floor_profile_high"], np.maximum(*both))
+    assert float((found["floor_profile_high"] - found["floor_profile_low"]).max()) > 1e-6
+
+
 def test_displacements_are_from_the_initial_equilibrium(result):
     moved, (disk,) = result.displacement, result.loaded_disks
     assert moved.dims == ("load", "disk", "axis") and moved["force"].values.tolist() == [2.0, 4.0]

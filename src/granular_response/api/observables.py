@@ -165,9 +165,7 @@ def disk_stress(result: Result, *, state: int = -1, added: bool | None = None) -
     (('disk',), True)
     """
     index = result._index(state)
-    added = index > 0 if added is None else added
-    if added and index == 0:
-        raise ValueError("added: a load adds nothing to the initial equilibrium, must be False for state 0")
+    added = result._added(index, added)
     data = result._data
     rest, now = (state_from(data, k) for k in (0, index))  # on one list of candidates
     forces = now.pair_force(), now.wall_force()

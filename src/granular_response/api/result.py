@@ -6,6 +6,7 @@ Units are the reduced ones (mean disk radius, mean disk mass, g), as everywhere 
 from __future__ import annotations
 
 import html
+import math
 import os
 import warnings
 from base64 import b64encode
@@ -19,14 +20,14 @@ import xarray as xr
 
 from ..errors import GranularError
 from ..observe.broke_in import broke_in
-from ..observe.floor import origin_of, smoothed_response
+from ..observe.floor import origin_of, sensor_forces, smoothed_response
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
 from ..scene import Scene
 from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from ..scene.errors import show
 from ..scene.given import finite_numbers
-from ..scene.laboratory import FORCE, LENGTH
+from ..scene.laboratory import FORCE, LENGTH, LaboratoryUnits
 from ..solvers.choice import LARGE
 from ..solvers.small_loads import influence
 from ..solvers.solution import Progress, Solution, continue_solution, solve_scene
@@ -176,6 +177,48 @@ class Result:
         found = xr.DataArray(smoothed, {**along, "x": places}, ("load", "x"), "smoothed_response", labels)
         return found if many else found.isel(x=0)
 
+    def floor_profile(
+        self,
+        units: LaboratoryUnits,
+        sensors: float | Sequence[float] | np.ndarray,
+        *,
+        state: int = -1,
+        added: bool | None = None,
+    ) -> xr.DataArray:
+        """The vertical force on each sensor of the floor in newtons, along x in millimetres.
+
+        A disk presses on the sensor below its centre. As ``measure`` of :func:`preparations` it gives the band over
+        preparations, and of :func:`sweep` the profiles of several packings.
+
+        Parameters
+        ----------
+        units : of the disks, for one mean radius and one mean particle weight.
+        sensors : the width of each in mm, side by side from the left wall, the last one narrower if the box is no
+            multiple of it; or their edges in mm from the left wall, a growing list.
+        state : as of :meth:`contacts_table`, with its errors.
+        added : the incremental forces, the default for states under load; otherwise the whole forces.
+
+        Returns
+        -------
+        Dimension ``x``: the middle of each sensor, in mm from the left wall.
+
+        Raises ValueError for another ``sensors``, and for the added part of the initial equilibrium.
+
+        Examples
+        --------
+        >>> result.floor_profile(units, 20.0).round(4).values
+        array([0.0118, 0.0255, 0.0107, 0.0012])
+        """
+        index = self._index(state)
+        added = self._added(index, added)
+        scale = 1e3 * units.unit("length")
+        edges = _edges(sensors, scale * self.rest.box.width)
+        forces = [sensor_forces(one, edges / scale) for one in (self._states[index], self.rest)]
+        newtons = units.to_laboratory("force", forces[0] - forces[1] if added else forces[0])
+        middles = ("x", 0.5 * (edges[1:] + edges[:-1]), {"long_name": "x from the left wall", "units": "mm"})
+        labels = {"long_name": f"{'incremental ' if added else ''}force on a sensor of the floor", "units": "N"}
+        return xr.DataArray(newtons, {"x": middles}, ("x",), "floor_profile", labels)
+
     @property
     def displacement(self) -> xr.DataArray:
         """(load, disk, axis) displacement of each disk from the initial equilibrium, in mean radii.
@@ -277,9 +320,7 @@ class Result:
         ('z', 'x')
         """
         state = self._index(state)
-        added = state > 0 if added is None else added
-        if added and state == 0:
-            raise ValueError("added: a load adds nothing to the initial equilibrium, must be False for state 0")
+        added = self._added(state, added)
         origin, box = self.origin, self.rest.box
         top = float(self.rest.position[:, 1].max()) + 1.0
         # rounded: the same places in results whose loaded disk is at the same place but for its last digits
@@ -343,6 +384,13 @@ class Result:
 
     def _index(self, state: int) -> int:
         return state_index(state, len(self.loaded) + 1)
+
+    @staticmethod
+    def _added(index: int, added: bool | None) -> bool:
+        """Whether incremental forces are meant; raises ValueError for those of the initial equilibrium."""
+        if added and index == 0:
+            raise ValueError("added: a load adds nothing to the initial equilibrium, must be False for state 0")
+        return index > 0 if added is None else added
 
     @property
     def origin(self) -> float:
@@ -571,6 +619,20 @@ def _places(name: str, given: Any) -> np.ndarray:
         said = " ".join(show(given).split())  # an array is several lines
         raise ValueError(f"{name} = {said}: must be a list of finite numbers")
     return np.array(places)
+
+
+def _edges(sensors: Any, width: float) -> np.ndarray:
+    """Edges of sensors, given by them or by the width of each, on a floor of this width."""
+    many = np.ndim(sensors) > 0
+    given = finite_numbers(sensors if many else [sensors])
+    edges = np.array([] if given is None else given)
+    if not many and len(edges) and edges[0] > 0.0:
+        count = math.ceil(width / edges[0] * (1.0 - 1e-12))  # a whole number but for rounding has no rest
+        edges = np.minimum(edges[0] * np.arange(count + 1), width)
+    if len(edges) < 2 or not (np.diff(edges) > 0.0).all():
+        said = " ".join(show(sensors).split())
+        raise ValueError(f"sensors = {said}: must be a width in mm, greater than 0, or edges in mm that grow")
+    return edges
 
 
 def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] | None = None) -> Result:

@@ -113,7 +113,8 @@ def sweep(
     * Attributes: those that all results share, and ``scene`` (with its seed), ``axes``, ``load_factors``, the name of
       the ``measure``, ``package_version`` and ``versions``.
     * A combination without equilibrium is NaN. The variable ``error`` has its message (empty for the others), and a
-      warning gives their number. Warnings of :func:`solve` appear once, with the number of combinations.
+      warning gives their number. Warnings of :func:`solve` appear once, with the number of combinations and the
+      first of them.
 
     Raises
     ------
@@ -134,7 +135,7 @@ def sweep(
     base = described(scene)
     values = _values(axes)
     programme = {} if load_factors is None else {"protocol.load_factors": load_programme(load_factors)}
-    points = (dict(zip(values, point, strict=True)) for point in itertools.product(*values.values()))
+    points = [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
     if programme.keys() & values.keys():
         raise ValueError("load_factors: is an axis too, must be one of the two")
     scenes = [base.updated({**point, **programme}) for point in points]
@@ -153,7 +154,10 @@ def sweep(
             raise (interrupted(f"{error}, solutions are kept in {folder}") if memory else error) from None
     remarks = Counter(remark for _, remarks in found for remark in remarks)
     for remark, count in remarks.items():
-        warnings.warn(f"{count} of {len(found)} combinations: {remark}", stacklevel=2)
+        first = next(point for point, (_, own) in zip(points, found, strict=True) if remark in own)
+        which = ", ".join(f"{key} = {show(value)}" for key, value in first.items())
+        which = "" if count == len(found) else f" ({'the first: ' if count > 1 else ''}{which})"
+        warnings.warn(f"{count} of {len(found)} combinations{which}: {remark}", stacklevel=2)
     gridded = _gridded(values, [measured for measured, _ in found])
     return gridded.assign_attrs(_provenance(base.updated(programme), values, measure))
 

@@ -54,6 +54,17 @@ def floor_response(rest: State, loaded: State, disks: NDArray[np.intp], total_fo
     return (floor_force(loaded, disks) - floor_force(rest, disks)) / total_force
 
 
+def sensor_forces(state: State, edges: ArrayLike) -> FloatArray:
+    """(k,) vertical force of the floor between successive ``edges`` (k + 1,), distances from the left end of the box.
+
+    Positive upwards; each disk presses at the place of its centre. What lies outside the edges does not count.
+    """
+    on_floor = state.walls.second == FLOOR
+    x = state.position[state.walls.first[on_floor], 0]
+    x = np.mod(x, state.box.width) if state.box.periodic else x
+    return np.histogram(x, np.asarray(edges, dtype=float), weights=state.wall_force()[on_floor, 1])[0]
+
+
 def smoothed_response(
     x_eval: ArrayLike, x_disk: ArrayLike, response: ArrayLike, width: float, period: float | None = None
 ) -> FloatArray:

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 else:
     ModelMetaclass = type(BaseModel)
 
-PACKING_KINDS = ("slab", "pile", "poured", "file", "arrays")
 #: Units of keys; those of other keys are plain numbers.
 UNITS = {
     key: unit
@@ -61,7 +60,7 @@ def refused(error: ValidationError) -> SceneError:
     found = error.errors(include_url=False)
     first = found[0]
     found_at = first["loc"]
-    kinds = {k for k, part in enumerate(found_at) if k and found_at[k - 1] == "packing" and part in PACKING_KINDS}
+    kinds = {k for k, part in enumerate(found_at) if k and found_at[k - 1] == "packing" and part in packing_kinds()}
     path = tuple(part for k, part in enumerate(found_at) if k not in kinds)  # tags of pydantic, which no file has
     value = first["input"]
     problem = first.get("ctx", {}).get("error")
@@ -158,6 +157,11 @@ class Description(BaseModel, metaclass=_Public):
 
 #: The parts of a scene by their place in it, for keys that stand in another one; ``scene.scene`` names them.
 PLACES: dict[str, tuple[type[Description], ...]] = {}
+
+
+def packing_kinds() -> list[str]:
+    """The kinds of packings."""
+    return [one.model_fields["kind"].default for one in PLACES["packing"]]
 
 
 class Sparse(Description):

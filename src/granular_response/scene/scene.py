@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +16,7 @@ from pydantic import BeforeValidator, Field, ValidationError, model_validator
 from ..inputs import read_text, unreadable
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
-from .base import MOST_STIFFNESS, PACKING_KINDS, PLACES, Description, PackingDescription, Sparse, refused
+from .base import MOST_STIFFNESS, PLACES, Description, PackingDescription, Sparse, packing_kinds, refused
 from .errors import Problem, SceneError, SceneFileError, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
@@ -30,18 +30,23 @@ from .table import FilePacking
 _SMOOTH = "must be 0 without friction and tangential springs (contact and wall: friction, stiffness_ratio)"
 
 
+#: All packings, by their key ``kind``.
+AnyPacking = SlabPacking | PilePacking | PouredPacking | FilePacking | ArrayPacking
+
+
 def _check_kind(value: Any) -> Any:
     """Say what is wrong with the kind before pydantic's tagged union looks at it."""
     if isinstance(value, PackingDescription):
         return value
-    choices = " or ".join(PACKING_KINDS)
+    kinds = packing_kinds()
+    choices = " or ".join(kinds)
     if not isinstance(value, Mapping):
         raise Problem(f"must be a mapping with the key kind ({choices})")
     if "kind" not in value:
         raise Problem(f"key kind is missing, must be {choices}")
     kind = value["kind"]
-    if not isinstance(kind, str) or kind not in PACKING_KINDS:
-        raise Problem(f"must be {choices}{suggestion(kind, PACKING_KINDS)}", key=("kind",), value=kind)
+    if not isinstance(kind, str) or kind not in kinds:
+        raise Problem(f"must be {choices}{suggestion(kind, kinds)}", key=("kind",), value=kind)
     return dict(value)
 
 
@@ -66,10 +71,9 @@ class Scene(Sparse):
 
     sparse: ClassVar[tuple[str, ...]] = ("motion",)
 
-    packing: Annotated[
-        Annotated[SlabPacking | PilePacking | PouredPacking | FilePacking | ArrayPacking, Field(discriminator="kind")],
-        BeforeValidator(_check_kind),
-    ] = Field(default_factory=SlabPacking, description="The disks before gravity acts, and the box.")
+    packing: Annotated[Annotated[AnyPacking, Field(discriminator="kind")], BeforeValidator(_check_kind)] = Field(
+        default_factory=SlabPacking, description="The disks before gravity acts, and the box."
+    )
     contact: Contact = Field(default_factory=Contact, description="Contact law between disks.")
     wall: Wall = Field(default_factory=Wall, description="Contact law at the floor and the side walls.")
     loads: Annotated[tuple[Load, ...], BeforeValidator(_check_list)] = Field(
@@ -337,7 +341,7 @@ class Scene(Sparse):
 
 
 PLACES |= {
-    "packing": (SlabPacking, PilePacking, PouredPacking, FilePacking, ArrayPacking),
+    "packing": get_args(AnyPacking),
     "contact": (Contact,),
     "wall": (Wall,),
     "loads.0": (Load,),
