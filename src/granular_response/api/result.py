@@ -380,7 +380,7 @@ class Result:
         ----------
         path : its extension is the format: ``.gsd`` and ``.xyz`` for OVITO, ``.vtu`` and ``.pvd`` for ParaView,
             ``.data`` and ``.dump`` for LAMMPS, ``in.lammps`` for a script with the disks and their springs beside it,
-            ``.txt`` for YADE, ``.csv`` for disks, ``.contacts.csv`` and ``.events.csv``.
+            ``.csv`` for disks, ``.contacts.csv`` and ``.events.csv``.
         state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last
             one in a format of one state.
 

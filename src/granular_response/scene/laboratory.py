@@ -183,20 +183,6 @@ class LaboratoryUnits:
             rule = f"must be within {SAME_RADIUS:.0%} of {mean:.4g}, the mean radius of {packing.path} in m"
             raise SceneError(describe(("radius",), self.radius, rule))
 
-    def define(self, registry: Any) -> None:
-        """Define the units that results name in a registry of pint: mean_radius, mean_mass, reduced_time, mean_weight.
-
-        ``registry`` is a ``pint.UnitRegistry``, or what has its method ``define``.
-
-        Examples
-        --------
-        >>> units.define(registry)  # doctest: +SKIP
-        >>> result.to_dataset().pint.quantify(unit_registry=registry)  # doctest: +SKIP
-        """
-        named = {LENGTH: ("length", "m"), MASS: ("mass", "kg"), TIME: ("time", "s"), FORCE: ("force", "N")}
-        for name, (quantity, unit) in named.items():
-            registry.define(f"{name} = {self.unit(quantity)!r} {unit}")
-
 
 def _quantities(key: str, part: Any, whole: Mapping[str, Any]) -> Mapping[str, str]:
     """What the keys of a part of a scene are, by the unit that a law says of its parameters.

@@ -32,7 +32,7 @@ def _printable(text: str) -> str:
 
 FileName = Annotated[str, Field(strict=True), AfterValidator(_printable), allowed("must be the path of a file")]
 Format = Annotated[
-    Literal["csv", "lammps-data", "lammps-dump", "yade", "gsd"], allowed(f"must be {' or '.join(formats.SUFFIXES)}")
+    Literal["csv", "lammps-data", "lammps-dump", "gsd"], allowed(f"must be {' or '.join(formats.SUFFIXES)}")
 ]
 
 

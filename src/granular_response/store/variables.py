@@ -1,10 +1,9 @@
 """The variables of a stored result, each said once: dimensions, meaning, unit, and what its values may be.
 
 They stand in ``variables.csv``. A ``*`` is ``contact`` and ``wall``; values are numbers, texts or the codes of
-:data:`_CODES`; ``gaps`` may be missing in some places, what is ``optional`` everywhere. Units are names that
-``scene.LaboratoryUnits.define`` makes known to pint, as xarray's plots, cf-xarray and pint-xarray read them; text and
-codes have none. Datasets of studies hold some of the variables too, with the unit "1" and the meaning, which names the
-unit, as ``long_name``.
+:data:`_CODES`; ``gaps`` may be missing in some places, what is ``optional`` everywhere. Units are products of the names
+in ``scene.laboratory``; text and codes have none. Datasets of studies hold some of the variables too, with the unit "1"
+and the meaning, which names the unit, as ``long_name``.
 """
 
 from __future__ import annotations

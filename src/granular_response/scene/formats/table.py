@@ -66,11 +66,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Mark:
-    """The line by which our own tables say what their format has no place for, and by which a cut one is known.
-
-    Where a table has no header, damage to that line alone could make it a comment that takes the disk after it along:
-    there the last line repeats it.
-    """
+    """The line by which our own tables say what their format has no place for, and by which a cut one is known."""
 
     disks: int
     width: float
@@ -81,11 +77,6 @@ class Mark:
     def __str__(self) -> str:
         sides = "periodic" if self.periodic else "walls"
         return f"granular-response: {self.disks} disks, width {self.width!r}, sides {sides}"
-
-    @property
-    def last_line(self) -> str:
-        """What repeats it at the end of a table."""
-        return f"end, {self}"
 
     @property
     def box(self) -> FileBox:
@@ -103,11 +94,6 @@ class Mark:
         if width <= 0.0:
             raise FormatError(f"width = {shown(match[2])}: must be greater than 0", place)
         return cls(int(match[1]), width, match[3] == "periodic")
-
-    @staticmethod
-    def ends(line: str) -> bool:
-        """Whether a line with a mark is the one that repeats it."""
-        return line.lstrip("# ").startswith("end, ")
 
     def check(self, disks: int, whole: bool) -> None:
         """Raise FormatError unless there are as many disks as it says, and the last line is ``whole``."""
