@@ -1,4 +1,6 @@
-"""The base of all errors of this package."""
+"""The base of all errors of this package, and the check that raises them."""
+
+from __future__ import annotations
 
 
 class GranularError(Exception):
@@ -11,3 +13,9 @@ class SolveError(GranularError):
 
 class EquilibriumError(SolveError, RuntimeError):
     """No static equilibrium was found near the start."""
+
+
+def require(met: object, said: str, error: type[Exception] = ValueError) -> None:
+    """Raise ``error`` with the message ``said`` unless a condition is ``met``."""
+    if not met:
+        raise error(said)

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..errors import GranularError
+from ..errors import GranularError, require
 from ..observe.broke_in import broke_in
 from ..observe.floor import origin_of, smoothed_response
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
@@ -59,8 +59,8 @@ class Result:
         *,
         folder: str | os.PathLike[str] | None = None,
     ) -> None:
-        if (solution is None) == (dataset is None):
-            raise TypeError("Result: made from a solution or from a dataset, one of them")
+        rule = "Result: made from a solution or from a dataset, one of them"
+        require((solution is None) != (dataset is None), rule, TypeError)
         self._solution, self._dataset, self._folder = solution, dataset, folder
 
     @cached_property
@@ -214,8 +214,7 @@ class Result:
         Dimensions ``load``, ``load_point`` and ``axis`` ("x", "z"); 0 along directions that are free. Raises ValueError
         for a scene in which no load displaces a disk.
         """
-        if "reaction" not in self._data:
-            raise ValueError("reaction: there is none, no load of this scene has a displacement")
+        require("reaction" in self._data, "reaction: there is none, no load of this scene has a displacement")
         return self._data["reaction"].copy()
 
     @property
@@ -278,8 +277,8 @@ class Result:
         """
         state = self._index(state)
         added = state > 0 if added is None else added
-        if added and state == 0:
-            raise ValueError("added: a load adds nothing to the initial equilibrium, must be False for state 0")
+        rule = "added: a load adds nothing to the initial equilibrium, must be False for state 0"
+        require(not added or state != 0, rule)
         origin, box = self.origin, self.rest.box
         top = float(self.rest.position[:, 1].max()) + 1.0
         # rounded: the same places in results whose loaded disk is at the same place but for its last digits

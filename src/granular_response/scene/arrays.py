@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from ..state import FloatArray
 from ..state.box import FARTHEST
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector
-from .errors import Problem
+from .errors import Problem, must
 from .formats import Table
 from .given import plain
 from .packing import Packing, exact_mean
@@ -38,8 +38,7 @@ def packed(table: Table, left: float, floor: float, width: float, periodic: bool
     _check("mass", mass, np.isfinite(mass), "must be a finite number")
     mean = exact_mean(radius)
     far = FARTHEST * mean
-    if width > far:
-        raise Problem(f"must be at most {far:g}, 1e9 mean radii", key=("width",), value=width)
+    must(width <= far, f"must be at most {far:g}, 1e9 mean radii", key=("width",), value=width)
     if periodic:
         x = np.mod(x, width)
     half = 0.5 * width
@@ -87,8 +86,8 @@ def _check(name: str, values: FloatArray, good: NDArray[np.bool_], rule: str) ->
 
 
 def _check_numbers(value: Any) -> Any:
-    if not isinstance(value, (list, tuple)) or not value or any(type(one) not in (int, float) for one in value):
-        raise Problem("must be a list of finite numbers, one for each disk")
+    rule = "must be a list of finite numbers, one for each disk"
+    must(isinstance(value, (list, tuple)) and value and not any(type(one) not in (int, float) for one in value), rule)
     return value
 
 
@@ -128,11 +127,11 @@ class ArrayPacking(Sparse, PackingDescription):
     def _check_disks(self) -> ArrayPacking:
         for name in ("z", "radius", "mass"):
             column = getattr(self, name)
-            if column is not None and len(column) != len(self.x):
+            if column is not None:
                 rule = f"must have as many numbers as x, has {len(column)}, not {len(self.x)}"
-                raise Problem(rule, key=(name,), value=list(column))
-        if self.periodic and self.width is None:
-            raise Problem("must be given with periodic sides", key=("width",), value=None)
+                must(len(column) == len(self.x), rule, key=(name,), value=list(column))
+        rule = "must be given with periodic sides"
+        must(not self.periodic or self.width is not None, rule, key=("width",), value=None)
         try:
             self.build()
         except Problem as problem:

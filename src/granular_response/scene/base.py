@@ -20,7 +20,7 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from .errors import MISSING, Problem, SceneError, describe, show_key, suggestion
+from .errors import MISSING, Problem, SceneError, describe, must, show_key, suggestion
 from .given import plain, unordered
 
 if TYPE_CHECKING:
@@ -140,8 +140,7 @@ class Description(BaseModel, metaclass=_Public):
         if isinstance(data, cls):
             return data
         keys = ", ".join(cls.model_fields)
-        if not isinstance(data, Mapping):
-            raise Problem(f"must be a mapping with keys among {keys}" if keys else "must be {}")
+        must(isinstance(data, Mapping), f"must be a mapping with keys among {keys}" if keys else "must be {}")
         for key, value in data.items():
             if key not in cls.model_fields:
                 meant = cls._elsewhere(key) or suggestion(key, cls.model_fields)
@@ -181,8 +180,7 @@ def allowed(phrase: str) -> WrapValidator:
     """Say ``phrase`` whatever is wrong with a value, in place of one message per rule or union member."""
 
     def check(value: Any, inner: Callable[[Any], Any]) -> Any:
-        if unordered(value):
-            raise Problem(phrase)
+        must(not unordered(value), phrase)
         try:
             return inner(value)
         except (ValidationError, OverflowError):

@@ -41,6 +41,12 @@ class Problem(GranularError, ValueError):
         self.allowed, self.key, self.value = allowed, tuple(key), value
 
 
+def must(met: object, allowed: str, *, key: Sequence[str | int] = (), value: Any = MISSING) -> None:
+    """Raise Problem unless a condition is ``met``."""
+    if not met:
+        raise Problem(allowed, key=key, value=value)
+
+
 def suggestion(word: object, choices: Iterable[str]) -> str:
     """', did you mean ...?' for the choice nearest to ``word``, or nothing if none is near."""
     near = difflib.get_close_matches(word, list(choices), n=1) if isinstance(word, str) else []

@@ -11,6 +11,7 @@ from typing import Any, Final, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import require
 from .base import UNITS, Description, unit_of
 from .errors import SceneError, describe, show, suggestion
 from .given import plain
@@ -168,8 +169,7 @@ class LaboratoryUnits:
             number = quantity and isinstance(value, (int, float)) and not isinstance(value, bool)
             return self.to_reduced(quantity, float(value)) if number else value
 
-        if not isinstance(scene, Mapping):
-            raise SceneError(f"scene = {show(scene)}: must be a mapping with its keys")
+        require(isinstance(scene, Mapping), f"scene = {show(scene)}: must be a mapping with its keys", SceneError)
         self._check_radius(scene.get("packing"))
         return {key: reduced(part, keys=_quantities(key, part, scene)) for key, part in scene.items()}
 

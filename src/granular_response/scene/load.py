@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
 
+from ..errors import require
 from .base import Description, Finite, Sparse, Vector, allowed
-from .errors import Problem, SceneError, show, show_key
+from .errors import Problem, SceneError, must, show, show_key
 from .packing import Packing
 
 TOP_CENTRE: Final = "top-centre"
@@ -103,15 +104,14 @@ class Load(Sparse):
     @model_validator(mode="after")
     def _check_displacement(self) -> Load:
         if self.displacement is None:
-            if not self.model_fields_set & {"force", "torque"}:
-                raise Problem("must be given, or displacement or torque", key=("force",), value=None)
+            rule = "must be given, or displacement or torque"
+            must(self.model_fields_set & {"force", "torque"}, rule, key=("force",), value=None)
             return self
-        if self.displacement == (None, None):
-            raise Problem("must hold a direction at least", key=("displacement",), value=list(self.displacement))
+        rule = "must hold a direction at least"
+        must(self.displacement != (None, None), rule, key=("displacement",), value=list(self.displacement))
         for name, force, held in zip("xz", self.force, self.displacement, strict=True):
-            if held is not None and force != 0.0:
-                rule = f"must be 0 along {name}, where displacement holds the disk"
-                raise Problem(rule, key=("force",), value=list(self.force))
+            rule = f"must be 0 along {name}, where displacement holds the disk"
+            must(held is None or force == 0.0, rule, key=("force",), value=list(self.force))
         return self
 
 
@@ -137,9 +137,8 @@ def resolve_disk(
         return _nearest_on_top(packing, packing.middle, np.asarray(position))
     if isinstance(selector, TopSelector):
         half = 0.5 * packing.width
-        if not abs(selector.x) <= half:
-            rule = f"must be from {-half:g} to {half:g}, the packing is {packing.width:g} wide"
-            raise SceneError(f"{key}.x = {show(selector.x)}: {rule}")
+        rule = f"must be from {-half:g} to {half:g}, the packing is {packing.width:g} wide"
+        require(abs(selector.x) <= half, f"{key}.x = {show(selector.x)}: {rule}", SceneError)
         return _nearest_on_top(packing, packing.middle + selector.x, np.asarray(position))
     try:
         return check_disk(selector, packing.n, packing.row_count)

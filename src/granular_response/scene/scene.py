@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
+from ..errors import require
 from ..inputs import read_text, unreadable
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
 from .base import MOST_STIFFNESS, PACKING_KINDS, PLACES, Description, PackingDescription, Sparse, refused
-from .errors import Problem, SceneError, SceneFileError, show, show_key, suggestion
+from .errors import Problem, SceneError, SceneFileError, must, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
 from .material import Contact, Wall
@@ -35,10 +36,8 @@ def _check_kind(value: Any) -> Any:
     if isinstance(value, PackingDescription):
         return value
     choices = " or ".join(PACKING_KINDS)
-    if not isinstance(value, Mapping):
-        raise Problem(f"must be a mapping with the key kind ({choices})")
-    if "kind" not in value:
-        raise Problem(f"key kind is missing, must be {choices}")
+    must(isinstance(value, Mapping), f"must be a mapping with the key kind ({choices})")
+    must("kind" in value, f"key kind is missing, must be {choices}")
     kind = value["kind"]
     if not isinstance(kind, str) or kind not in PACKING_KINDS:
         raise Problem(f"must be {choices}{suggestion(kind, PACKING_KINDS)}", key=("kind",), value=kind)
@@ -46,8 +45,7 @@ def _check_kind(value: Any) -> Any:
 
 
 def _check_list(value: Any) -> Any:
-    if not isinstance(value, (list, tuple)):
-        raise Problem("must be a list of loads, [] for gravity alone")
+    must(isinstance(value, (list, tuple)), "must be a list of loads, [] for gravity alone")
     return tuple(value)
 
 
@@ -120,16 +118,15 @@ class Scene(Sparse):
     @model_validator(mode="after")
     def _check_start(self) -> Scene:
         given, gravity = getattr(self.packing, "springs", None), self.preparation.gravity
-        if given is not None and gravity != "at-once":
-            rule = "must be at-once with packing.springs, which bear the weights"
-            raise Problem(rule, key=("preparation", "gravity"), value=gravity)
+        rule = "must be at-once with packing.springs, which bear the weights"
+        must(given is None or gravity == "at-once", rule, key=("preparation", "gravity"), value=gravity)
         motion, total = self.motion, self.packing.disk_count
         if np.any(np.asarray(motion.spin) != 0.0) and not self.contact.rubs and not self.resolved_wall.rubs:
             raise Problem(f"{_SMOOTH}, which alone turn disks", key=("motion", "spin"), value=motion.spin)
         for name in MOTION:
             given = getattr(motion, name)
-            if given == COLUMN and not isinstance(self.packing, FilePacking):
-                raise Problem("must be numbers, the packing is not from a file", key=("motion", name), value=given)
+            rule = "must be numbers, the packing is not from a file"
+            must(given != COLUMN or isinstance(self.packing, FilePacking), rule, key=("motion", name), value=given)
             if isinstance(given, tuple) and total and len(given) != total:
                 rule = f"must have one number for each of the {total} disks, has {len(given)}"
                 raise Problem(rule, key=("motion", name), value=list(given))
@@ -249,8 +246,7 @@ class Scene(Sparse):
         0.5
         """
         data = yaml_text.read(text)
-        if data is None:
-            raise SceneError("the scene is empty, must be a mapping ({} is the paper's scene)")
+        require(data is not None, "the scene is empty, must be a mapping ({} is the paper's scene)", SceneError)
         return cls.from_dict(data, folder=folder)
 
     @classmethod
@@ -310,8 +306,8 @@ class Scene(Sparse):
         >>> gr.Scene().updated({"packing.layers": 8, "wall": gr.Wall(friction=0.5)}).packing.layers
         8
         """
-        if not isinstance(changes, Mapping):
-            raise SceneError(f"changes = {show(changes)}: must be a mapping from keys to values")
+        rule = f"changes = {show(changes)}: must be a mapping from keys to values"
+        require(isinstance(changes, Mapping), rule, SceneError)
         folders = [value.folder for value in changes.values() if isinstance(value, FilePacking)]
         return type(self).from_dict(self.merged(changes), folder=(folders or [self.folder])[0])
 
@@ -327,8 +323,7 @@ class Scene(Sparse):
         # Descriptions first, so that paths lead into them.
         for key, value in sorted(changes.items(), key=lambda item: not isinstance(item[1], Description)):
             parts = [part for part in re.split(r"[.\[\]]+", key) if part] if isinstance(key, str) else []
-            if not parts:
-                raise SceneError(f"{show(key)}: must be the path of a key, such as contact.friction")
+            require(parts, f"{show(key)}: must be the path of a key, such as contact.friction", SceneError)
             nested = _as_data(value)
             for part in reversed(parts):
                 nested = {str(int(part)) if part.isdecimal() else part: nested}

@@ -17,7 +17,7 @@ from ..inputs import unreadable
 from . import formats
 from .arrays import ROUNDING, packed
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
-from .errors import Problem, SceneError, describe, show
+from .errors import Problem, SceneError, describe, must, show
 from .formats import csv_table
 from .packing import Packing, exact_mean
 
@@ -25,8 +25,7 @@ T = TypeVar("T")
 
 
 def _printable(text: str) -> str:
-    if not text.strip() or not text.isprintable():
-        raise Problem("")
+    must(text.strip() and text.isprintable(), "")
     return text
 
 
@@ -38,10 +37,9 @@ Format = Annotated[
 
 def _check_columns(value: Any) -> Any:
     text = isinstance(value, Mapping) and all(isinstance(one, str) and one.strip() for one in value.values())
-    if not text or not value or not set(value) <= set(csv_table.NAMED):
-        raise Problem(f"must be columns of a CSV table, as {{z: Y, radius: R}}, for {', '.join(csv_table.NAMED)}")
-    if len({one.strip().removeprefix("-") for one in value.values()}) < len(value):
-        raise Problem("must name a column once")
+    rule = f"must be columns of a CSV table, as {{z: Y, radius: R}}, for {', '.join(csv_table.NAMED)}"
+    must(text and value and set(value) <= set(csv_table.NAMED), rule)
+    must(len({one.strip().removeprefix("-") for one in value.values()}) >= len(value), "must name a column once")
     return dict(value)
 
 
@@ -105,8 +103,8 @@ class FilePacking(Sparse, PackingDescription):
         if self.columns is not None and (known := self.format or formats.by_suffix(self.path)) != "csv":
             rule = f"must be left out, format {known} says what its columns are"
             raise Problem(rule, key=("columns",), value=self.columns)
-        if self.springs is not None and self.overlaps == "removed":
-            raise Problem("must be kept with springs", key=("overlaps",), value=self.overlaps)
+        rule = "must be kept with springs"
+        must(self.springs is None or self.overlaps != "removed", rule, key=("overlaps",), value=self.overlaps)
         return self
 
     @property

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import EquilibriumError
+from ..errors import EquilibriumError, require
 from ..state import FloatArray, Reached, State
 from .equilibrium import OPTIONS as NEWTON
 from .equilibrium import Rearranged, attainable, certify, external_force
@@ -84,12 +84,11 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
     Rearranged
         When disks meet that were not neighbours at the start.
     """
-    if problem.rotations:
-        raise ValueError("method minimise needs a scene without friction; use path or dynamics")
+    require(not problem.rotations, "method minimise needs a scene without friction; use path or dynamics")
     descent = _Descent(problem, start, load_factor)
     while not descent.at_minimum():
-        if descent.iterations >= OPTIONS.iterations:
-            raise EquilibriumError(f"no minimum of the energy within {OPTIONS.iterations} iterations")
+        rule = f"no minimum of the energy within {OPTIONS.iterations} iterations"
+        require(descent.iterations < OPTIONS.iterations, rule, EquilibriumError)
         descent.go_on()
     state = descent.system.state(descent.trial, load_factor)
     certificate = certify(problem, state, modes=0, undetermined=descent.undetermined)
@@ -129,8 +128,7 @@ class _Descent:
         """Whether nothing is out of balance and the stiffness is positive; looks for rearrangements now and then."""
         settled = self._settled()
         look = settled or self.iterations % OPTIONS.look_every == OPTIONS.look_every - 1
-        if look and self.system.meets_unlisted(self.q):
-            raise Rearranged(REARRANGES)
+        require(not look or not self.system.meets_unlisted(self.q), REARRANGES, Rearranged)
         if not settled:
             return False
         spectrum = Spectrum(self.system, self.trial)
@@ -161,15 +159,15 @@ class _Descent:
             return
         length = float(np.abs(step).max())
         if length > OPTIONS.longest_step:
-            if not np.isfinite(length) or self.damping > 1e6 * self.stiffness:
-                raise EquilibriumError("the minimisation found no minimum: part of the packing falls")
+            rule = "the minimisation found no minimum: part of the packing falls"
+            require(np.isfinite(length) and self.damping <= 1e6 * self.stiffness, rule, EquilibriumError)
             self._damp(4.0)
             return
         self._take(step)
 
     def _leave_saddle(self) -> None:
-        if self.escapes == OPTIONS.escapes:
-            raise EquilibriumError("the minimisation keeps returning to a saddle of the energy")
+        rule = "the minimisation keeps returning to a saddle of the energy"
+        require(self.escapes != OPTIONS.escapes, rule, EquilibriumError)
         self.escapes += 1
         self.iterations += 1
         if self._large:

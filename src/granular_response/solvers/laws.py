@@ -6,7 +6,7 @@ import math
 
 from ..contact import LAWS, Law
 from ..contact.consistent import contradiction
-from ..errors import GranularError
+from ..errors import GranularError, require
 from ..scene import SceneError
 from ..scene.base import Description
 from ..scene.material import KNOWN_LAWS, KnownLaw, NoParameters
@@ -46,16 +46,16 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
     >>> gr.register_law("cohesive", Cohesive, Cohesion)  # doctest: +SKIP
     >>> gr.Scene().updated({"contact.law": "cohesive", "contact.parameters": {"strength": 0.2}})  # doctest: +SKIP
     """
-    if not isinstance(name, str) or not name.isidentifier():
-        raise LawError(f"name = {name!r}: must be letters, digits and underscores")
+    rule = f"name = {name!r}: must be letters, digits and underscores"
+    require(isinstance(name, str) and name.isidentifier(), rule, LawError)
     if name in KNOWN_LAWS and law_class(name) is not law:
         raise LawError(f"name = {name!r}: is the name of another law, {law_class(name).__qualname__}")
     lacks = [part for part in FIELDS if part not in getattr(law, "_fields", ())]
     lacks += [part for part in METHODS if not callable(getattr(law, part, None))]
-    if lacks:
-        raise LawError(f"law = {law!r}: has no {', '.join(lacks)}; must be a named tuple with the parts of a law")
-    if not (isinstance(parameters, type) and issubclass(parameters, Description)):
-        raise LawError(f"parameters = {parameters!r}: must be a subclass of granular_response.scene.base.Description")
+    rule = f"law = {law!r}: has no {', '.join(lacks)}; must be a named tuple with the parts of a law"
+    require(not lacks, rule, LawError)
+    rule = f"parameters = {parameters!r}: must be a subclass of granular_response.scene.base.Description"
+    require(isinstance(parameters, type) and issubclass(parameters, Description), rule, LawError)
     try:
         made = law.of(3000.0, 50.0, 2400.0, 50.0, 0.2, -math.inf, 0.5, **parameters().model_dump())
     except (SceneError, TypeError) as error:

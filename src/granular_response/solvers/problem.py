@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ..contact import RULES, Law, without_friction
 from ..contact.rolling import Rolling, arms
+from ..errors import require
 from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Contact, Packing, Scene, SceneError, resolve_disk
@@ -409,8 +410,7 @@ class Problem:
                 wrong = f"bear a tangential force, {key}.friction must be greater than 0"
             elif abs(one.rolling) > 0.0 if rolling is None else math.isnan(one.rolling):
                 wrong = f"have {'a' if rolling is None else 'no'} rolling force there, unlike {key}.rolling_friction"
-            if wrong:
-                raise SceneError(f"packing.springs: {one.place}: {one.words} {wrong}")
+            require(not wrong, f"packing.springs: {one.place}: {one.words} {wrong}", SceneError)
             force[k], roll[k], missing[k] = one.tangential, one.rolling, False
         if missing.any():
             at = int(missing.argmax())

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ...errors import GranularError
+from ...errors import GranularError, require
 from ...scene import formats
 from .. import atomic
 from ..checked import read_result
@@ -89,29 +89,27 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
     output = Path(output)
     double = "".join(output.suffixes[-2:])
     ending = double if double in _WRITERS else output.suffix
-    if ending not in _WRITERS:
-        raise ExportError(f"{output}: format {ending!r} is unknown, must be {' or '.join(SUFFIXES)}")
+    require(ending in _WRITERS, f"{output}: format {ending!r} is unknown, must be {' or '.join(SUFFIXES)}", ExportError)
     writer, states = _WRITERS[ending]
     pattern, letters = _NAMES.get(ending, (None, ""))
-    if pattern and not pattern.fullmatch(output.name):
-        raise ExportError(f"{output}: must have a name of {letters}, for it stands in the file")
-    if states == "every" and state is not None:
-        rule = "is a series of all states, must be left out (.vtu holds one state)"
-        raise ExportError(f"state = {state}: {output} {rule}")
+    rule = f"{output}: must have a name of {letters}, for it stands in the file"
+    require(not pattern or pattern.fullmatch(output.name), rule, ExportError)
+    rule = "is a series of all states, must be left out (.vtu holds one state)"
+    require(states != "every" or state is None, f"state = {state}: {output} {rule}", ExportError)
     if not isinstance(result, (str, os.PathLike, xr.Dataset)):
         result = result.to_dataset() if hasattr(result, "to_dataset") else xr.Dataset()
     read = [] if isinstance(result, xr.Dataset) else [result]
     dataset = result if isinstance(result, xr.Dataset) else read_result(result, sealed=False)
-    if not {"disk", "axis"} <= set(dataset.dims) or not {"state", "time"} & set(dataset.dims):
-        raise ExportError(f"{output}: must be written of a result, its file or dataset, or of what gr.motion returns")
+    rule = f"{output}: must be written of a result, its file or dataset, or of what gr.motion returns"
+    require({"disk", "axis"} <= set(dataset.dims) and {"state", "time"} & set(dataset.dims), rule, ExportError)
     if "state" not in dataset.dims:
         if writer not in _OF_MOTION:
             known = " or ".join(suffix for suffix, (one, _) in sorted(_WRITERS.items()) if one in _OF_MOTION)
             raise ExportError(f"{output}: a motion has no contacts, must be {known}")
         dataset = dataset.rename(time="state", load_factor="state_load_factor")
     count = dataset.sizes["state"]
-    if state is not None and not -count <= state < count:
-        raise ExportError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
+    rule = f"state = {state}: must be from {-count} to {count - 1}, there are {count} states"
+    require(state is None or -count <= state < count, rule, ExportError)
     # the first state stays: what a load adds is the difference from it
     chosen = chosen_states(dataset, [0, -1 if state is None else state]) if states == "one" else dataset
     only = {} if states != "frames" or state is None else {"only": state % count}
