@@ -1,19 +1,26 @@
-"""Contact laws by their names, those from outside the package too."""
+"""Contact laws by their names, those from outside the package too, and those of a scene."""
 
 from __future__ import annotations
 
 import math
 
-from ..contact import LAWS, Law
+import numpy as np
+
+from ..contact import LAWS, Law, without_friction
 from ..contact.consistent import contradiction
+from ..contact.rolling import Rolling
 from ..errors import GranularError, require
-from ..scene import SceneError
+from ..scene import Contact, Scene, SceneError
 from ..scene.base import Description
 from ..scene.material import KNOWN_LAWS, KnownLaw, NoParameters
 
 #: What a law must have: the constants and the methods of the protocol.
 FIELDS = tuple(name for name, part in vars(Law).items() if isinstance(part, property))
 METHODS = tuple(name for name in vars(Law) if name not in FIELDS and not name.startswith("_"))
+
+
+#: Reduced radius of two disks of mean radius, and of one at a wall.
+DISKS, AT_WALL = 0.5, 1.0
 
 
 class LawError(GranularError, ValueError):
@@ -77,3 +84,26 @@ def check_parameters(name: str, *laws: Law) -> None:
 def law_class(name: str) -> type[Law]:
     """The class of the contact law that a scene names."""
     return KNOWN_LAWS[name].law or LAWS[name]
+
+
+def laws_of(scene: Scene) -> tuple[Law, Law]:
+    """The laws of a scene between disks and at walls."""
+    least = -np.inf if scene.protocol.tensile_dashpot else 0.0
+
+    def law(m: Contact, reduced_radius: float) -> Law:
+        whole = law_class(scene.contact.law).of(
+            m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping,
+            m.friction, least, reduced_radius, **m.parameters.model_dump(),
+        )  # fmt: skip
+        return whole if m.rubs else without_friction(whole)
+
+    pair, wall = law(scene.contact, DISKS), law(scene.resolved_wall, AT_WALL)
+    check_parameters(scene.contact.law, pair, wall)
+    return pair, wall
+
+
+def rolling_of(contact: Contact) -> Rolling | None:
+    """The rolling resistance of one kind of contact; None without."""
+    if not contact.rolls:
+        return None
+    return Rolling(contact.rolling_stiffness, contact.rolling_damping, contact.rolling_friction)
