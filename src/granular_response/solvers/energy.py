@@ -40,10 +40,9 @@ class MinimiseOptions:
     longest_step: float = 0.2
     #: A step that gains less than this part of what its quadratic model says is shortened, and damping grows.
     poor: float = 0.25
-    #: Factors of the damping after a poor and after a good step.
+    #: Factor of the damping after a poor step, and of its inverse after a good one.
     more: float = 10.0
-    less: float = 0.1
-    #: First damping, and least where the stiffness of the springs alone makes a step.
+    #: First damping, and least where the stiffness of the springs alone makes a step; the first of large packings too.
     first_damping: float = 1e-3
     springs_alone: float = 1e-6
     #: How often a saddle is left before the search is given up.
@@ -52,7 +51,6 @@ class MinimiseOptions:
     #: saddle is left as soon as one is near: when the stiffness is not positive though little damped and no force out
     #: of balance exceeds that many disk weights. The rest state of 57,660 disks takes 2.1 times as long without.
     large: int = 20_000
-    first_near: float = 1e-6
     little_damped: float = 1e-7
     near_saddle: float = 0.1
     #: First length along an unstable direction there, times the normal stiffness.
@@ -104,7 +102,7 @@ class _Descent:
         self.system = StaticSystem(problem, start)
         self.external = external_force(problem, load_factor)
         self.known = self.system.start(start)
-        self.damping = (OPTIONS.first_near if self._large else OPTIONS.first_damping) * self.stiffness
+        self.damping = (OPTIONS.springs_alone if self._large else OPTIONS.first_damping) * self.stiffness
         self.iterations = self.escapes = 0
         self.undetermined: tuple[int, ...] = ()  #: disks that nothing determines at the last equilibrium looked at
         q = self.system.displaced(self.known.q, load_factor).copy()
@@ -230,6 +228,6 @@ class _Descent:
             ratio = 1.0
         self._move(self.q + step, new)
         if ratio > 0.5:
-            self.damping = OPTIONS.less * self.damping if self.damping > 1e-9 * self.stiffness else 0.0
+            self.damping = self.damping * (1.0 / OPTIONS.more) if self.damping > 1e-9 * self.stiffness else 0.0
         elif ratio < OPTIONS.poor:
             self._damp(OPTIONS.more)
