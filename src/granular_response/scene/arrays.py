@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from ..state import FloatArray
 from ..state.box import FARTHEST
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector
-from .errors import Problem, must
+from .errors import NotAllowed, must
 from .formats import Table
 from .given import plain
 from .packing import Packing, exact_mean
@@ -26,8 +26,8 @@ LEAST_MASS, LEAST_RADIUS = 1e-6, 1e-3
 def packed(table: Table, left: float, floor: float, width: float, periodic: bool) -> Packing:
     """The disks above ``floor`` and right of ``left``, in a box of this ``width``, in mean radii and mean masses.
 
-    Raises Problem with the key ``(column, disk)`` for a value that is not allowed, ``(disk,)`` for a disk in the place
-    of another, ``("width",)`` for a box that is too wide.
+    Raises NotAllowed with the key ``(column, disk)`` for a value that is not allowed, ``(disk,)`` for a disk in the
+    place of another, ``("width",)`` for a box that is too wide.
     """
     radius, places = table.radius, table.places
     x, z = table.x - left, table.z - floor
@@ -63,7 +63,7 @@ def packed(table: Table, left: float, floor: float, width: float, periodic: bool
     same = np.flatnonzero((np.diff(x[order]) == 0.0) & (np.diff(z[order]) == 0.0))
     if len(same):
         one, two = sorted(map(int, order[same[0] : same[0] + 2]))
-        raise Problem(f"disk is in the same place as that of {places[one]}", key=(two,))
+        raise NotAllowed(f"disk is in the same place as that of {places[one]}", key=(two,))
     position = np.ascontiguousarray(np.stack([x, z], axis=1) / mean)
     return Packing(
         position=position,
@@ -79,10 +79,10 @@ def packed(table: Table, left: float, floor: float, width: float, periodic: bool
 
 
 def _check(name: str, values: FloatArray, good: NDArray[np.bool_], rule: str) -> None:
-    """Problem for the first of the ``values`` that is not ``good``."""
+    """NotAllowed for the first of the ``values`` that is not ``good``."""
     if not np.all(good):
         bad = int(np.argmin(good))
-        raise Problem(rule, key=(name, bad), value=float(values[bad]))
+        raise NotAllowed(rule, key=(name, bad), value=float(values[bad]))
 
 
 def _check_numbers(value: Any) -> Any:
@@ -134,10 +134,10 @@ class ArrayPacking(Sparse, PackingDescription):
         must(not self.periodic or self.width is not None, rule, key=("width",), value=None)
         try:
             self.build()
-        except Problem as problem:
+        except NotAllowed as problem:
             if isinstance(problem.key[0], str):
                 raise
-            raise Problem(problem.allowed, key=("x", *problem.key), value=self.x[problem.key[0]]) from None
+            raise NotAllowed(problem.allowed, key=("x", *problem.key), value=self.x[problem.key[0]]) from None
         return self
 
     @property

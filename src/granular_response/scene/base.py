@@ -20,7 +20,7 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from .errors import MISSING, Problem, SceneError, describe, must, show_key, suggestion
+from .errors import MISSING, NotAllowed, SceneError, describe, must, show_key, suggestion
 from .given import plain, unordered
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def refused(error: ValidationError) -> SceneError:
     problem = first.get("ctx", {}).get("error")
     if first["type"] == "missing":
         message = f"{show_key(path)}: missing, must be given"
-    elif isinstance(problem, Problem):
+    elif isinstance(problem, NotAllowed):
         value = value if problem.value is MISSING else problem.value
         message = describe(path + problem.key, value, problem.allowed)
     elif first["type"] == "literal_error":
@@ -144,7 +144,7 @@ class Description(BaseModel, metaclass=_Public):
         for key, value in data.items():
             if key not in cls.model_fields:
                 meant = cls._elsewhere(key) or suggestion(key, cls.model_fields)
-                raise Problem(f"unknown key{meant} (allowed: {keys or 'none'})", key=(str(key),), value=value)
+                raise NotAllowed(f"unknown key{meant} (allowed: {keys or 'none'})", key=(str(key),), value=value)
         return {key: plain(value) for key, value in data.items()}
 
     @classmethod
@@ -184,7 +184,7 @@ def allowed(phrase: str) -> WrapValidator:
         try:
             return inner(value)
         except (ValidationError, OverflowError):
-            raise Problem(phrase) from None
+            raise NotAllowed(phrase) from None
 
     return WrapValidator(check)
 

@@ -30,7 +30,7 @@ class SceneFileError(SceneError, OSError):
     """A scene file, or a table of disks, that cannot be read."""
 
 
-class Problem(GranularError, ValueError):
+class NotAllowed(GranularError, ValueError):
     """What is wrong with a value, raised inside a validator; pydantic adds where it stands.
 
     ``key`` extends the path of the validated object and ``value`` replaces its input in the message.
@@ -42,9 +42,9 @@ class Problem(GranularError, ValueError):
 
 
 def must(met: object, allowed: str, *, key: Sequence[str | int] = (), value: Any = MISSING) -> None:
-    """Raise Problem unless a condition is ``met``."""
+    """Raise NotAllowed unless a condition is ``met``."""
     if not met:
-        raise Problem(allowed, key=key, value=value)
+        raise NotAllowed(allowed, key=key, value=value)
 
 
 def suggestion(word: object, choices: Iterable[str]) -> str:

@@ -17,7 +17,7 @@ from ..inputs import unreadable
 from . import formats
 from .arrays import ROUNDING, packed
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
-from .errors import Problem, SceneError, describe, must, show
+from .errors import NotAllowed, SceneError, describe, must, show
 from .formats import csv_table
 from .packing import Packing, exact_mean
 
@@ -102,7 +102,7 @@ class FilePacking(Sparse, PackingDescription):
     def _check_format(self) -> FilePacking:
         if self.columns is not None and (known := self.format or formats.by_suffix(self.path)) != "csv":
             rule = f"must be left out, format {known} says what its columns are"
-            raise Problem(rule, key=("columns",), value=self.columns)
+            raise NotAllowed(rule, key=("columns",), value=self.columns)
         rule = "must be kept with springs"
         must(self.springs is None or self.overlaps != "removed", rule, key=("overlaps",), value=self.overlaps)
         return self
@@ -145,7 +145,7 @@ class FilePacking(Sparse, PackingDescription):
         left, floor, width = self._sides(table.box)
         try:
             packing = packed(table, left, floor, width, self.periodic)
-        except Problem as problem:
+        except NotAllowed as problem:
             *name, place = problem.key
             if isinstance(place, str):
                 raise SceneError(describe(("packing", place), problem.value, problem.allowed)) from None
