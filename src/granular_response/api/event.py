@@ -8,8 +8,7 @@ from collections.abc import Callable, Mapping
 from numbers import Real
 from typing import Any
 
-from ..errors import require
-from ..observe.positive import check_positive
+from ..errors import check_positive, require
 from ..scene import Scene, SceneError
 from ..state import Event
 from ..studies.brackets import Bracket, EventNotBracketed

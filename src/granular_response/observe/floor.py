@@ -11,9 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import require
+from ..errors import check_positive, require
 from ..state import FLOOR, Box, FloatArray, State
-from .positive import check_positive
 
 #: Widths of the Gaussian beyond which images across periodic sides are left out.
 CUTOFF = 7.0

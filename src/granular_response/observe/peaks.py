@@ -19,9 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import require
+from ..errors import check_positive, require
 from ..state import FloatArray
-from .positive import check_positive
 
 #: Mask over the samples; None takes all.
 Interior = NDArray[np.bool_] | None

@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import require
-from ..observe.positive import check_positive
+from ..errors import check_positive, require
 from ..state import FloatArray
 from .brackets import Bracket, EventNotBracketed, First
 

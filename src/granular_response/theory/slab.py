@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import schur
 
-from ..errors import require
+from ..errors import check_positive, require
 from .moduli import Moduli
 
 Floor = Literal["rough", "smooth"]
@@ -65,11 +65,10 @@ class Slab:
     load_position: float = 0.0
 
     def __post_init__(self) -> None:
-        require(np.isfinite(self.height) and self.height > 0.0, f"height = {self.height}: must be finite and positive")
+        check_positive(height=self.height)
         require(self.floor in ("rough", "smooth"), f"floor = {self.floor!r}: must be 'rough' or 'smooth'")
         if self.width is not None:
-            rule = f"width = {self.width}: must be finite and positive, or None"
-            require(np.isfinite(self.width) and self.width > 0.0, rule)
+            check_positive(width=self.width)
             rule = f"load_position = {self.load_position}: must be inside +-{0.5 * self.width}"
             require(abs(self.load_position) < 0.5 * self.width, rule)
 
