@@ -14,8 +14,8 @@ from scipy.spatial import KDTree
 from timing import interleaved, write
 
 from granular_response.scene import Scene
+from granular_response.solvers.candidates import SKIN
 from granular_response.solvers.close_pairs import close_pairs
-from granular_response.solvers.problem import SKIN
 
 #: layers and disks in the bottom row
 SLABS = [(15, 61), (60, 242), (180, 720)]

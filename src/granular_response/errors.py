@@ -1,4 +1,8 @@
-"""The base of all errors of this package."""
+"""The base of all errors of this package, and the checks that raise them."""
+
+from __future__ import annotations
+
+from typing import Any
 
 
 class GranularError(Exception):
@@ -11,3 +15,19 @@ class SolveError(GranularError):
 
 class EquilibriumError(SolveError, RuntimeError):
     """No static equilibrium was found near the start."""
+
+
+def require(met: object, said: str, error: type[Exception] = ValueError) -> None:
+    """Raise ``error`` with the message ``said`` unless a condition is ``met``."""
+    if not met:
+        raise error(said)
+
+
+def check_positive(**given: Any) -> None:
+    """ValueError, with its name, for the first of ``given`` that is not a finite number greater than 0."""
+    import numpy as np  # here, so that nothing waits for it that only has errors
+
+    for name, value in given.items():
+        number = np.asarray(value)
+        rule = f"{name} = {value!r}: must be a finite number greater than 0"
+        require(not number.ndim and number.dtype.kind in "iuf" and 0.0 < number < np.inf, rule)

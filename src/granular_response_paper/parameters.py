@@ -16,27 +16,27 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from granular_response.scene import Scene, SceneError
 from granular_response.scene.base import Count, Description, Positive, Ratio, allowed
-from granular_response.scene.errors import Problem
+from granular_response.scene.errors import NotAllowed
 from granular_response.scene.protocol import Integrator, Method
 
 
 def _different(values: tuple) -> tuple:
     if len(set(values)) < len(values):
-        raise Problem("")
+        raise NotAllowed("")
     return values
 
 
 def growing(values: tuple[float, ...]) -> tuple[float, ...]:
     """For ``AfterValidator``: each one greater than the one before."""
     if any(after <= before for before, after in pairwise(values)):
-        raise Problem("")
+        raise NotAllowed("")
     return values
 
 
 def some(values: tuple) -> tuple:
     """For ``AfterValidator``: not empty. What is wrong with an entry keeps the entry's own message."""
     if not values:
-        raise Problem("must have at least one entry")
+        raise NotAllowed("must have at least one entry")
     return values
 
 
@@ -90,7 +90,7 @@ class Checked(Description):
         for key, holds, rule in self.checks():
             if not holds:
                 path = [int(part) if part.isdigit() else part for part in key.split(".")]
-                raise Problem(rule, key=path, value=_shown(reduce(_part, path, self)))
+                raise NotAllowed(rule, key=path, value=_shown(reduce(_part, path, self)))
         return self
 
 
@@ -164,17 +164,19 @@ def over(base: Scene, *decided: str) -> BeforeValidator:
         if isinstance(given, Scene):
             return given
         if not isinstance(given, Mapping):
-            raise Problem("must be a mapping with keys of a scene")
+            raise NotAllowed("must be a mapping with keys of a scene")
         for path, value in _leaves(given):
             name = ".".join(path)
             if name == "packing.kind" and value != kind:
-                raise Problem(f"must be {kind} in this group", key=path, value=value)
+                raise NotAllowed(f"must be {kind} in this group", key=path, value=value)
             if name.startswith(tuple(f"{key}." for key in refused)) or name in refused:
-                raise Problem("is decided by the group, by keys of its own; must not be given", key=path, value=value)
+                raise NotAllowed(
+                    "is decided by the group, by keys of its own; must not be given", key=path, value=value
+                )
         try:
             return base.merged(given)
         except SceneError as error:
-            raise Problem(str(error)) from None
+            raise NotAllowed(str(error)) from None
 
     return BeforeValidator(complete)
 

@@ -75,12 +75,12 @@ def originals(folder: Path) -> list[File]:
         solved = to_dataset(solve_scene(Scene.from_dict({**scene, "loads": [load]}, folder=folder)))
         store.write(path, solved)
         found.append(File(path.name, path.read_bytes(), {}, True))
-        for suffix in (".csv", ".data", ".dump", ".txt", ".gsd"):
+        for suffix in (".csv", ".data", ".dump", ".gsd"):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 made = export(path, folder / f"{name}{suffix}")
             # with a width of the scene a table is read that has lost its mark
-            width = {"width": float(solved.attrs["width"])} if suffix in (".csv", ".txt") else {}
+            width = {"width": float(solved.attrs["width"])} if suffix == ".csv" else {}
             found.append(File(made.name, made.read_bytes(), {"sides": name, **width}, True))
     found.append(File("disks.csv", TABLE.encode(), {"width": 6.3}, False))
     data = Path(__file__).parents[1] / "data" / "packings"

@@ -79,8 +79,7 @@ def test_what_is_exported_is_imported(result, tmp_path, name):
         np.testing.assert_allclose(packing.radius * scale, stored["radius"], rtol=precision + 1e-15)
         np.testing.assert_allclose(packing.position * scale, stored["position"][-1], atol=10 * precision + 1e-14)
         assert packing.width * scale == pytest.approx(stored.attrs["width"], rel=10 * precision + 1e-14)
-        if name != "yade":  # its text has no masses
-            np.testing.assert_allclose(packing.mass, stored["mass"], rtol=10 * precision + 1e-14)
+        np.testing.assert_allclose(packing.mass, stored["mass"], rtol=10 * precision + 1e-14)
 
 
 @pytest.mark.filterwarnings("ignore:.*read again")
@@ -238,12 +237,6 @@ def test_lammps_disks_are_in_the_order_of_their_ids(tmp_path, name, text, last):
     np.testing.assert_array_equal(far.position, np.roll(ordered.position, -1, axis=0))
 
 
-def test_yade_in_either_plane(tmp_path):
-    for text in ("# by hand\n1 0 1 1\n3 0 1.5 1\n", "#format x_y_z_r_matId\n1 1 2 1 0\n3 1.5 2 1 0\n"):
-        packing = build(tmp_path / "a.txt", text, width=9.0)
-        np.testing.assert_allclose(packing.position, [[1, 1], [3, 1.5]])
-
-
 HEADER = "ITEM: ATOMS id xs yu z diameter mass"
 #: Files that cannot be read, with what is said of each.
 MARK = "# granular-response: 2 disks, width 9.0, sides walls\n"
@@ -260,8 +253,6 @@ MISTAKES = [
     ("a.csv", 'x,z,radius,note\n1,1,1,a\n3,1,1,"big\n5,1,1,c\n7,1,1,d\n',
      "line 3: is not CSV: a quote that is not closed in its line"),
     ("a.csv", '#,"a comment\nx,z,radius\n1,1,1\n#,"\n1_0,1,1\n', "line 5: x = '1_0': must be a finite number"),
-    ("a.txt", "1 0 1 1\n3 0 1 1 0.5\n", "line 2: has 5 values, must have x y z r"),
-    ("a.txt", "#format x_y_z_r_attrs\n1 0 1 1 5 6\n3 0 1 1 7\n", "line 3: has 5 values, must have x y z r attrs"),
     # tables that say a thing twice
     ("a.dump", DUMP.replace("id xs", "id xs xs").replace("0.1 0", "0.1 0.2 0").replace("0.4 0", "0.4 0.4 0"),
      "line 19: column xs is given 2 times, as columns 2 and 3; must be given once"),
@@ -285,17 +276,13 @@ MISTAKES = [
     ("a.csv", "x,y,z,radius\n1,1,1,1\n3,2,2,1\n", "disks must lie in one plane, y or z must be the same for all"),
     ("a.csv", "# granular-response: 1 disks, width 9.0, sides walls\nx,z,radius,99\n1,1,1,5\n",
      "column mass is missing, which tables of granular-response have"),
-    ("a.txt", "# granular-response: 2 disks, width 9.0, si1 0 1 1\n3 0 1 1\n",
+    ("a.csv", "# granular-response: 2 disks, width 9.0, si1 0 1 1\n3 0 1 1\n",
      "line 1: is a damaged first line of a table of granular-response"),
     ("a.csv", "x,z,radius\n1,1,1\n# a note\u20283,1,1\n", "line 3: has a line or page end of another kind within"),
-    ("a.txt", "1 0 1 1\n# page 1\f3 0 1 1\n", "line 2: has a line or page end of another kind within"),
     ("a.csv", "x,z,radius,vx,vx\n1,1,1,0,5\n", "line 1: column vx is given 2 times, must be given once"),
     ("a.data", DATA.replace("\n3 0 0 0", "\n4 0 0 0"), "line 24: id = '4': must be that of an atom, section"),
     ("a.data", DATA.replace("1 atom types", "2 atom types").replace("1 1.0\n", "1 1.0\n1 2.0\n"),
      "line 13: 1 in section Masses: is given twice, in line 12 and here"),
-    ("a.txt", "#format x_y_z_r\n#1 0 1 1\n3 0 1 1\n# end, granular-response: 2 disks, width 9.0, sides walls\n",
-     "the mark of granular-response in its last line is there, that above the spheres is missing or damaged"),
-    ("a.txt", "#format x_y_z_r_r\n1 0 1 1 0.5\n", "line 1: format names 'r' 2 times, must name it once"),
     # tables of several frames, of tracked disks, and without a header
     ("a.csv", "x,z,radius,image\n1,1,1,a.png\n3,1,1,b.png\n3,1,1,b.png\n", "line 2: image = 'a.png': must be a finite"),
     ("a.csv", "x,z,radius,t\n1,1,1,0\n3,1,1,1\n", "column t: each disk has another one; a table must have"),
@@ -311,8 +298,7 @@ MISTAKES = [
     ("a.csv", "secret;a b\n", "columns x, z and radius are missing, header must name x, z and radius"),
     # files of another kind than their name says
     ("a.csv", DUMP, "is of format lammps-dump by its content, not csv: packing.format says so"),
-    ("a.txt", "x,z,radius\n1,1,1\n", "is of format csv by its content, not yade"),
-    ("a.csv", "1 0 1 1\n3 0 1 1\n", "is of format yade by its content, not csv"),
+    ("a.dump", "x,z,radius\n1,1,1\n", "is of format csv by its content, not lammps-dump"),
     ("a.dump", DATA, "is of format lammps-data by its content, not lammps-dump"),
     ("a.dump", "---\ncreator: LAMMPS\ntimestep: 0\n", "is a LAMMPS dump of style yaml, must be one of style custom"),
     ("a.csv", '2\nLattice="1 0 0 0 1 0 0 0 1"\nX 1 1\n', "is a file of extended XYZ, which is written and not read"),
@@ -324,7 +310,6 @@ MISTAKES = [
     ("a.dump", DUMP[:-1], "is cut: its last line has no end"),
     ("a.dump", DUMP[:-20], "holds 1 of 2 atoms in its last frame"),
     ("a.dump", LATE_BOX, "line 7: must be followed by three lines of bounds, and have flags of three axes or none"),
-    ("a.txt", "", "has no spheres"),
     ("a.gsd", "not a gsd file", "is not a GSD file with particles"),
     ("a.csv", "x,z,radius\n", "has no disks, must have a header x,z,radius and a line for each disk"),
     ("a.csv", MARK + "x,z,radius,mass\n1,1,1,1\n3,1,1,1", "is cut: its last line has no end"),
@@ -345,7 +330,6 @@ MISTAKES = [
     ("a.csv", "x,z,radius\n1,1,1\nnan,1,1\n", "line 3: x = 'nan': must be a finite number"),
     ("a.data", DATA.replace("3 1 1.0", "1 1 1.0"), "line 18: id = 1: must differ from that of line 16"),
     ("a.dump", DUMP.replace("2 0.4", "2.5 0.4"), "line 21: id = '2.5': must be a whole number"),
-    ("a.txt", "1 0 1 1\n2 1 2 1\n", "disks must lie in one plane"),
     ("a.csv", "x,z,radius\n1,1,1\n3,1,1\n1,1,2\n", "line 4: disk is in the same place as that of line 2"),
     ("a.csv", "x,z,radius\n1,-1,1\n", "line 2: z = -1.0: must be above the floor 0, which packing.origin says"),
     ("a.csv", f"{ONE}1e300,1,1,1\n", "reach from 0 to 1e+300, packing.origin says where left wall and floor are"),
@@ -363,13 +347,10 @@ def test_files_that_cannot_be_read_are_refused(tmp_path, name, text, said):
 
 
 def test_what_is_said_twice_alike_is_taken(tmp_path):
-    """Also the numbers of values that a format of YADE leaves open."""
     text = DUMP.replace("id xs yu z diameter", "id x xs yu z radius diameter")
     text = text.replace("1 0.1 0 3.0", "1 -4 0.1 0 3.0 1.0").replace("2 0.4 0 3.5", "2 -1.00001 0.4 0 3.5 1.5")
     plain = build(tmp_path / "b.dump", DUMP)
     np.testing.assert_allclose(build(tmp_path / "a.dump", text).position, plain.position, atol=1e-4)
-    packing = build(tmp_path / "a.txt", "#format x_y_z_r_attrs\n1 0 1 1 5 6\n3 0 1.5 1 7 8\n", width=9.0)
-    np.testing.assert_allclose(packing.position, [[1, 1], [3, 1.5]])
     text = "x,y,z,radius,diameter\n1,1,0,1,2\n3,1.5,0,1,2\n"  # a camera's plane
     np.testing.assert_allclose(build(tmp_path / "a.csv", text, width=9.0).position, [[1, 1], [3, 1.5]])
 
@@ -405,7 +386,7 @@ def test_heights_that_point_down_are_asked_about_and_turned(tmp_path):
     refuses(SceneError, "must name a column once", FilePacking, path="a.csv", columns={"z": "-y", "x": "y"})
 
 
-@pytest.mark.parametrize("name", ["a.csv", "a.dump.gz", "a.data", "a.txt", "a.gsd"])
+@pytest.mark.parametrize("name", ["a.csv", "a.dump.gz", "a.data", "a.gsd"])
 def test_packed_files_are_named_as_what_they_are(tmp_path, name):
     """The message went by chance of the bytes."""
     packed = {
@@ -446,8 +427,8 @@ def test_columns_that_are_not_there_are_named(tmp_path, columns, said):
         assert Scene.from_dict(given, folder=tmp_path).packing.build().position.tolist() == [[1.0, 1.0]]
         return
     assert said in refuses(SceneError, None, lambda: Scene.from_dict(given, folder=tmp_path).packing.build())
-    with pytest.raises(SceneError, match=r"^columns = .*format yade says what its columns are$"):
-        FilePacking(path="a.txt", columns={"z": "y"})
+    with pytest.raises(SceneError, match=r"^columns = .*format lammps-dump says what its columns are$"):
+        FilePacking(path="a.dump", columns={"z": "y"})
 
 
 def gsd_frame(lift=0.0, box=10, **log):
@@ -607,11 +588,6 @@ def test_masses_come_back_or_it_is_said(tmp_path, name):
     smooth = {"contact": {"friction": 0}, "loads": []}
     gr.solve({"packing": packing, **smooth}).save(tmp_path / "a.nc")
     path = tmp_path / f"a{ENDINGS[name][0]}"
-    if name == "yade":
-        with pytest.warns(UserWarning, match=r"a\.txt: the format has no masses: read again, disks are of one"):
-            export(tmp_path / "a.nc", path)
-        np.testing.assert_allclose(build(path).mass, [1.8, 0.2, 0.2, 1.8])
-        return
     export(tmp_path / "a.nc", path)
     np.testing.assert_allclose(build(path).mass, 1.0, atol=1e-7)
     again = gr.solve({"packing": {"kind": "file", "path": str(path)}, **smooth}).rest.walls

@@ -7,8 +7,9 @@ import pytest
 from small_scenes import free_disks, scene, shaken
 
 from granular_response.scene import Scene, SceneError
-from granular_response.solvers.problem import Problem, carry_springs
+from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import solve_scene
+from granular_response.solvers.springs import carry_springs
 from granular_response.solvers.system import StaticSystem
 from granular_response.state import FLOOR
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from numbers import Real
 from typing import Any
 
-from ..observe.positive import check_positive
+from ..errors import check_positive, require
 from ..scene import Scene, SceneError
 from ..state import Event
 from ..studies.brackets import Bracket, EventNotBracketed
@@ -92,11 +92,11 @@ def find_event(
     elif where is not None:
         raise ValueError("where: is asked of events, must be left out with a function of the result")
     ends: tuple[Any, Any] = low, high
-    if not (all(isinstance(end, Real) and math.isfinite(end) for end in ends) and low < high):
-        raise ValueError(f"low = {low!r}, high = {high!r}: must be finite numbers, and low below high")
+    rule = f"low = {low!r}, high = {high!r}: must be finite numbers, and low below high"
+    require(all(isinstance(end, Real) and math.isfinite(end) for end in ends) and low < high, rule)
     low, high = float(low), float(high)
-    if key == "load" and not base.loads:
-        raise SceneError("loads: none in this scene, must be one or more to look along the load; or name a key")
+    rule = "loads: none in this scene, must be one or more to look along the load; or name a key"
+    require(key != "load" or base.loads, rule, SceneError)
     if key == "load" and (low < 0.0 or (kind is None and low == 0.0)):
         least = "greater than 0" if kind is None else "0 or greater"
         raise ValueError(f"low = {low}: must be {least}, a factor of the scene's loads")

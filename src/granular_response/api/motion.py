@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..errors import require
 from ..scene import Scene, SceneError
 from ..scene.errors import show
 from ..scene.laboratory import FORCE, LENGTH, MASS, TIME
@@ -73,13 +74,12 @@ def motion(
     True
     """
     asked = described(scene)
-    if not isinstance(start, State | None):
-        raise SceneError(f"start: a {type(start).__name__}, must be a state, such as result.rest or result.loaded[-1]")
+    rule = f"start: a {type(start).__name__}, must be a state, such as result.rest or result.loaded[-1]"
+    require(isinstance(start, State | None), rule, SceneError)
     if start is not None and start.load_factor != 0.0:  # disks have moved, and a selector may find another one
         for k, load in enumerate(asked.loads):
-            if not isinstance(load.disk, int):
-                said = f"loads[{k}].disk = {show(load.disk)}: must be the number of a disk, since start is under load"
-                raise SceneError(f"{said}; result.loaded_disks has it")
+            said = f"loads[{k}].disk = {show(load.disk)}: must be the number of a disk, since start is under load"
+            require(isinstance(load.disk, int), f"{said}; result.loaded_disks has it", SceneError)
     for remark in idle_in_motion(asked):
         warnings.warn(remark, stacklevel=2)
     with shown(progress) as report, logged(report):

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..errors import check_positive
 from ..observe import network
 from ..observe.difference import pair_force_difference, wall_force_difference
-from ..observe.positive import check_positive
 from ..observe.stress import virial_stress
 from ..scene.laboratory import FORCE, LENGTH
 from ..solvers.modes import lowest_modes

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..errors import GranularError
+from ..errors import GranularError, require
 from ..observe.broke_in import broke_in
 from ..observe.floor import origin_of, sensor_forces, smoothed_response
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
@@ -60,8 +60,8 @@ class Result:
         *,
         folder: str | os.PathLike[str] | None = None,
     ) -> None:
-        if (solution is None) == (dataset is None):
-            raise TypeError("Result: made from a solution or from a dataset, one of them")
+        rule = "Result: made from a solution or from a dataset, one of them"
+        require((solution is None) != (dataset is None), rule, TypeError)
         self._solution, self._dataset, self._folder = solution, dataset, folder
 
     @cached_property
@@ -257,8 +257,7 @@ class Result:
         Dimensions ``load``, ``load_point`` and ``axis`` ("x", "z"); 0 along directions that are free. Raises ValueError
         for a scene in which no load displaces a disk.
         """
-        if "reaction" not in self._data:
-            raise ValueError("reaction: there is none, no load of this scene has a displacement")
+        require("reaction" in self._data, "reaction: there is none, no load of this scene has a displacement")
         return self._data["reaction"].copy()
 
     @property
@@ -388,8 +387,8 @@ class Result:
     @staticmethod
     def _added(index: int, added: bool | None) -> bool:
         """Whether incremental forces are meant; raises ValueError for those of the initial equilibrium."""
-        if added and index == 0:
-            raise ValueError("added: a load adds nothing to the initial equilibrium, must be False for state 0")
+        rule = "added: a load adds nothing to the initial equilibrium, must be False for state 0"
+        require(not added or index != 0, rule)
         return index > 0 if added is None else added
 
     @property
@@ -428,7 +427,7 @@ class Result:
         ----------
         path : its extension is the format: ``.gsd`` and ``.xyz`` for OVITO, ``.vtu`` and ``.pvd`` for ParaView,
             ``.data`` and ``.dump`` for LAMMPS, ``in.lammps`` for a script with the disks and their springs beside it,
-            ``.txt`` for YADE, ``.csv`` for disks, ``.contacts.csv`` and ``.events.csv``.
+            ``.csv`` for disks, ``.contacts.csv`` and ``.events.csv``.
         state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last
             one in a format of one state.
 

@@ -21,7 +21,7 @@ import xarray as xr
 from pandas import MultiIndex
 
 from .. import __version__
-from ..errors import SolveError
+from ..errors import SolveError, require
 from ..scene import Preparation, Scene, SceneError, Taps
 from ..scene.base import Description
 from ..scene.errors import show
@@ -136,8 +136,7 @@ def sweep(
     values = _values(axes)
     programme = {} if load_factors is None else {"protocol.load_factors": load_programme(load_factors)}
     points = [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
-    if programme.keys() & values.keys():
-        raise ValueError("load_factors: is an axis too, must be one of the two")
+    require(not (programme.keys() & values.keys()), "load_factors: is an axis too, must be one of the two")
     scenes = [base.updated({**point, **programme}) for point in points]
     for each in scenes:
         checked_problem(each)
@@ -202,8 +201,8 @@ def preparations(
     >>> float((found["floor_response_high"] - found["floor_response_low"]).max().round(3))
     0.006
     """
-    if not isinstance(ways, Mapping) or not ways or not all(isinstance(name, str) for name in ways):
-        raise SceneError(f"ways = {show(ways)}: must be a mapping of names to preparations")
+    rule = f"ways = {show(ways)}: must be a mapping of names to preparations"
+    require(isinstance(ways, Mapping) and ways and all(isinstance(name, str) for name in ways), rule, SceneError)
     base, chosen = described(scene), []
     for name, way in ways.items():
         try:
@@ -271,11 +270,10 @@ def _values(axes: Any) -> dict[str, list[Any]]:
     values = {}
     for key, given in axes.items():
         # text and mappings can be iterated over too, but by letters and by names
-        if isinstance(given, (str, bytes, Mapping)) or not np.iterable(given) or unordered(given):
-            raise ValueError(f"axes: {key} = {show(given)}, must be a list of values")
+        rule = f"axes: {key} = {show(given)}, must be a list of values"
+        require(not isinstance(given, (str, bytes, Mapping)) and np.iterable(given) and not unordered(given), rule)
         values[key] = list(plain(given))
-        if not values[key]:
-            raise ValueError(f"axes: {key} has no values, must have one or more")
+        require(values[key], f"axes: {key} has no values, must have one or more")
         seen = set()
         for value in values[key]:
             if (same := _comparable(value)) in seen:

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import require
 from ..state import OPEN, Contacts, FloatArray, State
 
 
@@ -95,8 +96,7 @@ def _spread(
     turned: FloatArray | float = 1.0,
 ) -> Contacts:
     at = np.searchsorted(union, key)
-    if np.unique(at).size != at.size:
-        raise ValueError(f"{kind}: a contact is listed twice")
+    require(np.unique(at).size == at.size, f"{kind}: a contact is listed twice")
     spread: dict[str, NDArray] = {"overlap": overlap}
     for name in ("normal_force", "tangential_force", "spring", "rolling_force", "rolling_spring"):
         spread[name] = np.zeros(union.size)

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import check_positive, require
 from ..state import FLOOR, Box, FloatArray, State
-from .positive import check_positive
 
 #: Widths of the Gaussian beyond which images across periodic sides are left out.
 CUTOFF = 7.0
@@ -24,8 +24,7 @@ def floor_disks(states: Sequence[State], bottom_row: ArrayLike = ()) -> NDArray[
     A floor disk belongs to ``bottom_row`` (disk indices, from the packing) or touches the floor in any of ``states``;
     give every state that is to be compared, so that no floor force is left out. Raises ``ValueError`` without a state.
     """
-    if not states:
-        raise ValueError("states: none given; at least one state is needed to find the floor disks")
+    require(states, "states: none given; at least one state is needed to find the floor disks")
     touching = [s.walls.first[(s.walls.second == FLOOR) & s.walls.touching] for s in states]
     disks = np.unique(np.concatenate([np.asarray(bottom_row, dtype=np.intp), *touching])).astype(np.intp)
     return disks[np.argsort(states[0].position[disks, 0], kind="stable")]
@@ -94,8 +93,8 @@ def interior_mask(x: ArrayLike, width: float, margin: float = 10.0, *, left_wall
     disk: minus the distance of that disk from the wall); the right wall is ``width`` further on.
     Raises ``ValueError`` if nothing can be in the interior.
     """
-    if not 0.0 <= margin < width / 2.0:
-        raise ValueError(f"margin: {margin} given; it must be at least 0 and less than half the width {width}")
+    rule = f"margin: {margin} given; it must be at least 0 and less than half the width {width}"
+    require(0.0 <= margin < width / 2.0, rule)
     distance = np.asarray(x, dtype=float) - left_wall
     return (distance >= margin) & (distance <= width - margin)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import require
 from ..state import Contacts, FloatArray, State
 from .difference import pair_numbers, require_same
 from .floor import interior_mask
@@ -99,8 +100,7 @@ def coordination_number(
         loose = rattlers(state)
         chosen &= ~loose
         live = live & ~loose[pairs.first] & ~loose[pairs.second]
-    if not chosen.any():
-        raise ValueError("disks: none left to average over")
+    require(chosen.any(), "disks: none left to average over")
     return float(state.contact_count(live, walls=walls)[chosen].mean())
 
 
@@ -119,8 +119,7 @@ def contact_angle_histogram(
     to rounding are not split; with ``bins`` a multiple of 3 so are the oblique lattice directions. ``contacts``
     restricts the pairs. An empty network gives zeros. Raises ``ValueError`` for fewer than one bin.
     """
-    if bins < 1:
-        raise ValueError(f"bins: {bins} given; it must be at least 1")
+    require(bins >= 1, f"bins: {bins} given; it must be at least 1")
     chosen = state.pairs.touching if contacts is None else state.pairs.touching & contacts
     spacing = np.pi / bins
     # Cells are half-open in the shifted angle; the modulo folds angles just below pi onto the first.
@@ -147,8 +146,8 @@ def mirror_disks(position: FloatArray, axis: float, tolerance: float = 0.1) -> N
             f"position: disk {worst} has no mirror image within {tolerance} (nearest at {distance[worst]:.3g}); "
             f"the packing, taken without its periodic sides, is not symmetric about x = {axis}"
         )
-    if not np.array_equal(index[index], np.arange(index.size)):
-        raise ValueError(f"position: two disks share a mirror image about x = {axis}; tolerance {tolerance} too large")
+    rule = f"position: two disks share a mirror image about x = {axis}; tolerance {tolerance} too large"
+    require(np.array_equal(index[index], np.arange(index.size)), rule)
     return index.astype(np.intp)
 
 

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import check_positive, require
 from ..state import FloatArray
-from .positive import check_positive
 
 #: Mask over the samples; None takes all.
 Interior = NDArray[np.bool_] | None
@@ -169,8 +169,7 @@ def asymmetry(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) -
     """
     x, r = _samples(x, response, interior)
     largest = float(r.max())
-    if not largest > 0.0:
-        raise ValueError(f"response: its largest value is {largest}; it must be positive somewhere")
+    require(largest > 0.0, f"response: its largest value is {largest}; it must be positive somewhere")
     reach = min(-float(x[0]), float(x[-1]))
     both = np.abs(x) <= reach + 1e-6 * (x[-1] - x[0])
     if not np.any(both):
@@ -198,17 +197,14 @@ def _outer_peaks(
 
 def _samples(x: ArrayLike, response: ArrayLike, interior: Interior) -> tuple[FloatArray, FloatArray]:
     x, r = np.asarray(x, dtype=float), np.asarray(response, dtype=float)
-    if x.ndim != 1 or x.shape != r.shape:
-        raise ValueError(f"response: shape {r.shape} given for x of shape {x.shape}; both must be the same 1-D shape")
+    rule = f"response: shape {r.shape} given for x of shape {x.shape}; both must be the same 1-D shape"
+    require(x.ndim == 1 and x.shape == r.shape, rule)
     if interior is not None:
         mask = np.asarray(interior)
-        if mask.shape != x.shape or mask.dtype != np.bool_:
-            raise ValueError(f"interior: {mask.dtype} of shape {mask.shape} given; it must be bool of shape {x.shape}")
+        rule = f"interior: {mask.dtype} of shape {mask.shape} given; it must be bool of shape {x.shape}"
+        require(mask.shape == x.shape and mask.dtype == np.bool_, rule)
         x, r = x[mask], r[mask]
-    if x.size < 3:
-        raise ValueError(f"x: {x.size} samples in the interior; at least 3 are needed")
-    if not (np.all(np.isfinite(x)) and np.all(np.isfinite(r))):
-        raise ValueError("response: contains values that are not finite")
-    if not np.all(np.diff(x) > 0.0):
-        raise ValueError("x: must be strictly increasing")
+    require(x.size >= 3, f"x: {x.size} samples in the interior; at least 3 are needed")
+    require(np.all(np.isfinite(x)) and np.all(np.isfinite(r)), "response: contains values that are not finite")
+    require(np.all(np.diff(x) > 0.0), "x: must be strictly increasing")
     return x, r

@@ -30,10 +30,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import check_positive
 from ..state import FloatArray, State
 from .difference import pair_force_difference, wall_force_difference
 from .floor import smoothed_response
-from .positive import check_positive
 
 #: Evaluations of a contact at a point that are held in memory at once.
 _CHUNK = 2_000_000

@@ -14,6 +14,7 @@ from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, FuncAnimatio
 from matplotlib.figure import Figure
 from PIL import Image
 
+from ..errors import require
 from ..state import FloatArray
 from ..store import atomic
 from . import chains, style
@@ -134,14 +135,13 @@ class Frames:
         self.columns = {title: Shown.of(one) for title, one in given.items()}
         shown = [*self.columns.values()]
         for one in shown:
-            if one.lack:
-                raise PictureError(f"results: {one.lack}, so there is no response")
+            require(not one.lack, f"results: {one.lack}, so there is no response", PictureError)
         forces = [np.atleast_1d(one.data["total_force"].values) for one in shown]
         if any(one.shape != forces[0].shape or not np.allclose(one, forces[0], rtol=1e-6) for one in forces):
             raise PictureError("results: must have the same forces, one for each frame")
         self.forces: FloatArray = forces[0]
-        if len(self.forces) < 2:
-            raise PictureError("results: one load makes no animation, must have two or more (load_factors)")
+        rule = "results: one load makes no animation, must have two or more (load_factors)"
+        require(len(self.forces) >= 2, rule, PictureError)
         self.half = half_width or max(max(one.origin, one.box.width - one.origin) for one in shown)
         self.responses = [np.atleast_2d(one.data["floor_response"].values) for one in shown]
         near = [np.abs(one.data["x"].values) <= self.half for one in shown]

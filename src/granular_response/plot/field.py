@@ -10,6 +10,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import FuncNorm, Normalize, PowerNorm
 from numpy.typing import ArrayLike
 
+from ..errors import require
 from . import style
 
 
@@ -19,8 +20,7 @@ def root_norm(largest: float, *, signed: bool = False) -> Normalize:
     The stress under a load falls like 1/depth: so its lower part is seen too. Raises ValueError unless ``largest`` is
     positive.
     """
-    if not largest > 0.0:
-        raise ValueError(f"largest = {largest}: must be positive")
+    require(largest > 0.0, f"largest = {largest}: must be positive")
     if not signed:
         return PowerNorm(0.5, vmin=0.0, vmax=largest)
     return FuncNorm(

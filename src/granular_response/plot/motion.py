@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.animation import FuncAnimation
 from matplotlib.figure import Figure
 
+from ..errors import require
 from ..state import Box
 from . import network, style
 from .animation import animated, check_target
@@ -50,8 +51,7 @@ def motion(
     needed = {"time", "position", "velocity", "angle", "radius"}
     if not isinstance(moved, xr.Dataset) or not needed <= set(moved.variables) or moved["time"].ndim != 1:
         raise PictureError("moved: must be a dataset of gr.motion with the dimension time")
-    if moved.sizes["time"] < 2:
-        raise PictureError("moved: one time makes no animation, must have two or more")
+    require(moved.sizes["time"] >= 2, "moved: one time makes no animation, must have two or more", PictureError)
     radius, speed = moved["radius"].values, np.hypot(*np.moveaxis(moved["velocity"].values, -1, 0))
     position, box = moved["position"].values, Box.of(moved.attrs)
     if box.periodic:

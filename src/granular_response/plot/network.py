@@ -17,6 +17,7 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike
 
+from ..errors import require
 from ..observe.teardrop import connected
 from ..state import FLOOR, OPEN, SLIDING, Box, FloatArray
 from . import style
@@ -232,8 +233,7 @@ def draw_forces(
     without a line are left out of the returned collections.
     """
     centre, vector = _points(point, "point"), _points(force, "force")
-    if len(centre) != len(vector):
-        raise ValueError(f"force: {len(vector)} given for {len(centre)} contact points")
+    require(len(centre) == len(vector), f"force: {len(vector)} given for {len(centre)} contact points")
     magnitude = np.linalg.norm(vector, axis=1)
     pushes = np.sum(vector * np.asarray(normal), axis=1) >= 0.0
     drawn = {}
@@ -355,6 +355,5 @@ def include(axes: Axes, points: FloatArray) -> None:
 
 def _points(values: ArrayLike, name: str) -> FloatArray:
     array = np.asarray(values, dtype=float)
-    if array.ndim != 2 or array.shape[1] != 2:
-        raise ValueError(f"{name}: must have shape (n, 2), not {array.shape}")
+    require(array.ndim == 2 and array.shape[1] == 2, f"{name}: must have shape (n, 2), not {array.shape}")
     return array

@@ -26,6 +26,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
+from ..errors import require
 from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
 from ..state import OPEN, SLIDING, FloatArray, foot_points, wall_normals
 from ..store import atomic
@@ -71,8 +72,8 @@ def response(
     >>> gr.plot.response(result, cmap="plasma", lw=1.5).figure.savefig("response.png")
     """
     shown = Shown.of(result)
-    if shown.lack:
-        raise PictureError(f"result: {shown.lack}, so there is no response; floor draws the forces on the floor")
+    rule = f"result: {shown.lack}, so there is no response; floor draws the forces on the floor"
+    require(not shown.lack, rule, PictureError)
     with style.with_users():
         axes = new_axes(ax, 0.36)
         curves = np.atleast_2d(shown.data["floor_response"].values)
@@ -157,8 +158,7 @@ def forces(
     """
     shown = Shown.of(result, state)
     added = shown.index > 0 if added is None else added
-    if scale not in network.SCALES:
-        raise PictureError(f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}")
+    require(scale in network.SCALES, f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}", PictureError)
     check_positive(vmax=vmax, half_width=half_width)
     lines = _aliased(lines, LineCollection, color)
     colours = _two_colours(lines.pop("color", None))
@@ -275,8 +275,8 @@ def stress(
     """
     shown = Shown.of(result, state)
     added = shown.index > 0 if added is None else added
-    if component not in ("xx", "xz", "zx", "zz"):
-        raise PictureError(f"component = {component!r}: must be one of xx, xz, zx, zz")
+    rule = f"component = {component!r}: must be one of xx, xz, zx, zz"
+    require(component in ("xx", "xz", "zx", "zz"), rule, PictureError)
     check_positive(vmax=vmax, half_width=half_width)
     first, second = shown.pairs
     at_wall, wall = shown.position[shown.values("wall_disk")], shown.values("wall_index")
@@ -364,8 +364,8 @@ def packing(
                 number: FloatArray = np.ma.filled(np.ma.array(values, dtype=float), np.nan)  # masked: not known
             except (TypeError, ValueError):
                 raise PictureError(f"values = {reprlib.repr(values)}: must be numbers, a disk each") from None
-            if number.shape != shown.radius.shape:
-                raise PictureError(f"values: must have shape {shown.radius.shape}, a disk each, not {number.shape}")
+            rule = f"values: must have shape {shown.radius.shape}, a disk each, not {number.shape}"
+            require(number.shape == shown.radius.shape, rule, PictureError)
             look = {"cmap": cmap, "edgecolor": style.MUTED, **patches}
             disks = _packing(axes, shown, values=number, **look)
             axes.figure.colorbar(disks, ax=axes, shrink=0.9, aspect=14, pad=0.02).set_label(label)
@@ -396,8 +396,8 @@ def _colours(count: int, color: Any, cmap: str | Colormap | None) -> list[Any]:
         if is_color_like(color):
             return [color] * count
         many = [] if isinstance(color, str) else list(color)
-        if len(many) != count or not all(map(is_color_like, many)):
-            raise PictureError(f"color = {reprlib.repr(color)}: must be a colour, or {count}, one for each load")
+        rule = f"color = {reprlib.repr(color)}: must be a colour, or {count}, one for each load"
+        require(len(many) == count and all(map(is_color_like, many)), rule, PictureError)
         return many
     if cmap is not None:
         try:
@@ -416,8 +416,8 @@ def _two_colours(color: Any) -> dict[str, Any]:
         pale = tuple(1.0 - 0.45 * (1.0 - part) for part in to_rgb(color))
         return dict(zip(network.FORCE_LINES, (color, pale), strict=True))
     many = [] if isinstance(color, str) else list(color)
-    if len(many) != len(network.FORCE_LINES) or not all(map(is_color_like, many)):
-        raise PictureError(f"color = {reprlib.repr(color)}: must be a colour, or two (increased, decreased)")
+    rule = f"color = {reprlib.repr(color)}: must be a colour, or two (increased, decreased)"
+    require(len(many) == len(network.FORCE_LINES) and all(map(is_color_like, many)), rule, PictureError)
     return dict(zip(network.FORCE_LINES, many, strict=True))
 
 
@@ -461,10 +461,8 @@ def page(
     """
     what = [name.strip() for name in what.split(",")] if isinstance(what, str) else what
     for name in what or ():
-        if name not in PICTURES:
-            raise PictureError(f"what = {name!r}: must be among {', '.join(PICTURES)}")
-    if what is not None and not what:
-        raise PictureError(f"what: nothing to draw, must be among {', '.join(PICTURES)}")
+        require(name in PICTURES, f"what = {name!r}: must be among {', '.join(PICTURES)}", PictureError)
+    require(what is None or what, f"what: nothing to draw, must be among {', '.join(PICTURES)}", PictureError)
     shown = Shown.of(result, state)
     if what is None:
         what = ("floor" if shown.lack else "response", "forces", "contacts", "stress")
@@ -553,8 +551,8 @@ def save(
     one of ``inputs``.
     """
     path = Path(output)
-    if path.suffix not in (".pdf", ".png", ".svg"):
-        raise PictureError(f"{path}: format {path.suffix!r} is unknown, must be .pdf, .png or .svg")
+    rule = f"{path}: format {path.suffix!r} is unknown, must be .pdf, .png or .svg"
+    require(path.suffix in (".pdf", ".png", ".svg"), rule, PictureError)
     with style.context():  # a command draws the same on every machine
         drawn = style.render(page(result, what, state=state, scale=scale, figure=Figure()), path.suffix[1:])
     with written(path):

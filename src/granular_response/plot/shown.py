@@ -14,8 +14,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from .. import errors
 from ..errors import GranularError
-from ..observe import positive
 from ..observe.floor import origin_of
 from ..state import Box, FloatArray, state_index
 from . import network, style
@@ -28,7 +28,7 @@ class PictureError(GranularError, ValueError):
 def check_positive(**given: float | None) -> None:
     """PictureError, with its name, for the first of ``given`` that is no number greater than 0; None is left out."""
     try:
-        positive.check_positive(**{name: value for name, value in given.items() if value is not None})
+        errors.check_positive(**{name: value for name, value in given.items() if value is not None})
     except ValueError as error:
         raise PictureError(str(error)) from None
 

@@ -23,6 +23,7 @@ from matplotlib.figure import Figure
 from matplotlib.rcsetup import cycler
 from PIL import Image
 
+from ..errors import require
 from ..store import atomic
 
 #: Column widths of the journal in inches.
@@ -196,8 +197,7 @@ def figure(
 
 def ordered_colours(count: int, *, of: str = "force") -> list[str]:
     """``count`` colours for an ordered family of curves, dark to light, on the ramp of a quantity of :data:`RAMPS`."""
-    if count < 1:
-        raise ValueError(f"count = {count}: must be at least 1")
+    require(count >= 1, f"count = {count}: must be at least 1")
     ramp = LinearSegmentedColormap.from_list(of, RAMPS[of])
     return [to_hex(colour) for colour in ramp(np.linspace(0.0, 1.0, count))]
 
@@ -309,8 +309,7 @@ FORMATS = tuple(_METADATA)
 
 def render(drawn: Figure, file_format: str = "png", *, dpi: float = 200) -> bytes:
     """The file of a figure in memory: ``png``, ``pdf`` or ``svg``, without date or program name."""
-    if file_format not in _METADATA:
-        raise ValueError(f"file_format = {file_format!r}: must be one of {', '.join(sorted(_METADATA))}")
+    require(file_format in _METADATA, f"file_format = {file_format!r}: must be one of {', '.join(sorted(_METADATA))}")
     buffer = io.BytesIO()
     # what matplotlib compresses would only be taken apart again
     options: dict[str, Any] = {"pil_kwargs": {"compress_level": 0}} if file_format == "png" else {}

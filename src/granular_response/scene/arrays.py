@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from ..state import FloatArray
 from ..state.box import FARTHEST
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector
-from .errors import Problem
+from .errors import NotAllowed, must
 from .formats import Table
 from .given import plain
 from .packing import Packing, exact_mean
@@ -26,8 +26,8 @@ LEAST_MASS, LEAST_RADIUS = 1e-6, 1e-3
 def packed(table: Table, left: float, floor: float, width: float, periodic: bool) -> Packing:
     """The disks above ``floor`` and right of ``left``, in a box of this ``width``, in mean radii and mean masses.
 
-    Raises Problem with the key ``(column, disk)`` for a value that is not allowed, ``(disk,)`` for a disk in the place
-    of another, ``("width",)`` for a box that is too wide.
+    Raises NotAllowed with the key ``(column, disk)`` for a value that is not allowed, ``(disk,)`` for a disk in the
+    place of another, ``("width",)`` for a box that is too wide.
     """
     radius, places = table.radius, table.places
     x, z = table.x - left, table.z - floor
@@ -38,8 +38,7 @@ def packed(table: Table, left: float, floor: float, width: float, periodic: bool
     _check("mass", mass, np.isfinite(mass), "must be a finite number")
     mean = exact_mean(radius)
     far = FARTHEST * mean
-    if width > far:
-        raise Problem(f"must be at most {far:g}, 1e9 mean radii", key=("width",), value=width)
+    must(width <= far, f"must be at most {far:g}, 1e9 mean radii", key=("width",), value=width)
     if periodic:
         x = np.mod(x, width)
     half = 0.5 * width
@@ -64,7 +63,7 @@ def packed(table: Table, left: float, floor: float, width: float, periodic: bool
     same = np.flatnonzero((np.diff(x[order]) == 0.0) & (np.diff(z[order]) == 0.0))
     if len(same):
         one, two = sorted(map(int, order[same[0] : same[0] + 2]))
-        raise Problem(f"disk is in the same place as that of {places[one]}", key=(two,))
+        raise NotAllowed(f"disk is in the same place as that of {places[one]}", key=(two,))
     position = np.ascontiguousarray(np.stack([x, z], axis=1) / mean)
     return Packing(
         position=position,
@@ -80,15 +79,15 @@ def packed(table: Table, left: float, floor: float, width: float, periodic: bool
 
 
 def _check(name: str, values: FloatArray, good: NDArray[np.bool_], rule: str) -> None:
-    """Problem for the first of the ``values`` that is not ``good``."""
+    """NotAllowed for the first of the ``values`` that is not ``good``."""
     if not np.all(good):
         bad = int(np.argmin(good))
-        raise Problem(rule, key=(name, bad), value=float(values[bad]))
+        raise NotAllowed(rule, key=(name, bad), value=float(values[bad]))
 
 
 def _check_numbers(value: Any) -> Any:
-    if not isinstance(value, (list, tuple)) or not value or any(type(one) not in (int, float) for one in value):
-        raise Problem("must be a list of finite numbers, one for each disk")
+    rule = "must be a list of finite numbers, one for each disk"
+    must(isinstance(value, (list, tuple)) and value and not any(type(one) not in (int, float) for one in value), rule)
     return value
 
 
@@ -128,17 +127,17 @@ class ArrayPacking(Sparse, PackingDescription):
     def _check_disks(self) -> ArrayPacking:
         for name in ("z", "radius", "mass"):
             column = getattr(self, name)
-            if column is not None and len(column) != len(self.x):
+            if column is not None:
                 rule = f"must have as many numbers as x, has {len(column)}, not {len(self.x)}"
-                raise Problem(rule, key=(name,), value=list(column))
-        if self.periodic and self.width is None:
-            raise Problem("must be given with periodic sides", key=("width",), value=None)
+                must(len(column) == len(self.x), rule, key=(name,), value=list(column))
+        rule = "must be given with periodic sides"
+        must(not self.periodic or self.width is not None, rule, key=("width",), value=None)
         try:
             self.build()
-        except Problem as problem:
+        except NotAllowed as problem:
             if isinstance(problem.key[0], str):
                 raise
-            raise Problem(problem.allowed, key=("x", *problem.key), value=self.x[problem.key[0]]) from None
+            raise NotAllowed(problem.allowed, key=("x", *problem.key), value=self.x[problem.key[0]]) from None
         return self
 
     @property

@@ -20,7 +20,7 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from .errors import MISSING, Problem, SceneError, describe, show_key, suggestion
+from .errors import MISSING, NotAllowed, SceneError, describe, must, show_key, suggestion
 from .given import plain, unordered
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def refused(error: ValidationError) -> SceneError:
     problem = first.get("ctx", {}).get("error")
     if first["type"] == "missing":
         message = f"{show_key(path)}: missing, must be given"
-    elif isinstance(problem, Problem):
+    elif isinstance(problem, NotAllowed):
         value = value if problem.value is MISSING else problem.value
         message = describe(path + problem.key, value, problem.allowed)
     elif first["type"] == "literal_error":
@@ -139,12 +139,11 @@ class Description(BaseModel, metaclass=_Public):
         if isinstance(data, cls):
             return data
         keys = ", ".join(cls.model_fields)
-        if not isinstance(data, Mapping):
-            raise Problem(f"must be a mapping with keys among {keys}" if keys else "must be {}")
+        must(isinstance(data, Mapping), f"must be a mapping with keys among {keys}" if keys else "must be {}")
         for key, value in data.items():
             if key not in cls.model_fields:
                 meant = cls._elsewhere(key) or suggestion(key, cls.model_fields)
-                raise Problem(f"unknown key{meant} (allowed: {keys or 'none'})", key=(str(key),), value=value)
+                raise NotAllowed(f"unknown key{meant} (allowed: {keys or 'none'})", key=(str(key),), value=value)
         return {key: plain(value) for key, value in data.items()}
 
     @classmethod
@@ -185,12 +184,11 @@ def allowed(phrase: str) -> WrapValidator:
     """Say ``phrase`` whatever is wrong with a value, in place of one message per rule or union member."""
 
     def check(value: Any, inner: Callable[[Any], Any]) -> Any:
-        if unordered(value):
-            raise Problem(phrase)
+        must(not unordered(value), phrase)
         try:
             return inner(value)
         except (ValidationError, OverflowError):
-            raise Problem(phrase) from None
+            raise NotAllowed(phrase) from None
 
     return WrapValidator(check)
 

@@ -17,7 +17,7 @@ from ..state import FLOOR, LEFT_WALL, RIGHT_WALL, Box, FloatArray
 from ..state.box import WALL_MEANINGS, bodies, wall_normals
 from .errors import suggestion
 from .formats.lammps_dump import read_contacts
-from .formats.table import FormatError, Once, Table, lines_of, listed, number, shown, whole_number
+from .formats.table import FormatError, Once, Table, lines_of, listed, must, number, shown, whole_number
 from .names import WALL_FIXES
 
 _NAMES, _FORCES, _ROLLING = ("first", "second", "wall"), ("normal_force", "tangential_force"), "rolling_force"
@@ -70,8 +70,7 @@ def read(path: Path, position: FloatArray, box: Box, table: Table) -> tuple[Give
     lines, whole = lines_of(path)
     if lines and lines[0][1].startswith("ITEM:"):
         return checked([*_of_pairs(path, position, box, table), *_of_walls(table)], len(position))
-    if not whole:
-        raise FormatError("is cut: its last line has no end")
+    must(whole, "is cut: its last line has no end")
     return checked(_of_table([line for _, line in lines]), len(position))
 
 

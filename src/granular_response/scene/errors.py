@@ -30,7 +30,7 @@ class SceneFileError(SceneError, OSError):
     """A scene file, or a table of disks, that cannot be read."""
 
 
-class Problem(GranularError, ValueError):
+class NotAllowed(GranularError, ValueError):
     """What is wrong with a value, raised inside a validator; pydantic adds where it stands.
 
     ``key`` extends the path of the validated object and ``value`` replaces its input in the message.
@@ -39,6 +39,12 @@ class Problem(GranularError, ValueError):
     def __init__(self, allowed: str, *, key: Sequence[str | int] = (), value: Any = MISSING) -> None:
         super().__init__(allowed)
         self.allowed, self.key, self.value = allowed, tuple(key), value
+
+
+def must(met: object, allowed: str, *, key: Sequence[str | int] = (), value: Any = MISSING) -> None:
+    """Raise NotAllowed unless a condition is ``met``."""
+    if not met:
+        raise NotAllowed(allowed, key=key, value=value)
 
 
 def suggestion(word: object, choices: Iterable[str]) -> str:

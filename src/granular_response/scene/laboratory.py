@@ -11,6 +11,7 @@ from typing import Any, Final, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import require
 from .base import UNITS, Description, unit_of
 from .errors import SceneError, describe, show, suggestion
 from .given import plain
@@ -168,8 +169,7 @@ class LaboratoryUnits:
             number = quantity and isinstance(value, (int, float)) and not isinstance(value, bool)
             return self.to_reduced(quantity, float(value)) if number else value
 
-        if not isinstance(scene, Mapping):
-            raise SceneError(f"scene = {show(scene)}: must be a mapping with its keys")
+        require(isinstance(scene, Mapping), f"scene = {show(scene)}: must be a mapping with its keys", SceneError)
         self._check_radius(scene.get("packing"))
         return {key: reduced(part, keys=_quantities(key, part, scene)) for key, part in scene.items()}
 
@@ -182,20 +182,6 @@ class LaboratoryUnits:
         if mean is not None and not math.isclose(mean, self.radius, rel_tol=SAME_RADIUS):
             rule = f"must be within {SAME_RADIUS:.0%} of {mean:.4g}, the mean radius of {packing.path} in m"
             raise SceneError(describe(("radius",), self.radius, rule))
-
-    def define(self, registry: Any) -> None:
-        """Define the units that results name in a registry of pint: mean_radius, mean_mass, reduced_time, mean_weight.
-
-        ``registry`` is a ``pint.UnitRegistry``, or what has its method ``define``.
-
-        Examples
-        --------
-        >>> units.define(registry)  # doctest: +SKIP
-        >>> result.to_dataset().pint.quantify(unit_registry=registry)  # doctest: +SKIP
-        """
-        named = {LENGTH: ("length", "m"), MASS: ("mass", "kg"), TIME: ("time", "s"), FORCE: ("force", "N")}
-        for name, (quantity, unit) in named.items():
-            registry.define(f"{name} = {self.unit(quantity)!r} {unit}")
 
 
 def _quantities(key: str, part: Any, whole: Mapping[str, Any]) -> Mapping[str, str]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from .base import Fraction, Index, PackingDescription, Sides, allowed
-from .errors import Problem
+from .errors import NotAllowed
 from .packing import Packing, exact_mean, generator
 
 TOUCHING_LARGEST = "touching-largest"
@@ -67,7 +67,7 @@ class LatticePacking(PackingDescription):
     @model_validator(mode="after")
     def _check_size(self) -> LatticePacking:
         if (n := self.disk_count) > MOST_DISKS:
-            raise Problem(f"must have at most {MOST_DISKS} disks", key=("layers",), value=f"{n} disks")
+            raise NotAllowed(f"must have at most {MOST_DISKS} disks", key=("layers",), value=f"{n} disks")
         return self
 
     def build(self) -> Packing:
@@ -117,7 +117,7 @@ class SlabPacking(LatticePacking):
     def _check_period(self) -> SlabPacking:
         if self.periodic and self.disks_per_row < LEAST_PERIOD:
             rule = f"must be at least {LEAST_PERIOD} with periodic sides, so that no disk meets another on both sides"
-            raise Problem(rule, key=("disks_per_row",), value=self.disks_per_row)
+            raise NotAllowed(rule, key=("disks_per_row",), value=self.disks_per_row)
         return self
 
     def row_count(self) -> NDArray[np.int64]:

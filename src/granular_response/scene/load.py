@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
 
+from ..errors import require
 from .base import Description, Finite, Sparse, Vector, allowed
-from .errors import Problem, SceneError, show, show_key
+from .errors import NotAllowed, SceneError, must, show, show_key
 from .packing import Packing
 
 TOP_CENTRE: Final = "top-centre"
@@ -103,15 +104,14 @@ class Load(Sparse):
     @model_validator(mode="after")
     def _check_displacement(self) -> Load:
         if self.displacement is None:
-            if not self.model_fields_set & {"force", "torque"}:
-                raise Problem("must be given, or displacement or torque", key=("force",), value=None)
+            rule = "must be given, or displacement or torque"
+            must(self.model_fields_set & {"force", "torque"}, rule, key=("force",), value=None)
             return self
-        if self.displacement == (None, None):
-            raise Problem("must hold a direction at least", key=("displacement",), value=list(self.displacement))
+        rule = "must hold a direction at least"
+        must(self.displacement != (None, None), rule, key=("displacement",), value=list(self.displacement))
         for name, force, held in zip("xz", self.force, self.displacement, strict=True):
-            if held is not None and force != 0.0:
-                rule = f"must be 0 along {name}, where displacement holds the disk"
-                raise Problem(rule, key=("force",), value=list(self.force))
+            rule = f"must be 0 along {name}, where displacement holds the disk"
+            must(held is None or force == 0.0, rule, key=("force",), value=list(self.force))
         return self
 
 
@@ -137,13 +137,12 @@ def resolve_disk(
         return _nearest_on_top(packing, packing.middle, np.asarray(position))
     if isinstance(selector, TopSelector):
         half = 0.5 * packing.width
-        if not abs(selector.x) <= half:
-            rule = f"must be from {-half:g} to {half:g}, the packing is {packing.width:g} wide"
-            raise SceneError(f"{key}.x = {show(selector.x)}: {rule}")
+        rule = f"must be from {-half:g} to {half:g}, the packing is {packing.width:g} wide"
+        require(abs(selector.x) <= half, f"{key}.x = {show(selector.x)}: {rule}", SceneError)
         return _nearest_on_top(packing, packing.middle + selector.x, np.asarray(position))
     try:
         return check_disk(selector, packing.n, packing.row_count)
-    except Problem as problem:
+    except NotAllowed as problem:
         part = f".{show_key(problem.key)}" if problem.key else ""
         raise SceneError(f"{key}{part} = {show(problem.value)}: {problem.allowed}") from None
 
@@ -151,28 +150,28 @@ def resolve_disk(
 def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.int64]) -> int:
     """As ``resolve_disk``, for a selector that needs no positions, by the numbers of disks alone.
 
-    Raises Problem, to which the caller adds where the selector stands.
+    Raises NotAllowed, to which the caller adds where the selector stands.
     """
     if isinstance(selector, int):
         if not 0 <= selector < n:
-            raise Problem(f"must be from 0 to {n - 1}, the packing has {n} disks", value=selector)
+            raise NotAllowed(f"must be from 0 to {n - 1}, the packing has {n} disks", value=selector)
         return int(selector)
     if not isinstance(selector, RowSelector):
-        raise Problem("must be top-centre, the index of a disk, a TopSelector or a RowSelector", value=selector)
+        raise NotAllowed("must be top-centre, the index of a disk, a TopSelector or a RowSelector", value=selector)
     rows = len(row_count)
     if rows == 0:
         rule = "only slabs and piles have rows, must be top-centre, {x: number} or the index of a disk"
-        raise Problem(rule, key=("row",), value=selector.row)
+        raise NotAllowed(rule, key=("row",), value=selector.row)
     named = {"top": rows - 1, "bottom": 0}
     row = named[selector.row] if isinstance(selector.row, str) else selector.row
     if row >= rows:
         rule = f"must be top, bottom or from 0 to {rows - 1}, the packing has {rows} rows"
-        raise Problem(rule, key=("row",), value=selector.row)
+        raise NotAllowed(rule, key=("row",), value=selector.row)
     middle = (int(row_count[row]) - 1) // 2
     last = int(row_count[row]) - 1 - middle
     if not -middle <= selector.offset <= last:
         rule = f"must be from {-middle} to {last}, row {row} has {row_count[row]} disks"
-        raise Problem(rule, key=("offset",), value=selector.offset)
+        raise NotAllowed(rule, key=("offset",), value=selector.offset)
     return int(row_count[:row].sum()) + middle + selector.offset
 
 

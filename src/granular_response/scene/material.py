@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, NamedTuple
 from pydantic import BeforeValidator, Field, SerializeAsAny, ValidationInfo, field_validator
 
 from .base import Description, Ratio, Sparse, Stiffness
-from .errors import Problem, suggestion
+from .errors import NotAllowed, suggestion
 
 
 class NoParameters(Description):
@@ -29,7 +29,7 @@ KNOWN_LAWS = {"linear": KnownLaw(), "hertz": KnownLaw()}
 def _check_law(value: Any) -> Any:
     if not isinstance(value, str) or value not in KNOWN_LAWS:
         own = ", or a law of gr.register_law whose module is imported (--import MODULE)"
-        raise Problem(f"must be {' or '.join(KNOWN_LAWS)}{own}{suggestion(value, KNOWN_LAWS)}")
+        raise NotAllowed(f"must be {' or '.join(KNOWN_LAWS)}{own}{suggestion(value, KNOWN_LAWS)}")
     return value
 
 

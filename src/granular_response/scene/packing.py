@@ -111,6 +111,10 @@ class Packing:
         For each disk its neighbours to the right, up left and up right, across periodic sides too. Found from the row
         and the place in it alone, so neither polydispersity nor rounding changes them.
         """
+        return self._neighbours
+
+    @cached_property
+    def _neighbours(self) -> IntArray | None:
         if self.left is None:
             return None
         count = self.row_count

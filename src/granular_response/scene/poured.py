@@ -16,7 +16,7 @@ from pydantic import Field, model_validator
 
 from ..state import FloatArray
 from .base import Fraction, Index, PackingDescription, Positive, Sides, allowed
-from .errors import Problem
+from .errors import NotAllowed
 from .packing import Packing, exact_mean, generator
 
 MOST_POURED = 20_000
@@ -59,13 +59,13 @@ class PouredPacking(PackingDescription):
     def _check_sizes(self) -> PouredPacking:
         if self.fractions is not None and len(self.fractions) != len(self.sizes):
             rule = f"must have as many numbers as sizes, has {len(self.fractions)}, not {len(self.sizes)}"
-            raise Problem(rule, key=("fractions",), value=list(self.fractions))
+            raise NotAllowed(rule, key=("fractions",), value=list(self.fractions))
         largest = float(self._radius().max())
         least = 6.0 * largest if self.periodic else 2.0 * largest
         if not least <= self.width <= 1e6:
             size = "three diameters" if self.periodic else "the diameter"
             rule = f"must be from {least:.4g}, {size} of the largest disk, to 1e6"
-            raise Problem(rule, key=("width",), value=self.width)
+            raise NotAllowed(rule, key=("width",), value=self.width)
         return self
 
     @property

@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
+from ..errors import require
 from ..inputs import read_text, unreadable
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
 from .base import MOST_STIFFNESS, PLACES, Description, PackingDescription, Sparse, packing_kinds, refused
-from .errors import Problem, SceneError, SceneFileError, show, show_key, suggestion
+from .errors import NotAllowed, SceneError, SceneFileError, must, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
 from .material import Contact, Wall
@@ -40,19 +41,16 @@ def _check_kind(value: Any) -> Any:
         return value
     kinds = packing_kinds()
     choices = " or ".join(kinds)
-    if not isinstance(value, Mapping):
-        raise Problem(f"must be a mapping with the key kind ({choices})")
-    if "kind" not in value:
-        raise Problem(f"key kind is missing, must be {choices}")
+    must(isinstance(value, Mapping), f"must be a mapping with the key kind ({choices})")
+    must("kind" in value, f"key kind is missing, must be {choices}")
     kind = value["kind"]
     if not isinstance(kind, str) or kind not in kinds:
-        raise Problem(f"must be {choices}{suggestion(kind, kinds)}", key=("kind",), value=kind)
+        raise NotAllowed(f"must be {choices}{suggestion(kind, kinds)}", key=("kind",), value=kind)
     return dict(value)
 
 
 def _check_list(value: Any) -> Any:
-    if not isinstance(value, (list, tuple)):
-        raise Problem("must be a list of loads, [] for gravity alone")
+    must(isinstance(value, (list, tuple)), "must be a list of loads, [] for gravity alone")
     return tuple(value)
 
 
@@ -88,12 +86,12 @@ class Scene(Sparse):
     def _check_contacts(self) -> Scene:
         if self.wall.normal_stiffness is None and self.contact.normal_stiffness > 0.5 * MOST_STIFFNESS:
             rule = "must be at most 5e11 where wall.normal_stiffness, twice as much, is left open"
-            raise Problem(rule, key=("contact", "normal_stiffness"), value=self.contact.normal_stiffness)
+            raise NotAllowed(rule, key=("contact", "normal_stiffness"), value=self.contact.normal_stiffness)
         for name, contact in (("contact", self.contact), ("wall", self.resolved_wall)):
             if contact.rolls and not (contact.rubs and contact.rolling_stiffness_ratio > 0):
                 rule = f"{name}.friction, stiffness_ratio and rolling_stiffness_ratio are greater than 0"
                 key = (name, "rolling_friction")
-                raise Problem(f"must be 0 unless {rule}", key=key, value=contact.rolling_friction)
+                raise NotAllowed(f"must be 0 unless {rule}", key=key, value=contact.rolling_friction)
         return self
 
     @model_validator(mode="after")
@@ -102,13 +100,13 @@ class Scene(Sparse):
         for place, load in enumerate(self.loads):
             if load.torque != 0 and not self.contact.rubs and not rough_floor:
                 rule = f"{_SMOOTH}, which alone can balance it"
-                raise Problem(rule, key=("loads", place, "torque"), value=load.torque)
+                raise NotAllowed(rule, key=("loads", place, "torque"), value=load.torque)
         sideways = sum(load.force[0] for load in self.loads)
         held = any(load.displacement and load.displacement[0] is not None for load in self.loads)
         rounding = 1e-12 * sum(abs(load.force[0]) for load in self.loads)
         if self.packing.periodic and not rough_floor and abs(sideways) > rounding and not held:
             rule = "must be 0 with periodic sides on a smooth floor, which hold nothing"
-            raise Problem(f"is the sum of the forces along x, {rule}", key=("loads",), value=sideways)
+            raise NotAllowed(f"is the sum of the forces along x, {rule}", key=("loads",), value=sideways)
         if total := self.packing.disk_count:  # 0: only the file knows
             count = self.packing.row_count() if isinstance(self.packing, LatticePacking) else np.zeros(0, np.int64)
             for place, load in enumerate(self.loads):
@@ -116,27 +114,26 @@ class Scene(Sparse):
                     continue
                 try:
                     check_disk(load.disk, total, count)
-                except Problem as problem:
+                except NotAllowed as problem:
                     path = ("loads", place, "disk", *problem.key)
-                    raise Problem(problem.allowed, key=path, value=problem.value) from None
+                    raise NotAllowed(problem.allowed, key=path, value=problem.value) from None
         return self
 
     @model_validator(mode="after")
     def _check_start(self) -> Scene:
         given, gravity = getattr(self.packing, "springs", None), self.preparation.gravity
-        if given is not None and gravity != "at-once":
-            rule = "must be at-once with packing.springs, which bear the weights"
-            raise Problem(rule, key=("preparation", "gravity"), value=gravity)
+        rule = "must be at-once with packing.springs, which bear the weights"
+        must(given is None or gravity == "at-once", rule, key=("preparation", "gravity"), value=gravity)
         motion, total = self.motion, self.packing.disk_count
         if np.any(np.asarray(motion.spin) != 0.0) and not self.contact.rubs and not self.resolved_wall.rubs:
-            raise Problem(f"{_SMOOTH}, which alone turn disks", key=("motion", "spin"), value=motion.spin)
+            raise NotAllowed(f"{_SMOOTH}, which alone turn disks", key=("motion", "spin"), value=motion.spin)
         for name in MOTION:
             given = getattr(motion, name)
-            if given == COLUMN and not isinstance(self.packing, FilePacking):
-                raise Problem("must be numbers, the packing is not from a file", key=("motion", name), value=given)
+            rule = "must be numbers, the packing is not from a file"
+            must(given != COLUMN or isinstance(self.packing, FilePacking), rule, key=("motion", name), value=given)
             if isinstance(given, tuple) and total and len(given) != total:
                 rule = f"must have one number for each of the {total} disks, has {len(given)}"
-                raise Problem(rule, key=("motion", name), value=list(given))
+                raise NotAllowed(rule, key=("motion", name), value=list(given))
         return self
 
     def __repr__(self) -> str:
@@ -253,8 +250,7 @@ class Scene(Sparse):
         0.5
         """
         data = yaml_text.read(text)
-        if data is None:
-            raise SceneError("the scene is empty, must be a mapping ({} is the paper's scene)")
+        require(data is not None, "the scene is empty, must be a mapping ({} is the paper's scene)", SceneError)
         return cls.from_dict(data, folder=folder)
 
     @classmethod
@@ -314,8 +310,8 @@ class Scene(Sparse):
         >>> gr.Scene().updated({"packing.layers": 8, "wall": gr.Wall(friction=0.5)}).packing.layers
         8
         """
-        if not isinstance(changes, Mapping):
-            raise SceneError(f"changes = {show(changes)}: must be a mapping from keys to values")
+        rule = f"changes = {show(changes)}: must be a mapping from keys to values"
+        require(isinstance(changes, Mapping), rule, SceneError)
         folders = [value.folder for value in changes.values() if isinstance(value, FilePacking)]
         return type(self).from_dict(self.merged(changes), folder=(folders or [self.folder])[0])
 
@@ -331,8 +327,7 @@ class Scene(Sparse):
         # Descriptions first, so that paths lead into them.
         for key, value in sorted(changes.items(), key=lambda item: not isinstance(item[1], Description)):
             parts = [part for part in re.split(r"[.\[\]]+", key) if part] if isinstance(key, str) else []
-            if not parts:
-                raise SceneError(f"{show(key)}: must be the path of a key, such as contact.friction")
+            require(parts, f"{show(key)}: must be the path of a key, such as contact.friction", SceneError)
             nested = _as_data(value)
             for part in reversed(parts):
                 nested = {str(int(part)) if part.isdecimal() else part: nested}

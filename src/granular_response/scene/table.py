@@ -17,7 +17,7 @@ from ..inputs import unreadable
 from . import formats
 from .arrays import ROUNDING, packed
 from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
-from .errors import Problem, SceneError, describe, show
+from .errors import NotAllowed, SceneError, describe, must, show
 from .formats import csv_table
 from .packing import Packing, exact_mean
 
@@ -25,23 +25,21 @@ T = TypeVar("T")
 
 
 def _printable(text: str) -> str:
-    if not text.strip() or not text.isprintable():
-        raise Problem("")
+    must(text.strip() and text.isprintable(), "")
     return text
 
 
 FileName = Annotated[str, Field(strict=True), AfterValidator(_printable), allowed("must be the path of a file")]
 Format = Annotated[
-    Literal["csv", "lammps-data", "lammps-dump", "yade", "gsd"], allowed(f"must be {' or '.join(formats.SUFFIXES)}")
+    Literal["csv", "lammps-data", "lammps-dump", "gsd"], allowed(f"must be {' or '.join(formats.SUFFIXES)}")
 ]
 
 
 def _check_columns(value: Any) -> Any:
     text = isinstance(value, Mapping) and all(isinstance(one, str) and one.strip() for one in value.values())
-    if not text or not value or not set(value) <= set(csv_table.NAMED):
-        raise Problem(f"must be columns of a CSV table, as {{z: Y, radius: R}}, for {', '.join(csv_table.NAMED)}")
-    if len({one.strip().removeprefix("-") for one in value.values()}) < len(value):
-        raise Problem("must name a column once")
+    rule = f"must be columns of a CSV table, as {{z: Y, radius: R}}, for {', '.join(csv_table.NAMED)}"
+    must(text and value and set(value) <= set(csv_table.NAMED), rule)
+    must(len({one.strip().removeprefix("-") for one in value.values()}) >= len(value), "must name a column once")
     return dict(value)
 
 
@@ -104,9 +102,9 @@ class FilePacking(Sparse, PackingDescription):
     def _check_format(self) -> FilePacking:
         if self.columns is not None and (known := self.format or formats.by_suffix(self.path)) != "csv":
             rule = f"must be left out, format {known} says what its columns are"
-            raise Problem(rule, key=("columns",), value=self.columns)
-        if self.springs is not None and self.overlaps == "removed":
-            raise Problem("must be kept with springs", key=("overlaps",), value=self.overlaps)
+            raise NotAllowed(rule, key=("columns",), value=self.columns)
+        rule = "must be kept with springs"
+        must(self.springs is None or self.overlaps != "removed", rule, key=("overlaps",), value=self.overlaps)
         return self
 
     @property
@@ -147,7 +145,7 @@ class FilePacking(Sparse, PackingDescription):
         left, floor, width = self._sides(table.box)
         try:
             packing = packed(table, left, floor, width, self.periodic)
-        except Problem as problem:
+        except NotAllowed as problem:
             *name, place = problem.key
             if isinstance(place, str):
                 raise SceneError(describe(("packing", place), problem.value, problem.allowed)) from None

@@ -68,7 +68,7 @@ class _Reader(yaml.SafeLoader):
         raise _mistake(node, f"tag {show(node.tag)} is not allowed")
 
 
-class _Writer(yaml.SafeDumper):
+class _Dumper(yaml.SafeDumper):
     """Writes text in quotes wherever either version of YAML would take it for something else."""
 
     def ignore_aliases(self, data: Any) -> bool:
@@ -77,7 +77,7 @@ class _Writer(yaml.SafeDumper):
 
 for _tag, (_pattern, _first, _) in _SCALARS.items():
     _Reader.add_implicit_resolver(_tag, _pattern, _first)
-    _Writer.add_implicit_resolver(_tag, _pattern, _first)
+    _Dumper.add_implicit_resolver(_tag, _pattern, _first)
     _Reader.add_constructor(_tag, _Reader._scalar)
 _Reader.add_constructor(f"{_TAG}str", _Reader._scalar)
 _Reader.add_constructor(f"{_TAG}seq", _Reader._list)
@@ -110,4 +110,4 @@ def read(text: str) -> Any:
 
 def write(data: Any) -> str:
     """``data`` as YAML that ``read`` turns into equal data; numbers keep every digit."""
-    return yaml.dump(data, Dumper=_Writer, sort_keys=False, default_flow_style=None, allow_unicode=True, width=110)
+    return yaml.dump(data, Dumper=_Dumper, sort_keys=False, default_flow_style=None, allow_unicode=True, width=110)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..contact import CUT, RULES, Law
+from ..errors import require
 from ..scene import Packing, Protocol, Scene, SceneError
 
 #: Mean acceleration (g), its largest over half a swing, below which statics takes over from a fall: the forces of the
@@ -62,12 +63,10 @@ def plan(scene: Scene, packing: Packing, law: Law, *, rotations: bool) -> Plan:
     only_motion = getattr(law, "only_motion", "")
     if rotations and RULES[protocol.friction_law] != CUT:
         only_motion = f"protocol.friction_law {protocol.friction_law} is a law of motion that statics does not have"
-    if asked in ("path", "minimise") and only_motion and loads:
-        raise SceneError(f"protocol.method = {asked}: must be dynamics or auto, {only_motion}")
-    if asked == "minimise" and rotations:
-        raise SceneError(
-            "protocol.method = minimise: must be path, dynamics or auto in a scene with friction (contact or wall)"
-        )
+    rule = f"protocol.method = {asked}: must be dynamics or auto, {only_motion}"
+    require(asked not in ("path", "minimise") or not only_motion or not loads, rule, SceneError)
+    rule = "protocol.method = minimise: must be path, dynamics or auto in a scene with friction (contact or wall)"
+    require(asked != "minimise" or not rotations, rule, SceneError)
     static = protocol.static_finish and not only_motion
     if why := "protocol.method is dynamics" if asked == "dynamics" else only_motion:
         rest = load = Choice("dynamics", why)

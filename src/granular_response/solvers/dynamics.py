@@ -31,7 +31,9 @@ from ..kernels.model import Model, Pairs, Rolls, Schedule, Walls
 from ..kernels.neighbours import count_closed, mark_closed, rolling
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..state import FLOOR, FloatArray, Reached, State, wall_normals
-from .problem import Candidates, Problem, carry_springs, spring_contacts
+from .candidates import Candidates
+from .problem import Problem
+from .springs import carry_springs, spring_contacts
 
 Ramp = tuple[float, float, float]
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import EquilibriumError
+from ..errors import EquilibriumError, require
 from ..state import FloatArray, Reached, State
 from .equilibrium import OPTIONS as NEWTON
 from .equilibrium import Rearranged, attainable, certify, external_force
@@ -40,10 +40,9 @@ class MinimiseOptions:
     longest_step: float = 0.2
     #: A step that gains less than this part of what its quadratic model says is shortened, and damping grows.
     poor: float = 0.25
-    #: Factors of the damping after a poor and after a good step.
+    #: Factor of the damping after a poor step, and of its inverse after a good one.
     more: float = 10.0
-    less: float = 0.1
-    #: First damping, and least where the stiffness of the springs alone makes a step.
+    #: First damping, and least where the stiffness of the springs alone makes a step; the first of large packings too.
     first_damping: float = 1e-3
     springs_alone: float = 1e-6
     #: How often a saddle is left before the search is given up.
@@ -52,7 +51,6 @@ class MinimiseOptions:
     #: saddle is left as soon as one is near: when the stiffness is not positive though little damped and no force out
     #: of balance exceeds that many disk weights. The rest state of 57,660 disks takes 2.1 times as long without.
     large: int = 20_000
-    first_near: float = 1e-6
     little_damped: float = 1e-7
     near_saddle: float = 0.1
     #: First length along an unstable direction there, times the normal stiffness.
@@ -84,12 +82,11 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
     Rearranged
         When disks meet that were not neighbours at the start.
     """
-    if problem.rotations:
-        raise ValueError("method minimise needs a scene without friction; use path or dynamics")
+    require(not problem.rotations, "method minimise needs a scene without friction; use path or dynamics")
     descent = _Descent(problem, start, load_factor)
     while not descent.at_minimum():
-        if descent.iterations >= OPTIONS.iterations:
-            raise EquilibriumError(f"no minimum of the energy within {OPTIONS.iterations} iterations")
+        rule = f"no minimum of the energy within {OPTIONS.iterations} iterations"
+        require(descent.iterations < OPTIONS.iterations, rule, EquilibriumError)
         descent.go_on()
     state = descent.system.state(descent.trial, load_factor)
     certificate = certify(problem, state, modes=0, undetermined=descent.undetermined)
@@ -105,7 +102,7 @@ class _Descent:
         self.system = StaticSystem(problem, start)
         self.external = external_force(problem, load_factor)
         self.known = self.system.start(start)
-        self.damping = (OPTIONS.first_near if self._large else OPTIONS.first_damping) * self.stiffness
+        self.damping = (OPTIONS.springs_alone if self._large else OPTIONS.first_damping) * self.stiffness
         self.iterations = self.escapes = 0
         self.undetermined: tuple[int, ...] = ()  #: disks that nothing determines at the last equilibrium looked at
         q = self.system.displaced(self.known.q, load_factor).copy()
@@ -129,8 +126,7 @@ class _Descent:
         """Whether nothing is out of balance and the stiffness is positive; looks for rearrangements now and then."""
         settled = self._settled()
         look = settled or self.iterations % OPTIONS.look_every == OPTIONS.look_every - 1
-        if look and self.system.meets_unlisted(self.q):
-            raise Rearranged(REARRANGES)
+        require(not look or not self.system.meets_unlisted(self.q), REARRANGES, Rearranged)
         if not settled:
             return False
         spectrum = Spectrum(self.system, self.trial)
@@ -161,15 +157,15 @@ class _Descent:
             return
         length = float(np.abs(step).max())
         if length > OPTIONS.longest_step:
-            if not np.isfinite(length) or self.damping > 1e6 * self.stiffness:
-                raise EquilibriumError("the minimisation found no minimum: part of the packing falls")
+            rule = "the minimisation found no minimum: part of the packing falls"
+            require(np.isfinite(length) and self.damping <= 1e6 * self.stiffness, rule, EquilibriumError)
             self._damp(4.0)
             return
         self._take(step)
 
     def _leave_saddle(self) -> None:
-        if self.escapes == OPTIONS.escapes:
-            raise EquilibriumError("the minimisation keeps returning to a saddle of the energy")
+        rule = "the minimisation keeps returning to a saddle of the energy"
+        require(self.escapes != OPTIONS.escapes, rule, EquilibriumError)
         self.escapes += 1
         self.iterations += 1
         if self._large:
@@ -232,6 +228,6 @@ class _Descent:
             ratio = 1.0
         self._move(self.q + step, new)
         if ratio > 0.5:
-            self.damping = OPTIONS.less * self.damping if self.damping > 1e-9 * self.stiffness else 0.0
+            self.damping = self.damping * (1.0 / OPTIONS.more) if self.damping > 1e-9 * self.stiffness else 0.0
         elif ratio < OPTIONS.poor:
             self._damp(OPTIONS.more)

@@ -40,9 +40,9 @@ class NewtonOptions:
     #: Of these, how many take whole steps before a search along the step begins: where contacts change their status in
     #: turn, whole steps go round in a circle.
     whole_steps: int = 5
-    #: Parts of a step that are tried: from then on, and before.
+    #: Parts of a step that are tried from then on, and how often it is halved before.
     searched: tuple[float, ...] = (1.0, 0.5, 0.25, 0.1)
-    halved: tuple[float, ...] = (1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125)
+    halvings: int = 5
     #: A step moves no disk farther than this.
     longest_step: float = 0.05
     #: Part to which the force along a step (the slope of the energy, where there is one) falls in a line search.
@@ -133,7 +133,7 @@ def newton(
             length = float(np.abs(step[: 2 * n]).max())
         scale = min(1.0, OPTIONS.longest_step / length) if length > 0 else 1.0
         search = backtracking and iterations > OPTIONS.whole_steps
-        for part in OPTIONS.searched if search else OPTIONS.halved:
+        for part in OPTIONS.searched if search else [0.5**k for k in range(OPTIONS.halvings + 1)]:
             new = system.trial(known, q + part * scale * step)
             r_new = new.contact_force + external
             size_new = float(np.abs(r_new).max())

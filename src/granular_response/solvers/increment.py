@@ -30,12 +30,8 @@ class IncrementOptions:
     #: in each try after that, where none took more than 3.
     direct: int = 8
     finish: int = 4
-    #: Rounds of fixed limits, and the round after which the true law is tried again.
-    rounds: int = 24
+    #: Rounds of fixed limits before the true law is tried again.
     first_try: int = 2
-    #: Rounds after which limits must have stopped changing by more than a force, or the increment fails.
-    settled_by: int = 6
-    slow: float = 0.05
     #: Levenberg shift of a minimisation, in units of the normal stiffness: holds disks that nothing holds.
     shift: float = 1e-7
     #: Unbalanced force at which a minimisation ends; its limits change anyway.
@@ -43,7 +39,7 @@ class IncrementOptions:
     #: That below which it ends too when so many steps in turn have not halved it: contacts go to and fro at no force.
     still: float = 1e-5
     stalled: int = 3
-    #: Tries of the true law after which an increment is given up: all that succeeded did so at the first.
+    #: Tries of the true law, one a round, before an increment is given up: all that succeeded did so at the first.
     tries: int = 3
     #: Factorisations after which an increment, or one minimisation, is given up. Minimisations of increments that
     #: succeeded took 7 at most, in lattices and disordered packings.
@@ -83,21 +79,16 @@ def solve_increment(
     q = known.q.copy()
     q[system.held] = guess[system.held]
     before_rounds = work.factorisations
-    for done in range(1, OPTIONS.rounds + 1):
+    for done in range(1, OPTIONS.first_try + OPTIONS.tries + 1):
         if work.factorisations - before_rounds > OPTIONS.most:
             return None
         held = minimise_with_limits(system, known, external, q, limits, work)
         if held is None:
             return None
         q = held.configuration.q
-        before, limits = limits, system.limits(held)
-        change = float(np.abs(limits - before).max(initial=0.0))
-        if done >= OPTIONS.settled_by and change > OPTIONS.slow:
-            return None
+        limits = system.limits(held)
         if done > OPTIONS.first_try and (found := on_true_law(q, OPTIONS.finish)) is not None:
             return found
-        if done >= OPTIONS.first_try + OPTIONS.tries:
-            return None
     return None
 
 

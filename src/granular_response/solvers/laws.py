@@ -1,19 +1,26 @@
-"""Contact laws by their names, those from outside the package too."""
+"""Contact laws by their names, those from outside the package too, and those of a scene."""
 
 from __future__ import annotations
 
 import math
 
-from ..contact import LAWS, Law
+import numpy as np
+
+from ..contact import LAWS, Law, without_friction
 from ..contact.consistent import contradiction
-from ..errors import GranularError
-from ..scene import SceneError
+from ..contact.rolling import Rolling
+from ..errors import GranularError, require
+from ..scene import Contact, Scene, SceneError
 from ..scene.base import Description
 from ..scene.material import KNOWN_LAWS, KnownLaw, NoParameters
 
 #: What a law must have: the constants and the methods of the protocol.
 FIELDS = tuple(name for name, part in vars(Law).items() if isinstance(part, property))
 METHODS = tuple(name for name in vars(Law) if name not in FIELDS and not name.startswith("_"))
+
+
+#: Reduced radius of two disks of mean radius, and of one at a wall.
+DISKS, AT_WALL = 0.5, 1.0
 
 
 class LawError(GranularError, ValueError):
@@ -46,16 +53,16 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
     >>> gr.register_law("cohesive", Cohesive, Cohesion)  # doctest: +SKIP
     >>> gr.Scene().updated({"contact.law": "cohesive", "contact.parameters": {"strength": 0.2}})  # doctest: +SKIP
     """
-    if not isinstance(name, str) or not name.isidentifier():
-        raise LawError(f"name = {name!r}: must be letters, digits and underscores")
+    rule = f"name = {name!r}: must be letters, digits and underscores"
+    require(isinstance(name, str) and name.isidentifier(), rule, LawError)
     if name in KNOWN_LAWS and law_class(name) is not law:
         raise LawError(f"name = {name!r}: is the name of another law, {law_class(name).__qualname__}")
     lacks = [part for part in FIELDS if part not in getattr(law, "_fields", ())]
     lacks += [part for part in METHODS if not callable(getattr(law, part, None))]
-    if lacks:
-        raise LawError(f"law = {law!r}: has no {', '.join(lacks)}; must be a named tuple with the parts of a law")
-    if not (isinstance(parameters, type) and issubclass(parameters, Description)):
-        raise LawError(f"parameters = {parameters!r}: must be a subclass of granular_response.scene.base.Description")
+    rule = f"law = {law!r}: has no {', '.join(lacks)}; must be a named tuple with the parts of a law"
+    require(not lacks, rule, LawError)
+    rule = f"parameters = {parameters!r}: must be a subclass of granular_response.scene.base.Description"
+    require(isinstance(parameters, type) and issubclass(parameters, Description), rule, LawError)
     try:
         made = law.of(3000.0, 50.0, 2400.0, 50.0, 0.2, -math.inf, 0.5, **parameters().model_dump())
     except (SceneError, TypeError) as error:
@@ -77,3 +84,26 @@ def check_parameters(name: str, *laws: Law) -> None:
 def law_class(name: str) -> type[Law]:
     """The class of the contact law that a scene names."""
     return KNOWN_LAWS[name].law or LAWS[name]
+
+
+def laws_of(scene: Scene) -> tuple[Law, Law]:
+    """The laws of a scene between disks and at walls."""
+    least = -np.inf if scene.protocol.tensile_dashpot else 0.0
+
+    def law(m: Contact, reduced_radius: float) -> Law:
+        whole = law_class(scene.contact.law).of(
+            m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping,
+            m.friction, least, reduced_radius, **m.parameters.model_dump(),
+        )  # fmt: skip
+        return whole if m.rubs else without_friction(whole)
+
+    pair, wall = law(scene.contact, DISKS), law(scene.resolved_wall, AT_WALL)
+    check_parameters(scene.contact.law, pair, wall)
+    return pair, wall
+
+
+def rolling_of(contact: Contact) -> Rolling | None:
+    """The rolling resistance of one kind of contact; None without."""
+    if not contact.rolls:
+        return None
+    return Rolling(contact.rolling_stiffness, contact.rolling_damping, contact.rolling_friction)

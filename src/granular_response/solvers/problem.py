@@ -6,65 +6,28 @@ springs only for the contacts (of disks, of walls) that have it.
 
 from __future__ import annotations
 
-import math
-import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..contact import RULES, Law, without_friction
 from ..contact.rolling import Rolling, arms
-from ..kernels import neighbours, statics
-from ..machine.lanes import WIDTH, aligned, aligned_zeros
-from ..scene import Contact, Packing, Scene, SceneError, resolve_disk
-from ..state import Contacts, FloatArray, State
+from ..scene import Packing, Scene, SceneError, resolve_disk
+from ..state import FloatArray, State
 from ..state.box import bodies
+from .candidates import SKIN, Candidates, list_candidates
 from .choice import Plan, plan
 from .close_pairs import close_pairs
+from .given_springs import given_springs
 from .held import NOTHING, Held
-from .laws import check_parameters, law_class
+from .laws import laws_of, rolling_of
 from .overlaps import without_overlaps
+from .springs import Kind, carry_springs, spring_contacts, static_contacts
 
-#: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
-#: is made again.
-SKIN = 0.6
 #: Largest overlap of a start, as a part of the smaller radius.
 MOST_OVERLAP = 0.5
-#: Overlap, in mean radii, that may be rounding of a file, and part of Coulomb's limit.
-ROUNDED = 1e-9
-#: With less room than this left on the lattice, neighbours are searched instead.
-LEAST_LATTICE_LIMIT = 0.25
-
-#: Reduced radius of two disks of mean radius, and of one at a wall.
-DISKS, AT_WALL = 0.5, 1.0
-
-
-@dataclass(frozen=True, repr=False)
-class Candidates:
-    """Contacts that can exist while no disk is farther than ``limit`` from ``reference``.
-
-    Slots are the storage places of the runs (see ``kernels.forces``); ``slot`` maps each listed pair to its own.
-    """
-
-    reference: FloatArray  #: (n, 2) positions that displacements are measured from
-    first: NDArray[np.int32]  #: (m,) listed pairs, first < second
-    second: NDArray[np.int32]
-    slot: NDArray[np.int64]  #: (m,)
-    runs: NDArray[np.int64]  #: (r, 4)
-    separation: FloatArray  #: (2, slots) reference separations of the slots' disks
-    reach: FloatArray  #: (slots,) sums of radii; 0 in slots of no listed pair
-    wall_disk: NDArray[np.int64]  #: (w,)
-    wall: NDArray[np.int8]  #: (w,)
-    wall_gap: FloatArray  #: (w,) reference gaps
-    shape: FloatArray | None  #: (slots,) what the law needs of the radii; None for a law that needs nothing
-    wall_shape: FloatArray | None  #: (w,)
-    limit: float
-
-    def __repr__(self) -> str:
-        return f"Candidates({len(self.first)} pairs, {len(self.wall_disk)} at walls, limit={self.limit:g})"
 
 
 def _check_period(packing: Packing) -> None:
@@ -107,38 +70,6 @@ def _check_overlaps(packing: Packing, most: float) -> None:
     )
 
 
-def _laws(scene: Scene) -> tuple[Law, Law]:
-    """The laws of a scene between disks and at walls."""
-    least = -np.inf if scene.protocol.tensile_dashpot else 0.0
-
-    def law(m: Contact, reduced_radius: float) -> Law:
-        whole = law_class(scene.contact.law).of(
-            m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping,
-            m.friction, least, reduced_radius, **m.parameters.model_dump(),
-        )  # fmt: skip
-        return whole if m.rubs else without_friction(whole)
-
-    pair, wall = law(scene.contact, DISKS), law(scene.resolved_wall, AT_WALL)
-    check_parameters(scene.contact.law, pair, wall)
-    return pair, wall
-
-
-def _rolling(contact: Contact) -> Rolling | None:
-    """The rolling resistance of one kind of contact; None without."""
-    if not contact.rolls:
-        return None
-    return Rolling(contact.rolling_stiffness, contact.rolling_damping, contact.rolling_friction)
-
-
-class Kind(NamedTuple):
-    """Contacts of one kind, and their laws."""
-
-    contacts: Contacts
-    law: Law
-    shape: FloatArray | None  #: (m,) what the law needs of the radii
-    rolling: Rolling | None
-
-
 @dataclass(frozen=True, repr=False)
 class Problem:
     """A scene with its packing, in the form the kernels take.
@@ -172,7 +103,7 @@ class Problem:
             removed = getattr(scene.packing, "overlaps", "kept") == "removed"
             _check_overlaps(start, 1.0 if removed else MOST_OVERLAP)
             start = without_overlaps(start) if removed else start
-        pair_law, wall_law = _laws(scene)
+        pair_law, wall_law = laws_of(scene)
         return cls(
             scene=scene,
             packing=start,
@@ -182,8 +113,8 @@ class Problem:
             plan=plan(scene, start, pair_law, rotations=max(pair_law.friction, wall_law.friction) > 0.0),
             load_disk=np.zeros(0, np.int64),
             load=np.zeros((0, 3)),
-            pair_rolling=_rolling(scene.contact),
-            wall_rolling=_rolling(scene.resolved_wall),
+            pair_rolling=rolling_of(scene.contact),
+            wall_rolling=rolling_of(scene.resolved_wall),
         )
 
     @cached_property
@@ -246,11 +177,6 @@ class Problem:
         if self.rotations:
             parts.append(1.0 / packing.inertia)
         return np.concatenate(parts)
-
-    @cached_property
-    def lattice_pairs(self) -> NDArray[np.int32] | None:
-        """(m, 2) neighbours on the lattice; None without one."""
-        return self.packing.neighbour_pairs()
 
     def with_loads(self, position: FloatArray) -> Problem:
         """The same problem with the scene's loads on disks chosen at the rest ``position`` (n, 2)."""
@@ -317,52 +243,9 @@ class Problem:
         return self.packing.periodic and not self.wall_friction and not (self.held.axis == 0).any()
 
     def list_candidates(self, position: FloatArray, *, search: bool = False, stride: float = 0.0) -> Candidates:
-        """List candidate contacts at ``position`` (n, 2).
-
-        As long as every disk is near its lattice site, the neighbours on the lattice are the only ones that can
-        touch, and nothing is searched. ``search=True`` forces the search. The list holds for displacements of at
-        least ``stride``.
-        """
-        packing, radius = self.packing, self.packing.radius
-        pairs = None if search else self.lattice_pairs
-        limit = 0.0
-        if pairs is not None and packing.lattice_constant is not None:
-            # second neighbours touch once two disks have moved this far towards each other
-            room = np.sqrt(3.0) * packing.lattice_constant - 2.0 * float(radius.max())
-            shift = np.linalg.norm(position - packing.position, axis=1)
-            limit = 0.5 * room - float(shift.max())
-        if pairs is not None and limit > max(LEAST_LATTICE_LIMIT, stride):
-            first, second = pairs[:, 0], pairs[:, 1]
-            margin = 2.0 * limit
-        else:
-            margin = max(SKIN, 2.0 * stride)
-            first, second = close_pairs(position, radius, margin, packing.box.period)
-            limit = 0.5 * margin
-        runs, slot = neighbours.make_runs(first, second, self.n, multiple=WIDTH)
-        i, j = neighbours.run_pairs(runs)
-        reach = aligned_zeros(len(i))  # slots of no listed pair have none
-        reach[slot] = radius[first] + radius[second]
-        shapes = self.pair_shapes(first, second)
-        shape = None
-        if shapes is not None:
-            shape = aligned_zeros(len(i))
-            shape[slot] = shapes
-        wall_disk, wall = packing.box.near_walls(position, radius, margin)
-        return Candidates(
-            reference=position.copy(),
-            first=first.astype(np.int32),
-            second=second.astype(np.int32),
-            slot=slot,
-            runs=runs,
-            separation=aligned(packing.box.separation(position[i], position[j]).T),
-            reach=reach,
-            wall_disk=wall_disk,
-            wall=wall,
-            wall_gap=packing.box.wall_gap(position[wall_disk], radius[wall_disk], wall),
-            shape=shape,
-            wall_shape=self.wall_shapes(wall_disk),
-            limit=limit,
-        )
+        """Candidate contacts at ``position`` (n, 2), as :func:`.candidates.list_candidates` finds them."""
+        laws = self.pair_law, self.wall_law
+        return list_candidates(self.packing, laws, position, search=search, stride=stride)
 
     def pair_shapes(self, first, second) -> FloatArray | None:
         """(m,) what the contact law needs of the radii of pairs."""
@@ -392,36 +275,9 @@ class Problem:
         bare = self.relisted(State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), none, none, self.packing.box))
         if self.packing.contacts is None:
             return bare
-        pairs, walls = (self._given(kind, at_wall) for at_wall, kind in enumerate(self.kinds(bare)))
+        given = self.packing.contacts
+        pairs, walls = (given_springs(given, kind, bool(at_wall)) for at_wall, kind in enumerate(self.kinds(bare)))
         return self.with_static_forces(replace(bare, pairs=pairs, walls=walls))
-
-    def _given(self, kind: Kind, at_wall: int) -> Contacts:
-        """The contacts of one kind with the springs that were given."""
-        (c, law, _, rolling), key = kind, ("contact", "wall")[at_wall]
-        known = {pair: k for k, pair in enumerate(zip(c.first.tolist(), c.second.tolist(), strict=True))}
-        missing = (c.overlap > ROUNDED) & (law.friction > 0.0)
-        force, roll = np.zeros((2, len(c.first)))
-        for one in (one for one in self.packing.contacts or () if one.at_wall == at_wall):
-            k, wrong = known.get((one.first, one.second)), ""
-            if k is None or c.overlap[k] < -ROUNDED:
-                wrong = "do not touch in this packing"
-            elif one.tangential and not law.friction:
-                wrong = f"bear a tangential force, {key}.friction must be greater than 0"
-            elif abs(one.rolling) > 0.0 if rolling is None else math.isnan(one.rolling):
-                wrong = f"have {'a' if rolling is None else 'no'} rolling force there, unlike {key}.rolling_friction"
-            if wrong:
-                raise SceneError(f"packing.springs: {one.place}: {one.words} {wrong}")
-            force[k], roll[k], missing[k] = one.tangential, one.rolling, False
-        if missing.any():
-            at = int(missing.argmax())
-            two = bodies(int(c.first[at]), int(c.second[at]), bool(at_wall))
-            raise SceneError(f"packing.springs: {two} overlap by {c.overlap[at]:.2g} mean radii, must be among them")
-        if len(over := np.flatnonzero(np.abs(force) > law.friction * (1.0 + ROUNDED))):
-            most = f"{np.abs(force).max():.4g} of the normal force, {key}.friction is {law.friction:g}"
-            warnings.warn(f"packing.springs: {len(over)} contacts bear up to {most}; they slip", stacklevel=2)
-        spring = -force * c.normal_force / (law.tangential_stiffness or 1.0)
-        turned = None if rolling is None else -roll * c.normal_force / rolling.stiffness
-        return spring_contacts(c.first, c.second, spring, turned)
 
     def relisted(self, state: State) -> State:
         """The same state on candidates listed anew around its positions.
@@ -455,55 +311,3 @@ class Problem:
             Kind(pairs, self.pair_law, self.pair_shapes(pairs.first, pairs.second), self.pair_rolling),
             Kind(walls, self.wall_law, self.wall_shapes(walls.first), self.wall_rolling),
         )
-
-
-def carry_springs(n: int, contacts: Contacts, first, second) -> tuple[FloatArray, FloatArray]:
-    """Tangential and rolling springs of ``contacts`` in the order of another list ``(first, second)`` of the same kind.
-
-    Raises
-    ------
-    ValueError
-        When a contact that carries a spring is not in the other list.
-    """
-    if np.array_equal(contacts.first, first) and np.array_equal(contacts.second, second):
-        return contacts.spring.copy(), contacts.rolling_spring.copy()
-    held = np.flatnonzero((contacts.spring != 0.0) | (contacts.rolling_spring != 0.0))
-    key = np.asarray(first, np.int64) + n * np.asarray(second, np.int64)
-    by = np.argsort(key)
-    wanted = contacts.first[held].astype(np.int64) + n * contacts.second[held].astype(np.int64)
-    place = np.searchsorted(key[by], wanted)
-    lost = np.append(key[by], -1)[place] != wanted
-    if lost.any():
-        k = held[np.flatnonzero(lost)[0]]
-        raise ValueError(f"contact {contacts.first[k]}-{contacts.second[k]} carries a spring but is not listed")
-    springs, rolling = np.zeros((2, len(key)))
-    springs[by[place]] = contacts.spring[held]
-    rolling[by[place]] = contacts.rolling_spring[held]
-    return springs, rolling
-
-
-def static_contacts(
-    first, second, overlap, spring, shape, law: Law, rolling: Rolling | None = None, rolling_spring=None
-) -> Contacts:
-    """Contacts with the spring parts of their forces (Sec. III.A without velocities)."""
-    size = len(overlap)
-    out = statics.Response.empty(size, rolls=rolling is not None)
-    statics.spring_forces(overlap, spring, shape, law, out)
-    if rolling is not None:
-        statics.rolling_spring_forces(rolling_spring, rolling, out)
-    status = out.status.astype(np.int8)
-    rows = (slice(at, at + size) for at in (0, size)[: 1 + (rolling is not None)])
-    parts: list[Any] = [part for row in rows for part in (out.tangential[row], out.spring[row], status[row])]
-    return Contacts(np.asarray(first, np.int32), np.asarray(second, np.int32), overlap, out.normal, *parts)
-
-
-def spring_contacts(
-    first, second, spring: FloatArray | None = None, rolling_spring: FloatArray | None = None
-) -> Contacts:
-    """Contacts of which no more is known than their springs, or not even these; zero stands for it."""
-    zero = np.zeros(len(first))
-    return Contacts(
-        np.asarray(first, np.int32), np.asarray(second, np.int32),
-        zero, zero, zero, zero if spring is None else spring, zero.astype(np.int8),
-        rolling_spring=zero if rolling_spring is None else rolling_spring,
-    )  # fmt: skip

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..contact import Linear
-from ..errors import EquilibriumError
+from ..errors import EquilibriumError, require
 from ..scene import Scene, SceneError
 from ..scene.errors import show
 from ..scene.given import finite_numbers
@@ -205,8 +205,8 @@ def checked_problem(scene: Scene) -> Problem:
     SceneError
         For a packing or a load that is not allowed, too many disks for the memory, or a method that is none for it.
     """
-    if scene.motion.key:
-        raise SceneError(f"{scene.motion.key}: must be left out, equilibria are found from rest; gr.motion follows it")
+    rule = f"{scene.motion.key}: must be left out, equilibria are found from rest; gr.motion follows it"
+    require(not scene.motion.key, rule, SceneError)
     check_memory(scene, scene.packing.disk_count)
     problem = Problem.from_scene(scene)
     check_memory(scene, problem.n)  # a file's disks are counted by now
@@ -242,8 +242,7 @@ def continue_solution(
     NotSettled, DynamicsError, EquilibriumError, PathError
         As of ``solve_scene``.
     """
-    if not solution.loaded:
-        raise SceneError("loads: none in this scene, so there is nothing to change")
+    require(solution.loaded, "loads: none in this scene, so there is nothing to change", SceneError)
     factors = load_programme(load_factors)
     scene = solution.scene.updated({"protocol.load_factors": [*solution.scene.protocol.load_factors, *factors]})
     problem = replace(solution.problem, scene=scene)
@@ -267,10 +266,8 @@ def rest_state(problem: Problem, *, progress: Progress | None = None) -> State:
     rest, taps = _under_gravity(problem, progress), problem.scene.preparation.taps
     if taps is None:
         return rest
-    if not problem.plan.static:
-        raise SceneError(
-            "preparation.taps: must be null, each tap ends in an equilibrium, and statics is left out here"
-        )
+    rule = "preparation.taps: must be null, each tap ends in an equilibrium, and statics is left out here"
+    require(problem.plan.static, rule, SceneError)
     return tapped(problem, rest, taps.number, taps.amplitude, taps.duration)
 
 

@@ -43,9 +43,9 @@ class StabilityOptions:
     soft: float = 1e-4
     #: Part of the normal stiffness that rounding makes of a stiffness of 0; softer disks than that cannot be judged.
     rounding: float = 1e-14
-    #: How far to the left of zero the search begins, in units of the normal stiffness: the first that the symmetric
-    #: part allows, so that there are few points on the way.
-    left_of_all: tuple[float, ...] = (1e-2, 1e-1, 1.0, 10.0)
+    #: How far to the left of zero the search begins, in units of the normal stiffness: the first of this and its
+    #: products with 10 to 1,000 that the symmetric part allows, so that there are few points on the way.
+    left_of_all: float = 1e-2
     #: Sum of displacements along x below which a direction leads to neither side, its largest component being 1.
     least_sideways: float = 1e-6
     #: Times that a direction may change the contacts that slide along it before it counts as one that grows.
@@ -155,7 +155,7 @@ class Spectrum:
             return self._followed
         k, shifted = self.system.problem.stiffness, self.system.pattern.with_shift
         self.system.forget()
-        for left in OPTIONS.left_of_all:
+        for left in (OPTIONS.left_of_all * 10**power for power in range(4)):
             if self.system.storage.definite_factor(shifted(self._symmetric, left * k)) is not None:
                 break
         found = lowest_real(self._inverse, self.system.dof, -left * k)

@@ -12,6 +12,7 @@ from typing import Literal
 
 import numpy as np
 
+from ..errors import require
 from ..state import FLOOR, FloatArray, State
 from .held import Held
 from .problem import Problem
@@ -64,19 +65,14 @@ def strained(
     EquilibriumError
         For a state that is not certified as stable.
     """
-    if following not in FOLLOWING:
-        raise ValueError(f"following = {following!r}: must be one of {', '.join(FOLLOWING)}")
-    if not 0.0 <= margin < 0.5:
-        raise ValueError(f"margin = {margin}: must be from 0 to below 0.5")
+    require(following in FOLLOWING, f"following = {following!r}: must be one of {', '.join(FOLLOWING)}")
+    require(0.0 <= margin < 0.5, f"margin = {margin}: must be from 0 to below 0.5")
     packing, kind, rows = problem.packing, problem.scene.packing.kind, len(problem.packing.row_count)
-    if kind != "slab":
-        raise ValueError(f"packing.kind = {kind}: must be slab to be strained as a whole, with packing.sides: periodic")
-    if not packing.periodic:
-        raise ValueError("packing.sides = walls: must be periodic for a packing to be strained as a whole")
-    if rows < 3:
-        raise ValueError(f"packing.layers = {rows}: must be 3 or greater for a packing to be strained as a whole")
-    if 2 * _left_out(rows, margin) >= rows:
-        raise ValueError(f"margin = {margin}: leaves none of {rows} rows")
+    rule = f"packing.kind = {kind}: must be slab to be strained as a whole, with packing.sides: periodic"
+    require(kind == "slab", rule)
+    require(packing.periodic, "packing.sides = walls: must be periodic for a packing to be strained as a whole")
+    require(rows >= 3, f"packing.layers = {rows}: must be 3 or greater for a packing to be strained as a whole")
+    require(2 * _left_out(rows, margin) < rows, f"margin = {margin}: leaves none of {rows} rows")
     n = problem.n
     system, trial = sticking(_moved_by_hand(problem, state, following), state, "stick")
     if not prestress:

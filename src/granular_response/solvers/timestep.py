@@ -40,7 +40,8 @@ from ..kernels.integrators import INTEGRATORS, amplification
 from ..scene.protocol import PAPERS_TIME_STEP
 from ..state import State
 from .choice import AT_REST, LARGE
-from .problem import Problem, static_contacts
+from .problem import Problem
+from .springs import static_contacts
 
 #: Part of the limit that ``time_step: auto`` takes.
 SAFETY = 0.6

@@ -17,7 +17,7 @@ import xarray as xr
 from ..state.box import FARTHEST, WALL_MEANINGS
 from . import files
 from .result import ResultError, indexed
-from .variables import REAL, VARIABLES, Stored, labelled
+from .variables import REAL, VARIABLES, StoredVariable, labelled
 
 #: Names whose values are indices of disks.
 _DISKS = ("contact_disk", "contact_partner", "wall_disk", "loaded_disk", "floor_disk")
@@ -78,7 +78,7 @@ def _fail(problem: str) -> Never:
     raise ResultError(f"is not a whole result: {problem}")
 
 
-def _check_variable(dataset: xr.Dataset, name: str, stored: Stored) -> None:
+def _check_variable(dataset: xr.Dataset, name: str, stored: StoredVariable) -> None:
     if name not in dataset.variables:
         _fail(f"variable {name} is missing")
     variable, dimensions = dataset.variables[name], tuple(stored.dimensions.split())

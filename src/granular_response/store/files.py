@@ -135,7 +135,7 @@ def _named(path: str | os.PathLike[str]) -> Path:
     return Path(path)
 
 
-class Stored(NamedTuple):
+class Content(NamedTuple):
     """What a file holds, in memory."""
 
     datasets: dict[str, xr.Dataset]  #: by the name of their group, as ``read`` gives them
@@ -143,7 +143,7 @@ class Stored(NamedTuple):
     sealed: bool  #: whether it ends with the digest of what it holds
 
 
-def open_file(path: str | os.PathLike[str], *, sealed: bool = True) -> Stored:
+def open_file(path: str | os.PathLike[str], *, sealed: bool = True) -> Content:
     """All that a file holds, read once. Raises StoreError as ``read`` does."""
     data, has_seal = _bytes(path)
     with _open(path, data, has_seal, sealed) as file:
@@ -153,7 +153,7 @@ def open_file(path: str | os.PathLike[str], *, sealed: bool = True) -> Stored:
         except Exception as error:  # a damaged file can make its decoders raise anything
             raise _error(path, f"is damaged: {error}") from error
     datasets = {name: dataset for name, dataset in groups.items() if dataset.variables or len(groups) == 1}
-    return Stored(datasets, attributes, has_seal)
+    return Content(datasets, attributes, has_seal)
 
 
 def read(path: str | os.PathLike[str], *, sealed: bool = True) -> dict[str, xr.Dataset]:

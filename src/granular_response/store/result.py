@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from .. import __version__
-from ..errors import GranularError
+from ..errors import GranularError, require
 from ..observe.difference import match_candidates, pair_force_difference, wall_force_difference
 from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
@@ -370,8 +370,8 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
 
     Raises ResultError when the dataset holds no states.
     """
-    if "contact_spring" not in dataset:
-        raise ResultError("the dataset holds no states (variable contact_spring is missing)")
+    rule = "the dataset holds no states (variable contact_spring is missing)"
+    require("contact_spring" in dataset, rule, ResultError)
     one = dataset.isel(state=index)
     certificate = None
     if "certificate_force_residual" in one:
@@ -411,8 +411,7 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     problem = Problem.from_scene(scene).with_loads(rest.position)
     packed = problem.packing
     same = all(np.array_equal(getattr(packed, name), dataset[name].values) for name in ("radius", "mass"))
-    if not same or packed.box != rest.box:
-        raise ResultError("the table of disks has changed since the result was made")
+    require(same and packed.box == rest.box, "the table of disks has changed since the result was made", ResultError)
     rest, *loaded = (_as_solved(dataset, k) for k in range(dataset.sizes["state"]))
     return Solution(scene=scene, problem=problem, rest=rest, loaded=tuple(loaded))
 

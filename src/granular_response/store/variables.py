@@ -1,10 +1,9 @@
 """The variables of a stored result, each said once: dimensions, meaning, unit, and what its values may be.
 
 They stand in ``variables.csv``. A ``*`` is ``contact`` and ``wall``; values are numbers, texts or the codes of
-:data:`_CODES`; ``gaps`` may be missing in some places, what is ``optional`` everywhere. Units are names that
-``scene.LaboratoryUnits.define`` makes known to pint, as xarray's plots, cf-xarray and pint-xarray read them; text and
-codes have none. Datasets of studies hold some of the variables too, with the unit "1" and the meaning, which names the
-unit, as ``long_name``.
+:data:`_CODES`; ``gaps`` may be missing in some places, what is ``optional`` everywhere. Units are products of the names
+in ``scene.laboratory``; text and codes have none. Datasets of studies hold some of the variables too, with the unit "1"
+and the meaning, which names the unit, as ``long_name``.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ _KINDS = {"real": REAL, "whole": WHOLE, "text": TEXT}
 _CODES = {"status": MEANINGS, "wall": WALL_MEANINGS, "event": EVENT_KINDS, "no or yes": ("no", "yes")}
 
 
-class Stored(NamedTuple):
+class StoredVariable(NamedTuple):
     """One variable of a result."""
 
     dimensions: str  #: with spaces between them
@@ -48,11 +47,11 @@ class Stored(NamedTuple):
     optional: bool
 
 
-def _declared() -> Iterator[tuple[str, Stored]]:
+def _declared() -> Iterator[tuple[str, StoredVariable]]:
     lines = read_text(Path(__file__).with_name("variables.csv")).splitlines()
     for name, dimensions, values, unit, flags, text in list(csv.reader(lines, delimiter="|"))[1:]:
         kinds, codes = _KINDS.get(values, WHOLE), _CODES.get(values, ())
-        stored = Stored(dimensions, text, unit, kinds, codes, "gaps" not in flags, "optional" in flags)
+        stored = StoredVariable(dimensions, text, unit, kinds, codes, "gaps" not in flags, "optional" in flags)
         if "*" not in name:
             yield name, stored
             continue
@@ -60,7 +59,7 @@ def _declared() -> Iterator[tuple[str, Stored]]:
             yield name.replace("*", prefix), stored._replace(dimensions=dimensions.replace("*", along))
 
 
-VARIABLES: dict[str, Stored] = dict(_declared())
+VARIABLES: dict[str, StoredVariable] = dict(_declared())
 
 
 def _after(prefix: str) -> tuple[str, ...]:

@@ -10,9 +10,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import check_positive
 from ..observe import network, peaks
 from ..observe.floor import floor_disks, floor_response, interior_mask, smoothed_response
-from ..observe.positive import check_positive
 from ..observe.teardrop import OpenRegion, open_region
 from ..state import FloatArray, State
 from ..store.result import common_candidates

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..observe.positive import check_positive
+from ..errors import check_positive, require
 from ..state import FloatArray
 from .brackets import Bracket, EventNotBracketed, First
 
@@ -35,8 +35,7 @@ def bisect_event(
     >>> gr.studies.bisect_event(lambda value: value**2 > 2.0, 1.0, 2.0, 0.25).ends
     (1.25, 1.5)
     """
-    if not low < high:
-        raise ValueError(f"low: {low} given; it must be below high, which is {high}")
+    require(low < high, f"low: {low} given; it must be below high, which is {high}")
     check_positive(tolerance=tolerance)
     evaluations = 0
     if at_low is None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import check_positive
 from .moduli import Moduli
 
 
@@ -19,8 +20,7 @@ def pressure(x: ArrayLike, depth: float, moduli: Moduli, force: float = 1.0) -> 
     Its integral over x is ``force`` at every depth. Depends on the moduli only through ``Moduli.shape``.
     Raises ValueError if ``depth`` is not positive.
     """
-    if not depth > 0.0:
-        raise ValueError(f"depth = {depth}: must be positive")
+    check_positive(depth=depth)
     s, p = moduli.shape
     t2 = (np.asarray(x, dtype=float) / depth) ** 2
     return force / (np.pi * depth) * np.sqrt(s + 2.0 * np.sqrt(p)) / (1.0 + s * t2 + p * t2**2)

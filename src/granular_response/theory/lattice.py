@@ -24,6 +24,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import require
 from .moduli import Moduli
 from .moduli import peak_criterion as criterion
 
@@ -47,10 +48,9 @@ class Springs:
     def __post_init__(self) -> None:
         for name in ("k1n", "k2n", "k1t", "k2t"):
             value = getattr(self, name)
-            if not (np.isfinite(value) and value >= 0.0):
-                raise ValueError(f"spring stiffness {name} = {value}: must be finite and not negative")
-        if self.k2n == 0.0:
-            raise ValueError("spring stiffness k2n = 0.0: must be positive, or no layer carries the next")
+            rule = f"spring stiffness {name} = {value}: must be finite and not negative"
+            require(np.isfinite(value) and value >= 0.0, rule)
+        require(self.k2n != 0.0, "spring stiffness k2n = 0.0: must be positive, or no layer carries the next")
 
     @classmethod
     def uniform(cls, normal: float, tangential: float) -> Springs:
@@ -59,8 +59,7 @@ class Springs:
 
 
 def _check_rotations(rotations: str) -> None:
-    if rotations not in ("suppressed", "free"):
-        raise ValueError(f"rotations = {rotations!r}: must be 'suppressed' or 'free'")
+    require(rotations in ("suppressed", "free"), f"rotations = {rotations!r}: must be 'suppressed' or 'free'")
 
 
 def moduli(springs: Springs, rotations: Rotations = "suppressed") -> Moduli:
@@ -95,8 +94,7 @@ def peak_criterion(beta: float, rotations: Rotations = "suppressed") -> float:
     is the isostatic limit, where eq. (6) has a soft mode but r is still defined.
     """
     _check_rotations(rotations)
-    if not beta >= 0.0:
-        raise ValueError(f"beta = {beta}: must not be negative")
+    require(beta >= 0.0, f"beta = {beta}: must not be negative")
     a, b, c = 1.0 + 3.0 * beta, 9.0 + 3.0 * beta, 3.0 - 3.0 * beta
     d = 6.0 + (2.0 * beta if rotations == "suppressed" else 0.0)
     return criterion(a, b, c, d)
@@ -118,8 +116,8 @@ def poisson_ratio(normal: float, tangential: float) -> float:
 
     That lattice is isotropic, and turning the rotations on or off makes no difference to it.
     """
-    if not (normal > 0.0 and tangential >= 0.0):
-        raise ValueError(f"normal = {normal}, tangential = {tangential}: must be above 0, and at least 0")
+    rule = f"normal = {normal}, tangential = {tangential}: must be above 0, and at least 0"
+    require(normal > 0.0 and tangential >= 0.0, rule)
     return (normal - tangential) / (3.0 * normal + tangential)
 
 

@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import check_positive, require
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -52,20 +54,14 @@ class Moduli:
     d: float  #: sigma_xz per eps_xz, twice the shear modulus
 
     def __post_init__(self) -> None:
-        for name in ("a", "b", "d"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0.0):
-                raise ValueError(f"modulus {name} = {value}: must be finite and positive")
-        if not self.a * self.b > self.c**2:
-            raise ValueError(f"modulus c = {self.c}: c^2 must be below a b = {self.a * self.b}")
+        check_positive(a=self.a, b=self.b, d=self.d)
+        require(self.a * self.b > self.c**2, f"modulus c = {self.c}: c^2 must be below a b = {self.a * self.b}")
 
     @classmethod
     def isotropic(cls, poisson_ratio: float, young_modulus: float = 1.0) -> Moduli:
         """Moduli of the isotropic solid with two-dimensional Poisson ratio in (-1, 1)."""
-        if not -1.0 < poisson_ratio < 1.0:
-            raise ValueError(f"poisson_ratio = {poisson_ratio}: must be above -1 and below 1 (in 2D)")
-        if not young_modulus > 0.0:
-            raise ValueError(f"young_modulus = {young_modulus}: must be positive")
+        require(-1.0 < poisson_ratio < 1.0, f"poisson_ratio = {poisson_ratio}: must be above -1 and below 1 (in 2D)")
+        check_positive(young_modulus=young_modulus)
         a = young_modulus / (1.0 - poisson_ratio**2)
         return cls(a=a, b=a, c=poisson_ratio * a, d=young_modulus / (1.0 + poisson_ratio))
 

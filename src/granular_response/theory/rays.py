@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import check_positive, require
+
 
 def pressure(
     x: ArrayLike, depth: float, *, angle: float, diffusion_length: float, force: float = 1.0
@@ -19,12 +21,9 @@ def pressure(
     ``angle`` is that of the rays to the vertical in radians, in [0, pi/2); ``diffusion_length`` D gives
     each ray the standard deviation ``sqrt(D depth)``. Raises ValueError outside these ranges.
     """
-    if not depth > 0.0:
-        raise ValueError(f"depth = {depth}: must be positive")
-    if not 0.0 <= angle < np.pi / 2:
-        raise ValueError(f"angle = {angle}: must be at least 0 and below pi/2 (to the vertical, in radians)")
-    if not diffusion_length > 0.0:
-        raise ValueError(f"diffusion_length = {diffusion_length}: must be positive")
+    check_positive(depth=depth, diffusion_length=diffusion_length)
+    rule = f"angle = {angle}: must be at least 0 and below pi/2 (to the vertical, in radians)"
+    require(0.0 <= angle < np.pi / 2, rule)
     position = np.asarray(x, dtype=float)
     centre, variance = depth * np.tan(angle), diffusion_length * depth
     left = np.exp(-((position + centre) ** 2) / (2.0 * variance))

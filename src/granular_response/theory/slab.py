@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import schur
 
+from ..errors import check_positive, require
 from .moduli import Moduli
 
 Floor = Literal["rough", "smooth"]
@@ -64,15 +65,12 @@ class Slab:
     load_position: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.height) and self.height > 0.0):
-            raise ValueError(f"height = {self.height}: must be finite and positive")
-        if self.floor not in ("rough", "smooth"):
-            raise ValueError(f"floor = {self.floor!r}: must be 'rough' or 'smooth'")
+        check_positive(height=self.height)
+        require(self.floor in ("rough", "smooth"), f"floor = {self.floor!r}: must be 'rough' or 'smooth'")
         if self.width is not None:
-            if not (np.isfinite(self.width) and self.width > 0.0):
-                raise ValueError(f"width = {self.width}: must be finite and positive, or None")
-            if not abs(self.load_position) < 0.5 * self.width:
-                raise ValueError(f"load_position = {self.load_position}: must be inside +-{0.5 * self.width}")
+            check_positive(width=self.width)
+            rule = f"load_position = {self.load_position}: must be inside +-{0.5 * self.width}"
+            require(abs(self.load_position) < 0.5 * self.width, rule)
 
     @cached_property
     def _modes(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -101,11 +99,9 @@ class Slab:
         For the top pressure ``cos k x``. At k = 0 sigma_zz = -1, and sigma_xx = -c/b unless nothing keeps
         the slab from widening (smooth floor, no walls), when it is 0.
         """
-        if not 0.0 <= z <= self.height:
-            raise ValueError(f"z = {z}: must be between 0 and the height {self.height}")
+        require(0.0 <= z <= self.height, f"z = {z}: must be between 0 and the height {self.height}")
         k = np.atleast_1d(np.asarray(wave_number, dtype=float))
-        if k.ndim != 1 or not np.all(k >= 0.0):
-            raise ValueError("wave_number: must be a number or a 1-d array, none negative")
+        require(k.ndim == 1 and np.all(k >= 0.0), "wave_number: must be a number or a 1-d array, none negative")
         b, c = self.moduli.b, self.moduli.c
         v_down, down, v_up, up = self._modes
         through = k * self.height
@@ -139,8 +135,8 @@ class Slab:
         if self.width is None:
             return self._sum_unbounded(points, z, force, smoothing)
         half = 0.5 * self.width
-        if points.size and np.max(np.abs(points)) > half * (1.0 + 1e-12):
-            raise ValueError(f"x: must be between the walls at {-half} and {half}")
+        rule = f"x: must be between the walls at {-half} and {half}"
+        require(not points.size or np.max(np.abs(points)) <= half * (1.0 + 1e-12), rule)
         # One period holds the slab and its mirror image beyond the right wall; measured from the left wall.
         k, amplitude = self._amplitudes(np.pi / self.width, z, smoothing)
         return force / self.width * self._series(points + half, self.load_position + half, k, amplitude)
@@ -152,8 +148,8 @@ class Slab:
     def floor_force(self, edges: ArrayLike, force: float = 1.0) -> FloatArray:
         """(n - 1,) force on each stretch of floor between n increasing ``edges``."""
         bounds = np.asarray(edges, dtype=float)
-        if bounds.ndim != 1 or bounds.size < 2 or not np.all(np.diff(bounds) > 0.0):
-            raise ValueError("edges: must be a 1-d array of at least two increasing positions")
+        rule = "edges: must be a 1-d array of at least two increasing positions"
+        require(bounds.ndim == 1 and bounds.size >= 2 and np.all(np.diff(bounds) > 0.0), rule)
         # Gauss-Legendre in each stretch, short beside the height over which the pressure varies.
         pieces = int(np.ceil(np.max(np.diff(bounds)) / (0.25 * self.height)))
         fine = np.concatenate(
@@ -174,8 +170,8 @@ class Slab:
         if smoothing > 0.0:
             limits.append(np.sqrt(2.0 * reach) / smoothing)
         count = int(np.ceil(min(limits, default=np.inf) / step)) if limits else 0
-        if not limits or count > _MOST_WAVE_NUMBERS:
-            raise ValueError(f"z = {z}: too near the force at the top for a series; go down or smooth")
+        rule = f"z = {z}: too near the force at the top for a series; go down or smooth"
+        require(limits and count <= _MOST_WAVE_NUMBERS, rule)
         k = step * np.arange(count + 1, dtype=float)
         return k, self.transform(k, z) * np.exp(-0.5 * (k * smoothing) ** 2)
 
@@ -231,11 +227,9 @@ def response_of_layers(
     horizontal ones, and always more at the last disk beside a wall. Raises ValueError for fewer
     than one layer, a ``floor_x`` of another shape, or what ``Slab`` refuses.
     """
-    if layers < 1:
-        raise ValueError(f"layers = {layers}: must be at least 1")
+    require(layers >= 1, f"layers = {layers}: must be at least 1")
     slab = Slab(np.sqrt(3.0) * layers if height is None else height, moduli, floor, width)
     node, weight = np.polynomial.legendre.leggauss(8)
     x = np.asarray(floor_x, dtype=float)
-    if x.ndim != 1:
-        raise ValueError(f"floor_x: must be 1-d, not of shape {x.shape}")
+    require(x.ndim == 1, f"floor_x: must be 1-d, not of shape {x.shape}")
     return slab.floor_pressure(x[:, None] + node) @ weight

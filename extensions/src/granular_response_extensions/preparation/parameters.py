@@ -9,7 +9,7 @@ from pydantic import Field
 
 from granular_response.scene import Scene, SceneError
 from granular_response.scene.base import Count, Description, Fraction, Positive, Ratio
-from granular_response.scene.errors import Problem
+from granular_response.scene.errors import NotAllowed
 from granular_response_paper.parameters import UNIT_LOAD, Checked, Checks, Growing, SceneGroup, over
 
 #: Keys of a scene that say how it came to rest.
@@ -69,7 +69,7 @@ class Parameters(SceneGroup):
             try:
                 self.scene.updated(way.changes)
             except SceneError as error:
-                raise Problem(str(error), key=("ways", k)) from None
+                raise NotAllowed(str(error), key=("ways", k)) from None
         yield "parts.0.polydispersity", not self.parts[0].polydispersity, "must be 0"
         yield "parts.0.taps", self.parts[0].taps is None, "must be left out"
         for k, part in enumerate(self.parts):

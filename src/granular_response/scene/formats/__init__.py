@@ -18,7 +18,6 @@ SUFFIXES = {
     "csv": (".csv",),
     "lammps-data": (".data", ".lmp"),
     "lammps-dump": (".dump", ".lammpstrj"),
-    "yade": (".txt", ".spheres"),
     "gsd": (".gsd",),
 }
 _MODULES = {name: name.replace("-", "_") for name in SUFFIXES} | {"csv": "csv_table", "gsd": "gsd_file"}

@@ -67,20 +67,9 @@ def recognised(data: bytes) -> str:
     rows = [line for line in lines if not line.startswith("#")]
     if not rows:
         return ""
-    words = rows[0].split()
     if rows[0].startswith("ITEM:"):
         return "lammps-dump"
     if any(line.split()[1:] == ["atoms"] for line in lines[1:20]):
         return "lammps-data"
-    if lines[0].startswith("#format") or (len(words) >= 4 and all(map(_is_number, words))):
-        return "yade"
     columns = max(rows[0].count(","), rows[0].count(";"))
     return "csv" if columns >= 2 and rows[0].lstrip('"')[0].isalpha() else ""
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True

@@ -22,7 +22,7 @@ import numpy as np
 
 from ..errors import suggestion
 from ..names import MOTION
-from .table import NO_BOX, FormatError, Mark, Once, Table, lines_of, listed, number, numbers, radii, shown, upward
+from .table import NO_BOX, FormatError, Mark, Once, Table, lines_of, listed, must, number, numbers, radii, shown, upward
 
 #: What is read of a disk, and the names of columns that have it.
 LENGTHS, MATERIAL = ("x", "y", "z", "radius", "diameter"), ("mass", "density")
@@ -108,12 +108,10 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
         moved.append([_or_nan(cells[column]) for column in motion.values()])
         cells_of.append(cells)
         places.append(place)
-    if not rows:
-        raise FormatError("has no disks, must have a header x,z,radius and a line for each disk")
+    must(rows, "has no disks, must have a header x,z,radius and a line for each disk")
     if mark is not None:
         mark.check(len(rows), whole)
-        if "mass" not in chosen:
-            raise FormatError("column mass is missing, which tables of granular-response have")
+        must("mass" in chosen, "column mass is missing, which tables of granular-response have")
     others = [("", "") if k in chosen.values() else title for k, title in enumerate(titles)]
     kept, frame = _last_frame(others, cells_of, places)
     rows, moved, places = [rows[k] for k in kept], [moved[k] for k in kept], [places[k] for k in kept]
@@ -167,8 +165,8 @@ def _last_frame(
         if len(set(cells)) > 1:
             numbered = [number(cell, name, place) for cell, place in zip(cells, places, strict=True)]
             several = sorted(set(numbered))
-            if len(several) == len(rows):
-                raise FormatError(f"column {name}: each disk has another one; a table must have the disks of one frame")
+            rule = f"column {name}: each disk has another one; a table must have the disks of one frame"
+            must(len(several) != len(rows), rule)
             kept = [k for k in kept if numbered[k] == several[-1]]
             if len(several) > 1:
                 frame = f"{len(several)} of {len(several)}, {name} {cells[kept[0]]}"
@@ -212,10 +210,10 @@ def _chosen(
     Raises FormatError for a header that does not say what they are. What stands in it is quoted only where it looks as
     one of a table of disks: the file may be another one.
     """
-    if len(header) == 1 and len(header[0].split()) >= len(_NEEDED):
-        raise FormatError("columns are separated by blanks or tabs, must be separated by commas or semicolons")
-    if not any(_words(cell) for cell in header):
-        raise FormatError("the first line has numbers alone, must be a header that names x, z and radius")
+    rule = "columns are separated by blanks or tabs, must be separated by commas or semicolons"
+    must(len(header) != 1 or len(header[0].split()) < len(_NEEDED), rule)
+    rule = "the first line has numbers alone, must be a header that names x, z and radius"
+    must(any(_words(cell) for cell in header), rule)
     names, units = zip(*titles, strict=True)
     chosen: dict[str, int] = {}
     turned: set[str] = set()
@@ -259,8 +257,7 @@ def _chosen(
     if assumed and (beside := _tracker(titles, chosen)):
         rule = "must have a unit, as mass [g], or packing.columns = {mass: mass} says that it is one"
         raise FormatError(f"column mass: is a brightness where disks are tracked, as column {beside} shows; {rule}")
-    if all(name in chosen for name in MATERIAL):
-        raise FormatError("columns mass and density: must have one of them, once")
+    must(not all(name in chosen for name in MATERIAL), "columns mass and density: must have one of them, once")
     if not any(name in chosen for name in MATERIAL):
         for column in ignored:
             if (meant := _OTHER_WORDS.get(column)) or (meant := suggestion(column, MATERIAL)):

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ...inputs import read_bytes
 from ...state import FloatArray
 from .content import foreign
-from .table import FileBox, FormatError, Table, upward
+from .table import FileBox, FormatError, Table, must, upward
 
 _REASON = "a GSD file does not say what bounds its particles"
 
@@ -60,11 +60,9 @@ class _Frames:
         self._names = [name.decode("ascii", "replace") for name in names if name]
         index = np.frombuffer(self._bytes(index_at, index_size * _ENTRY.itemsize), _ENTRY)
         used = int(np.argmin(index["at"] > 0)) if (index["at"] <= 0).any() else len(index)
-        if index[used:].tobytes().strip(b"\0"):
-            raise FormatError(f"{_DAMAGED}: its index goes on after its end")
+        must(not index[used:].tobytes().strip(b"\0"), f"{_DAMAGED}: its index goes on after its end")
         self._index = index[:used]
-        if not len(self._index):
-            raise FormatError("is not a GSD file with particles: it has no frame")
+        must(len(self._index), "is not a GSD file with particles: it has no frame")
         self.last = int(self._index["frame"].max())
         lists = [(index_at, index_size * _ENTRY.itemsize), (names_at, names_size * _NAME_BYTES)]
         self._check_index([(0, _HEADER.size), *lists])
@@ -74,10 +72,10 @@ class _Frames:
         frame, name = self._index["frame"], self._index["name"]
         if frame[0] != 0 or (np.diff(frame.astype(np.int64)) < 0).any() or len(np.unique(frame)) != self.last + 1:
             raise FormatError(f"{_DAMAGED}: its frames are not numbered one by one")
-        if len(set(self._names)) < len(self._names) or name.max() >= len(self._names):
-            raise FormatError(f"{_DAMAGED}: its list of names")
-        if len(np.unique(np.stack([frame, name.astype(np.uint64)]), axis=1).T) < len(frame):
-            raise FormatError(f"{_DAMAGED}: a chunk is given twice in a frame")
+        rule = f"{_DAMAGED}: its list of names"
+        must(len(set(self._names)) >= len(self._names) and name.max() < len(self._names), rule)
+        rule = f"{_DAMAGED}: a chunk is given twice in a frame"
+        must(len(np.unique(np.stack([frame, name.astype(np.uint64)]), axis=1).T) >= len(frame), rule)
         for one in self._names:
             if one not in _NAMES and one.partition("/")[0] not in _GROUPS:
                 raise FormatError(f"{_DAMAGED}: its list of names has one that the format does not have")
@@ -88,14 +86,13 @@ class _Frames:
         rows, columns, at = (self._index[one].tolist() for one in ("rows", "columns", "at"))
         regions += [(a, r * c * s) for a, r, c, s in zip(at, rows, columns, sizes.tolist(), strict=True)]
         regions = sorted((start, start + size) for start, size in regions if size)
-        if any(end > start for (_, end), (start, _) in pairwise(regions)):
-            raise FormatError(f"{_DAMAGED}: two of its parts stand in the same place")
+        rule = f"{_DAMAGED}: two of its parts stand in the same place"
+        must(not any(end > start for (_, end), (start, _) in pairwise(regions)), rule)
         if (end := regions[-1][1]) != len(self._data):
             raise FormatError(f"{_DAMAGED}: its parts end at byte {end}, it has {len(self._data)}")
 
     def _bytes(self, start: int, size: int) -> bytes:
-        if start + size > len(self._data):
-            raise FormatError(_DAMAGED)
+        must(start + size <= len(self._data), _DAMAGED)
         return self._data[start : start + size]
 
     def _chunk(self, frame: int, name: str) -> NDArray | None:
@@ -130,8 +127,7 @@ class _Frames:
                 return found.astype(float).reshape(shape)
             if frame == self.last:
                 raise FormatError(f"chunk {name}: has {found.size} values, must have {math.prod(shape)}")
-        if default is None:
-            raise FormatError(f"is not a GSD file with particles: chunk {name} is missing")
+        must(default is not None, f"is not a GSD file with particles: chunk {name} is missing")
         return np.full(shape, default)
 
 
@@ -139,18 +135,15 @@ def read(path: Path) -> Table:
     """The particles as disks."""
     frames = _Frames(read_bytes(path))
     count = float(frames.values("particles/N", 0.0, ()))
-    if not 0 < count < 2**31:
-        raise FormatError("has no particles")
+    must(0 < count < 2**31, "has no particles")
     n = int(count)
     for name, columns in _OF_PARTICLES.items():
         frames.check(f"particles/{name}", n, columns)
     x, y, z = frames.values("particles/position", None, (n, 3)).T
     diameter, mass = (frames.values(f"particles/{name}", 1.0, (n,)) for name in ("diameter", "mass"))
     box = frames.values("configuration/box", None, (6,))
-    if not np.isfinite(box).all() or box[0] <= 0.0:
-        raise FormatError("the box must be of some size")
-    if box[3:].any():
-        raise FormatError("the box must not be tilted")
+    must(np.isfinite(box).all() and box[0] > 0.0, "the box must be of some size")
+    must(not box[3:].any(), "the box must not be tilted")
     places = [f"particle {k}" for k in range(n)]
     up, which = y if upward(y, z) == "y" else z, f"{frames.last + 1} of {frames.last + 1}"
     return Table(x, up, 0.5 * diameter, places, mass, _file_box(frames, float(box[0])), frame=which)
@@ -161,6 +154,6 @@ def _file_box(frames: _Frames, width: float) -> FileBox:
         return FileBox(-0.5 * width, width, reason=_REASON)
     left, floor, _ = frames.values("log/origin", None, (3,)).tolist()
     own, periodic = (float(frames.values(f"log/{name}", None, ())) for name in ("box_width", "periodic"))
-    if not np.isfinite([left, floor, own]).all() or own <= 0.0 or periodic not in (0.0, 1.0):
-        raise FormatError("log entries origin, box_width, periodic: must be places, a width and 0 or 1")
+    rule = "log entries origin, box_width, periodic: must be places, a width and 0 or 1"
+    must(np.isfinite([left, floor, own]).all() and own > 0.0 and periodic in (0.0, 1.0), rule)
     return FileBox(left, own, floor, bool(periodic))

@@ -20,6 +20,7 @@ from .table import (
     bounds,
     by_id,
     lines_of,
+    must,
     numbers,
     shown,
     upright,
@@ -124,28 +125,24 @@ def read(path: Path) -> Table:
     places = [place for place, _ in atoms]
     rows = [numbers(cells[2:7], _COLUMNS, place) for place, cells in atoms]
     moving = {cells[0]: (place, numbers(cells[1:], _MOTION, place)) for place, cells in sections.get("Velocities", [])}
-    if count is None or "x" not in header.sides or len(rows) != count:
-        rule = f"must have the headers atoms and xlo xhi, and as many atoms as it says (found {len(rows)})"
-        raise FormatError(f"is not a whole LAMMPS data file, {rule}")
+    rule = f"must have the headers atoms and xlo xhi, and as many atoms as it says (found {len(rows)})"
+    must(count is not None and "x" in header.sides and len(rows) == count, f"is not a whole LAMMPS data file, {rule}")
     for name, found in sections.items():
         if len(found) != (said := header.counts.get(_SECTIONS[name], 0)):
             rule = f"must have {said}, as the header {_SECTIONS[name]} says"
             raise FormatError(f"section {name} has {len(found)} lines, {rule}")
-    if not rows:
-        raise FormatError("has no atoms")
+    must(rows, "has no atoms")
     most = header.counts.get("atom types", 0)
     for place, (_, kind, *_) in atoms:
         if not 1 <= (whole_number(kind) or 0) <= most and "Atom Type Labels" not in sections:
             raise FormatError(f"type = {shown(kind)}: must be from 1 to {most}, as the header atom types says", place)
-    if not whole:
-        raise FormatError("is cut: its last line has no end")
+    must(whole, "is cut: its last line has no end")
     left, width = header.sides["x"]
     left += header.corner
     if mark is not None:
         mark.check(len(rows), whole)
-        if (left, width) != (0.0, mark.width):
-            rule = f"says width {mark.width!r}, the bounds xlo xhi {left!r} to {left + width!r}; must agree"
-            raise FormatError(rule, "line 1")
+        rule = f"says width {mark.width!r}, the bounds xlo xhi {left!r} to {left + width!r}; must agree"
+        must((left, width) == (0.0, mark.width), rule, "line 1")
     ids = [cells[0] for _, cells in atoms]
     known = by_id(ids, places)
     order = list(known.values())

@@ -28,6 +28,7 @@ from .table import (
     by_id,
     lines_of,
     listed,
+    must,
     number,
     numbers,
     radii,
@@ -87,8 +88,7 @@ def _checked(frame: dict[str, _Item], which: str, rows: str = "ATOMS") -> int:
     number_of, what = f"NUMBER OF {rows}", rows.lower()
     needed = ["TIMESTEP", number_of, "BOX BOUNDS", rows]
     if missing := [name for name in needed if name not in frame]:
-        if missing == needed:
-            raise FormatError("is not a LAMMPS dump file of text, must have ITEM: TIMESTEP")
+        must(missing != needed, "is not a LAMMPS dump file of text, must have ITEM: TIMESTEP")
         raise FormatError(f"is not a whole LAMMPS dump file: the {which} lacks its number, box or {what}")
     for name, expected in {**_ITEMS, number_of: 1}.items():
         if name not in frame:
@@ -114,8 +114,7 @@ def _last_frame(path: Path, rows: str = "ATOMS") -> tuple[dict[str, _Item], str]
     frames = _frames(lines, rows)
     for k, one in enumerate(frames, start=1):
         count = _checked(one, "last frame" if k == len(frames) else f"frame {k} of {len(frames)}", rows)
-    if not whole:
-        raise FormatError("is cut: its last line has no end")
+    must(whole, "is cut: its last line has no end")
     if not count:
         raise FormatError(f"holds 0 of 0 {rows.lower()} in its last frame", frames[-1][rows].place)
     frame, last = frames[-1], len(frames)
@@ -128,8 +127,8 @@ def read_contacts(path: Path) -> list[tuple[list[float], str]]:
     The first two are ``patom1 patom2`` of ``compute property/local``, the others what ``compute pair/local`` has.
     """
     entries = _last_frame(path, "ENTRIES")[0]["ENTRIES"]
-    if len(entries.words) != len(_CONTACT):
-        raise FormatError(f"must have the six columns {' '.join(_CONTACT)}, not {len(entries.words)}", entries.place)
+    rule = f"must have the six columns {' '.join(_CONTACT)}, not {len(entries.words)}"
+    must(len(entries.words) == len(_CONTACT), rule, entries.place)
     return [(numbers(line.split(), _CONTACT, place), place) for place, line in entries.lines]
 
 
@@ -179,12 +178,10 @@ def read(path: Path) -> Table:
         return column(found[0]) if found else None
 
     sizes = {name: values for name in ("radius", "diameter") if (values := quantity(name)) is not None}
-    if not sizes:
-        raise FormatError(f"column radius or diameter is missing; there are {listed(names)}", heading)
+    must(sizes, f"column radius or diameter is missing; there are {listed(names)}", heading)
     radius = radii(sizes, places)
     mass, density = quantity("mass", "rmass"), quantity("density")
-    if mass is not None and density is not None:
-        raise FormatError("columns mass and density: must have one of them", heading)
+    must(mass is None or density is None, "columns mass and density: must have one of them", heading)
     if density is not None:
         mass = density * (2.0 * radius) ** 3  # of a sphere, as LAMMPS has it
     x, y, z = (coordinate(axis) for axis in range(3))
@@ -220,8 +217,8 @@ def _box(item: _Item) -> tuple[list[str], list[tuple[float, float]]]:
         names, words = [*_AXES, "origin"], words[2:]
     elif words[:3] == ["xy", "xz", "yz"]:
         names, words = ["lo", "hi", "tilt"], words[3:]
-    if len(words) not in (0, 3) or not all(re.fullmatch("[pfsm]{2}", word) for word in words):
-        raise FormatError("must be followed by three lines of bounds, and have flags of three axes or none", item.place)
+    rule = "must be followed by three lines of bounds, and have flags of three axes or none"
+    must(len(words) in (0, 3) and all(re.fullmatch("[pfsm]{2}", word) for word in words), rule, item.place)
     sides = []
     for axis, (place, line) in enumerate(item.lines):
         values = numbers(line.split(), names, place)

@@ -24,6 +24,12 @@ class FormatError(GranularError, ValueError):
         self.place = place
 
 
+def must(met: object, rule: str, place: str = "") -> None:
+    """Raise FormatError unless a condition is ``met``."""
+    if not met:
+        raise FormatError(rule, place)
+
+
 @dataclass(frozen=True)
 class FileBox:
     """What a file says of the box, in its unit of length and its coordinates; None is what it does not say.
@@ -66,11 +72,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Mark:
-    """The line by which our own tables say what their format has no place for, and by which a cut one is known.
-
-    Where a table has no header, damage to that line alone could make it a comment that takes the disk after it along:
-    there the last line repeats it.
-    """
+    """The line by which our own tables say what their format has no place for, and by which a cut one is known."""
 
     disks: int
     width: float
@@ -83,11 +85,6 @@ class Mark:
         return f"granular-response: {self.disks} disks, width {self.width!r}, sides {sides}"
 
     @property
-    def last_line(self) -> str:
-        """What repeats it at the end of a table."""
-        return f"end, {self}"
-
-    @property
     def box(self) -> FileBox:
         return FileBox(0.0, self.width, 0.0, self.periodic)
 
@@ -96,18 +93,13 @@ class Mark:
         """The mark in a line; None if it is another one."""
         match = cls._PATTERN.search(line)
         if match is None:
-            if "granular-response" in line.partition("#")[2]:
-                raise FormatError("is a damaged first line of a table of granular-response", place)
+            rule = "is a damaged first line of a table of granular-response"
+            must("granular-response" not in line.partition("#")[2], rule, place)
             return None
         width = number(match[2], "width", place)
         if width <= 0.0:
             raise FormatError(f"width = {shown(match[2])}: must be greater than 0", place)
         return cls(int(match[1]), width, match[3] == "periodic")
-
-    @staticmethod
-    def ends(line: str) -> bool:
-        """Whether a line with a mark is the one that repeats it."""
-        return line.lstrip("# ").startswith("end, ")
 
     def check(self, disks: int, whole: bool) -> None:
         """Raise FormatError unless there are as many disks as it says, and the last line is ``whole``."""
@@ -188,15 +180,14 @@ def numbers(cells: Sequence[str], names: Sequence[str], place: str) -> list[floa
 
 def bounds(low: float, high: float, axis: str, place: str) -> tuple[float, float]:
     """Where a box begins along an axis, and how far it reaches. Raises FormatError unless it is of some size."""
-    if not 0.0 < high - low < math.inf:
-        raise FormatError(f"bounds of the box in {axis}: the upper one must be greater than the lower one", place)
+    rule = f"bounds of the box in {axis}: the upper one must be greater than the lower one"
+    must(0.0 < high - low < math.inf, rule, place)
     return low, high - low
 
 
 def upright(turned: Sequence[float], place: str) -> None:
     """Raise FormatError unless all these components of the box's edges are 0."""
-    if any(turned):
-        raise FormatError("the box must not be tilted or turned, its edges must lie along x, y and z", place)
+    must(not any(turned), "the box must not be tilted or turned, its edges must lie along x, y and z", place)
 
 
 def by_id(ids: Sequence[str], places: Sequence[str]) -> dict[int, int]:
@@ -249,6 +240,5 @@ def upward(y: FloatArray, z: FloatArray) -> str:
     if len(y) == 0:
         return "z"
     flat_y, flat_z = np.ptp(y) == 0.0, np.ptp(z) == 0.0
-    if not flat_y and not flat_z:
-        raise FormatError("disks must lie in one plane, y or z must be the same for all")
+    must(flat_y or flat_z, "disks must lie in one plane, y or z must be the same for all")
     return "z" if flat_y and not (flat_z and z[0] == 0.0) else "y"

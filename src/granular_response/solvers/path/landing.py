@@ -39,7 +39,7 @@ def landed(leg: Leg, point: Point, rates: Rates) -> Point | None:
         left = leg.options.listed_again / fastest
     contact, length = rates.changes.first()
     aim = Aim(left, length, contact, int(rates.changes.what[contact]) if np.isfinite(length) else transitions.NOTHING)
-    for _ in range(leg.options.landings):
+    for _ in range(leg.options.tries):
         tried = _tried(leg, point, rates, aim)
         if not isinstance(tried, Aim):
             return tried
@@ -141,7 +141,7 @@ def smooth(
     factor = leg.target if at_end else point.factor + leg.direction * length
     q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
     before, enough, stalled = np.inf, NEWTON.enough if event is None else leg.passing, False
-    for done in range(leg.options.newton):
+    for done in range(leg.options.tries):
         along = abs(factor - point.factor)
         trial = system.trial(known, q, fixed=rates.sense, velocity=rates.velocity, length=along)
         force = trial.contact_force + external_force(leg.problem, factor)

@@ -45,11 +45,10 @@ class PathOptions:
     #: Newton steps of a landing above which the next rates have a factorisation of their own. Those of an old one miss
     #: events, and a landing is then tried again; a lower number asks for more factorisations than that spares.
     outdated: int = 2
-    #: Newton steps of an increment; with the 3/2 law, whose stiffness changes on the way, up to 12 were needed.
-    newton: int = 40
-    #: Times that an increment is shortened: to an event that came before the one expected, or to half of its length
-    #: where no equilibrium is found at its end.
-    landings: int = 40
+    #: Newton steps of an increment (with the 3/2 law, whose stiffness changes on the way, up to 12 were needed), and
+    #: times that it is shortened: to an event that came before the one expected, or to half of its length where no
+    #: equilibrium is found at its end.
+    tries: int = 40
     #: Points at one load after which no more are looked for there; 8 in turn were the most that led on.
     still: int = 30
     #: Load by which the next equilibrium is looked for, with limits of friction held fixed, where no statuses are found

@@ -5,7 +5,7 @@ beside it, the others one. ``.events.csv`` has the events on the way to them, ``
 leave them out. ``.lammps`` is an input script, with a ``.data`` beside it. Suffixes of ``scene.formats`` hold disks
 alone, which ``packing: {kind: file}`` reads again.
 
-Disks lie in the plane of the screen: file coordinates are (x, z, 0); YADE's are (x, 0, z), where gravity points to -z.
+Disks lie in the plane of the screen: file coordinates are (x, z, 0).
 Units are those of the result: mean disk radius, mean disk mass, g.
 """
 
@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ...errors import GranularError
+from ...errors import GranularError, require
 from ...scene import formats
 from .. import atomic
 from ..checked import read_result
@@ -44,20 +44,17 @@ _WRITERS: dict[str, tuple[Writer, str]] = {
     **dict.fromkeys(formats.SUFFIXES["csv"], (text.csv_table, "one")),
     **dict.fromkeys(formats.SUFFIXES["lammps-data"], (text.lammps_data, "one")),
     **dict.fromkeys(formats.SUFFIXES["lammps-dump"], (text.lammps_dump, "frames")),
-    **dict.fromkeys(formats.SUFFIXES["yade"], (text.yade, "one")),
 }
 #: Those that a scene reads again.
 _READ = {suffix for suffixes in formats.SUFFIXES.values() for suffix in suffixes}
 #: Those that take what ``gr.motion`` returns, which has no contacts.
-_OF_MOTION = (lammps.script, text.csv_table, text.lammps_data, text.yade)
+_OF_MOTION = (lammps.script, text.csv_table, text.lammps_data)
 #: What the name of a file may be that stands in its own text: as a word of LAMMPS, where quotes do not help against
 #: ``*``, ``%`` and ``&``, and as an attribute of XML.
 _NAMES = {
     ".lammps": (re.compile(r"[A-Za-z0-9._+=@,~-]+"), "letters a to z, digits and . _ + = @ , ~ -"),
     ".pvd": (re.compile(r"[^\x00-\x1f\x7f\ufffe\uffff]+"), "letters without line ends and other control characters"),
 }
-#: By which masses may differ from those of one material, relatively.
-_SAME_MASS = 1e-9
 #: What a file name may end with.
 SUFFIXES = tuple(sorted(_WRITERS))
 
@@ -80,8 +77,8 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
     does not exist or of a series of all, or a missing library, StoreError if the result cannot be read, ResultError if
     it is none.
 
-    Warns (UserWarning) of what a format that can be read again as a packing does not carry: masses, and the tangential
-    springs of contacts, from which friction goes on.
+    Warns (UserWarning) of what a format that can be read again as a packing does not carry: the tangential springs of
+    contacts, from which friction goes on.
 
     Examples
     --------
@@ -92,29 +89,27 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
     output = Path(output)
     double = "".join(output.suffixes[-2:])
     ending = double if double in _WRITERS else output.suffix
-    if ending not in _WRITERS:
-        raise ExportError(f"{output}: format {ending!r} is unknown, must be {' or '.join(SUFFIXES)}")
+    require(ending in _WRITERS, f"{output}: format {ending!r} is unknown, must be {' or '.join(SUFFIXES)}", ExportError)
     writer, states = _WRITERS[ending]
     pattern, letters = _NAMES.get(ending, (None, ""))
-    if pattern and not pattern.fullmatch(output.name):
-        raise ExportError(f"{output}: must have a name of {letters}, for it stands in the file")
-    if states == "every" and state is not None:
-        rule = "is a series of all states, must be left out (.vtu holds one state)"
-        raise ExportError(f"state = {state}: {output} {rule}")
+    rule = f"{output}: must have a name of {letters}, for it stands in the file"
+    require(not pattern or pattern.fullmatch(output.name), rule, ExportError)
+    rule = "is a series of all states, must be left out (.vtu holds one state)"
+    require(states != "every" or state is None, f"state = {state}: {output} {rule}", ExportError)
     if not isinstance(result, (str, os.PathLike, xr.Dataset)):
         result = result.to_dataset() if hasattr(result, "to_dataset") else xr.Dataset()
     read = [] if isinstance(result, xr.Dataset) else [result]
     dataset = result if isinstance(result, xr.Dataset) else read_result(result, sealed=False)
-    if not {"disk", "axis"} <= set(dataset.dims) or not {"state", "time"} & set(dataset.dims):
-        raise ExportError(f"{output}: must be written of a result, its file or dataset, or of what gr.motion returns")
+    rule = f"{output}: must be written of a result, its file or dataset, or of what gr.motion returns"
+    require({"disk", "axis"} <= set(dataset.dims) and {"state", "time"} & set(dataset.dims), rule, ExportError)
     if "state" not in dataset.dims:
         if writer not in _OF_MOTION:
             known = " or ".join(suffix for suffix, (one, _) in sorted(_WRITERS.items()) if one in _OF_MOTION)
             raise ExportError(f"{output}: a motion has no contacts, must be {known}")
         dataset = dataset.rename(time="state", load_factor="state_load_factor")
     count = dataset.sizes["state"]
-    if state is not None and not -count <= state < count:
-        raise ExportError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
+    rule = f"state = {state}: must be from {-count} to {count - 1}, there are {count} states"
+    require(state is None or -count <= state < count, rule, ExportError)
     # the first state stays: what a load adds is the difference from it
     chosen = chosen_states(dataset, [0, -1 if state is None else state]) if states == "one" else dataset
     only = {} if states != "frames" or state is None else {"only": state % count}
@@ -141,10 +136,6 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
 
 def _lost(state: xr.Dataset, writer: Writer) -> Iterator[str]:
     """What is another one where a file of one state is read as a packing."""
-    one_material = state["radius"].values ** 2
-    mass = state["mass"].values * np.mean(one_material) / np.mean(state["mass"].values)
-    if writer is text.yade and not np.allclose(mass, one_material, rtol=_SAME_MASS, atol=0.0):
-        yield "the format has no masses: read again, disks are of one material (.csv and others keep them)"
     if writer is lammps.script and lammps.wound_springs(state):
         return
     if "contact_spring" not in state:

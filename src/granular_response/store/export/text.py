@@ -1,4 +1,4 @@
-"""Files of text, every digit kept: disks for LAMMPS, YADE, OVITO (extended XYZ) and as CSV, contacts and events as CSV.
+"""Files of text, every digit kept: disks for LAMMPS, OVITO (extended XYZ) and as CSV, contacts and events as CSV.
 
 LAMMPS takes the mass of a sphere from density and volume, so the densities of its data files are those that give the
 stored masses.
@@ -36,15 +36,6 @@ def csv_table(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
     rows = _rows([state["position"].values, state["radius"].values, state["mass"].values], ",")
     head = f"# {mark(dataset)}, load factor {float(state['state_load_factor'])!r}"
     return _file(path, [head, "x,z,radius,mass", *rows])
-
-
-def yade(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
-    """The disks as spheres in the plane y = 0, in columns ``x y z r``."""
-    state = dataset.isel(state=-1)
-    x, z = state["position"].values.T
-    rows = _rows([x, np.zeros_like(x), z, state["radius"].values])
-    own = mark(dataset)
-    return _file(path, ["#format x_y_z_r", f"# {own}", *rows, f"# {own.last_line}"])
 
 
 def lammps_data(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
