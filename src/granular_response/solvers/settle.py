@@ -100,7 +100,7 @@ def settle(
         settled = relax(dynamics, replace(stop, maximum_steps=steps), gravity=gravity, progress=progress)
         if not settled.reached.settled and steps < stop.maximum_steps:
             first, spent = Reached(first_steps=steps, first_time_step=pace.time_step), steps
-            settled, pace = _in_step(settled, pace.integrator), later
+            settled, pace = in_step(settled, pace.integrator), later
             dynamics = Dynamics(problem, settled, *pace[:2])
             settled = relax(dynamics, left(), progress=progress)
     why = ""
@@ -142,7 +142,7 @@ def not_settled(problem: Problem, state: State, what: str) -> str:
     )
 
 
-def _in_step(settled: State, integrator: str) -> State:
+def in_step(settled: State, integrator: str) -> State:
     """A state in motion with its disks where its springs, which are ahead of them, are already."""
     time = INTEGRATORS[integrator].lead * (settled.reached.time_step or 0.0)
     position, angle = settled.position + time * settled.velocity, settled.angle + time * settled.angular_velocity
@@ -152,7 +152,7 @@ def _in_step(settled: State, integrator: str) -> State:
 def _statics(problem: Problem, settled: State, integrator: str) -> State:
     """The equilibrium beside a nearly settled state: without friction the minimum of the energy."""
     if problem.rotations:
-        start = problem.with_static_forces(_in_step(settled, integrator))
+        start = problem.with_static_forces(in_step(settled, integrator))
         return finish(problem, start, maximum_iterations=OPTIONS.tries)
     found = minimise(problem, problem.relisted(settled), load_factor=settled.load_factor)
     return replace(found, reached=found.reached.after(settled.reached))
