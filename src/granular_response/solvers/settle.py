@@ -15,7 +15,7 @@ from ..kernels.integrators import INTEGRATORS
 from ..state import FloatArray, Reached, State
 from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
-from .equilibrium import OPTIONS, finish
+from .equilibrium import OPTIONS, finish, overlap_at_start
 from .problem import Problem
 from .stability import Spectrum
 from .system import StaticSystem
@@ -135,10 +135,13 @@ def settle(
 
 def not_settled(problem: Problem, state: State, what: str) -> str:
     """The message for a packing that is still moving under ``what``."""
-    return (
-        f"the packing did not come to rest under {what} within protocol.maximum_steps = "
-        f"{problem.scene.protocol.maximum_steps} (kinetic energy {state.reached.kinetic_energy:.1e} per disk)"
-        + (f"; {problem.too_soft}" if problem.too_soft else "")
+    why = [problem.too_soft, "" if what == "load" else overlap_at_start(problem)]
+    return "; ".join(
+        [
+            f"the packing did not come to rest under {what} within protocol.maximum_steps = "
+            f"{problem.scene.protocol.maximum_steps} (kinetic energy {state.reached.kinetic_energy:.1e} per disk)",
+            *filter(None, why),
+        ]
     )
 
 
