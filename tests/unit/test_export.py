@@ -330,6 +330,35 @@ def test_a_script_for_lammps_has_the_laws_the_box_and_the_load(tmp_path):
     assert again.n == 20 and "read_data in.data" in lines
 
 
+def test_the_example_for_lammps_writes_what_springs_are_read_from(tmp_path):
+    """Run by LAMMPS of 22 Jul 2025. Its last lines and those of a script that is exported have the same columns."""
+    ours = lammps_lines({"wall.friction": 0.1}, tmp_path / "in.lammps", 0)
+    example = (ROOT / "examples" / "pour.lammps").read_text().splitlines()
+
+    def line(lines, start):
+        (found,) = (one for one in lines if one.startswith(start))
+        return found
+
+    for same in ("compute pair ", "compute bears ", "dump_modify bears "):
+        assert line(example, same) == line(ours, same)
+    assert line(example, "dump bears ").split()[6:] == line(ours, "dump bears ").split()[6:]
+    disks = [word for word in line(ours, "write_dump ").split()[4:] if word not in ("vx", "vy", "omegaz")]
+    assert line(example, "write_dump ").split()[4:] == disks
+    for fix in ("fix floor ", "fix sides "):
+        assert line(example, fix).split()[:5] == line(ours, fix).split()[:5]
+    last = line(example, "run ").split()[1]
+    assert line(example, "dump bears ").split()[4] == last
+
+
+def test_a_motions_script_for_lammps_has_its_time_step(tmp_path):
+    """And not that of a fall, which does not resolve collisions."""
+    described = {"loads": [], "contact": {"normal_stiffness": 1e5}}
+    ball = gr.Scene.from_arrays([5.0], [1.1], 1.0, width=10.0, vz=-0.5, scene=described)
+    moved = gr.motion(ball, [0.01], progress=False)
+    lines = gr.export(moved, tmp_path / "in.lammps", state=0).read_text().splitlines()
+    assert [one for one in lines if one.startswith("timestep")] == [f"timestep {moved.attrs['time_step']!r}"]
+
+
 def test_a_script_for_lammps_of_a_loaded_state_keeps_its_load(tmp_path):
     lines = lammps_lines(
         {"packing.sides": "periodic", "wall.friction": 0.2, "loads.0.force": [0.0, -1.0]}, tmp_path / "in.lammps"

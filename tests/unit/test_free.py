@@ -4,11 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from small_scenes import free_disks
 
 import granular_response as gr
 from granular_response.observe.broke_in import broke_in
-from granular_response.solvers import solution
+from granular_response.scene.arrays import LEAST_MASS
+from granular_response.solvers import free, path, rates, solution
+from granular_response.solvers.equilibrium import external_force
 from granular_response.solvers.solution import Solution
+from granular_response.solvers.system import StaticSystem
 
 FAR = np.linspace(0.05, 1.0, 20)
 
@@ -58,6 +62,22 @@ def test_disks_that_roll_freely_are_named_and_those_that_do_not_are_not():
     assert 3 in result.certificate.undetermined
     slab = gr.Scene(packing=gr.Slab(layers=4, disks_per_row=9), contact=gr.Contact(friction=0.2))
     assert [one.undetermined for one in gr.solve(slab, progress=False).certificates] == [(), ()]
+
+
+def test_forces_that_are_none_are_those_of_events():
+    """A contact bears nothing up to the force that an event leaves, and a residual moves no disk that may fall."""
+    passing = path.OPTIONS.passing
+    assert free.OPTIONS.bare == passing and rates.OPTIONS.bare == pytest.approx(10.0 * passing)
+    assert free.OPTIONS.residual == pytest.approx(0.1 * LEAST_MASS)
+
+
+@pytest.mark.parametrize("part", [3e-4, 3e-3])
+def test_a_step_is_suspicious_from_a_thousandth_of_one_along_a_null_direction(part):
+    alone, state = free_disks([[500.0, 50.0]])
+    equations = StaticSystem(alone, state)
+    trial = equations.trial(equations.start(state), equations.start(state).q)
+    fall = np.abs(equations.step(trial, external_force(alone, 0.0))).max()  # of a disk in the air, under its weight
+    assert free.suspicious(equations, part * fall, 1.0) == (part > 1e-3)
 
 
 def test_a_periodic_slab_rolls_on_a_rough_floor_as_a_whole():

@@ -1,5 +1,6 @@
 """Disks that a user gives: how far they move from there, and measured ones, whose overlaps are taken out first."""
 
+import re
 import warnings
 
 import numpy as np
@@ -41,13 +42,31 @@ def test_measured_disks_that_are_thrown_about_say_so(tmp_path):
     assert far.max() > 1.0
     (line,) = said
     assert line.startswith(f"disk {far.argmax()} comes to rest {far.max():.2g} mean radii from where it was given")
-    assert "overlaps of up to 0.14, which packing.overlaps: removed takes out gently" in line
+    assert re.search(r"; disks \d+ and \d+ overlap by 0\.1\d+ mean radii at the start, which packing\.overlaps: ", line)
     shown = f"moved from the given places: median {np.median(far):.2g}, largest {far.max():.2g} mean radii"
     assert shown in repr(result) and shown.split(": ")[1] in result._repr_html_()
     result.save(tmp_path / "a.nc")
     opened = gr.open_result(tmp_path / "a.nc")
     assert repr(opened) == repr(result)
     assert "from where they were given" in "\n".join(map(str, summarise(tmp_path / "a.nc")))
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "named"),
+    [
+        (0.5, 1.0, "disk 1 and the left wall overlap by 0.5 mean radii"),
+        (3.0, 0.5, "disk 1 and the floor overlap by 0.5 mean radii"),
+        (3.4, 1.0, "disks 0 and 1 overlap by 0.4 mean radii"),
+    ],
+)
+def test_an_overlap_that_shoots_disks_away_is_named(x, z, named):
+    """The deepest of all, in the warning of an equilibrium elsewhere and where none is found."""
+    described = {"loads": [], "contact": {"friction": 0.3}, "wall": {"friction": 0.3}}
+    pressed = gr.Scene.from_arrays([5.0, x, 6.995], [1.0, z, 1.0], 1.0, width=12.0, scene=described)
+    with pytest.warns(UserWarning, match=rf"; {named} at the start, which packing\.overlaps: removed takes out"):
+        gr.solve(pressed.updated({"contact.normal_stiffness": 3e4}), progress=False)
+    with pytest.raises(gr.SolveError, match=rf"did not come to rest under gravity.*; {named} at the start"):
+        gr.solve(pressed.updated({"protocol.maximum_steps": 200}), progress=False)
 
 
 def test_without_their_overlaps_they_stay_where_they_were_measured():

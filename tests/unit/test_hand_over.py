@@ -16,7 +16,7 @@ from granular_response.solvers.dynamics import OPTIONS, Dynamics, Relaxation, St
 from granular_response.solvers.equilibrium import OPTIONS as STATICS
 from granular_response.solvers.equilibrium import external_force, newton
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.settle import _in_step, _statics
+from granular_response.solvers.settle import _statics, in_step
 from granular_response.solvers.solution import rest_state
 from granular_response.solvers.timestep import expected_fall, long_fall, resolve_time_step, stability_limit
 from granular_response.state import State
@@ -161,7 +161,7 @@ def test_a_try_that_goes_round_in_a_circle_with_whole_steps_backtracks(monkeypat
     motion = Dynamics(problem, problem.bare_state())
     motion.set_ramps()
     motion.advance(6500)
-    start = problem.with_static_forces(_in_step(motion.state(), "beeman"))
+    start = problem.with_static_forces(in_step(motion.state(), "beeman"))
     system, known = started(problem, start)
     external = external_force(problem, 0.0)
     assert not newton(system, known, external)[1].converged

@@ -205,6 +205,20 @@ class Growing(Cohesive):
         return 0.5 * self.normal_stiffness * overlap * overlap
 
 
+class Unlike(Cubic):
+    """Of which walls have a geometry factor, and disks have none."""
+
+    def shapes(self, first, second):
+        return np.ones(len(first)) if second is None else None
+
+
+class OneShape(Cubic):
+    """With one geometry factor for all contacts."""
+
+    def shapes(self, first, second):
+        return 0.5
+
+
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
@@ -215,6 +229,17 @@ class Growing(Cohesive):
 def test_a_law_that_contradicts_itself_is_refused(wrong, said):
     refuses(gr.GranularError, said, gr.register_law, "wrong", wrong)
     assert "wrong" not in KNOWN_LAWS
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (Unlike, r"Unlike: shapes is None for two disks or for a disk and a wall, must be for both or for neither$"),
+        (OneShape, r"OneShape: shapes is 0\.5 for 3 contacts, must be as many finite numbers$"),
+    ],
+)
+def test_a_law_whose_geometry_factors_do_not_fit_is_refused(wrong, said):
+    refuses(gr.GranularError, said, gr.register_law, "wrong", wrong)
 
 
 def test_parameters_with_which_a_law_contradicts_itself_are_refused():

@@ -10,6 +10,7 @@ import granular_response as gr
 from granular_response.solvers import taps
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import rest_state
+from granular_response.state import State
 
 
 def test_a_collision_keeps_momentum_and_its_restitution():
@@ -142,31 +143,78 @@ def test_a_collision_that_slides_turns_a_disk(friction, degrees, spin):
     assert found == pytest.approx([vx - way, -vz, spin - 2.0 * way], abs=2e-4)
 
 
+def a_tap_of_one_disk(monkeypatch, amplitude: float, k: float, zeta: float, **keys) -> tuple[State, State, np.ndarray]:
+    """The disk when three quarters of a tap are over, at rest, and (looks, 4) from then on: t, z, its velocity and
+    acceleration."""
+    thrown, seen = [], []
+
+    def landing(dynamics, stop, **ramps):
+        def look(dynamics, energy):
+            seen.append([dynamics.time, dynamics.position[0, 1], dynamics.v[1], dynamics.history[0][1]])
+
+        thrown.append(dynamics.state())
+        return whole(dynamics, stop, progress=look, **ramps)
+
+    law = {"friction": 0.3, "normal_stiffness": k, "damping_ratio": zeta}
+    taps_of = {"taps": {"number": 1, "amplitude": amplitude, "duration": 3.0}}
+    scene = {"loads": [], "contact": law, "preparation": taps_of, "protocol": keys}
+    whole = taps.relax
+    monkeypatch.setattr(taps, "relax", landing)
+    found = rest_state(Problem.from_scene(gr.Scene.from_arrays([5.0], [1.0], 1.0, width=10.0, scene=scene)))
+    return thrown[0], found, np.array(seen)
+
+
 @pytest.mark.parametrize("k", [3e3, 1e6])
 @pytest.mark.parametrize("amplitude", [1.5, 3.0])
 def test_a_tap_throws_a_disk_off(monkeypatch, amplitude, k):
     """Gravity in the box falls from 1 + A to 1 - A within T / 2 and changes its sign t = (A - 1) T / (4 A) before the
     end: then the disk has the speed 2 A t^2 / T and the height 2 A t^3 / (3 T). On its spring it follows the wave by
     sqrt(1 / (2 k)) late or early: so much in t."""
-    thrown = []
-
-    def settle(problem, state, *args, **changes):
-        thrown.append(state)
-        return whole(problem, state, *args, **changes)
-
-    duration = 3.0
-    wave = {"number": 1, "amplitude": amplitude, "duration": duration}
-    law = {"friction": 0.3, "normal_stiffness": k}
-    scene = {"loads": [], "contact": law, "preparation": {"taps": wave}}
-    whole = taps.settle
-    monkeypatch.setattr(taps, "settle", settle)
-    found = rest_state(Problem.from_scene(gr.Scene.from_arrays([5.0], [1.0], 1.0, width=10.0, scene=scene)))
-    t, late = (amplitude - 1.0) * duration / (4.0 * amplitude), 1.0 / math.sqrt(2.0 * k)
-    speed, height = 2.0 * amplitude * t**2 / duration, 2.0 * amplitude * t**3 / (3.0 * duration)
-    (state,) = thrown
+    state, found, _ = a_tap_of_one_disk(monkeypatch, amplitude, k, 0.5)
+    t, late = (amplitude - 1.0) * 3.0 / (4.0 * amplitude), 1.0 / math.sqrt(2.0 * k)
+    speed, height = 2.0 * amplitude * t**2 / 3.0, 2.0 * amplitude * t**3 / 9.0
     assert state.velocity[0, 1] == pytest.approx(speed, rel=2.0 * late / t)
     assert state.position[0, 1] - 1.0 == pytest.approx(height, rel=3.0 * late / t)
     assert found.position[0, 1] == pytest.approx(1.0 - 0.5 / k, abs=1e-9)
+
+
+@pytest.mark.parametrize("zeta", [0.1, 0.5])
+@pytest.mark.parametrize("amplitude", [2.0, 3.0])
+def test_a_disk_lands_from_a_tap_with_its_restitution(monkeypatch, amplitude, zeta):
+    """It flies on while gravity g(t) grows from 1 - A to 1 in T / 4 and stays there: z'' = -g(t), integrated twice,
+    gives the speed with which it comes down. Its overlap d with the floor follows d'' = 1 - 2 zeta w d' - w^2 d up to
+    d = 0, w^2 = 2 k; without weight it would leave with exp(-pi zeta / sqrt(1 - zeta^2)) of that speed. Within 1e-3."""
+    k, quarter = 1e6, 0.75
+    state, _, seen = a_tap_of_one_disk(monkeypatch, amplitude, k, zeta)
+    least, (z, v) = 1.0 - amplitude, (state.position[0, 1] - 1.0, state.velocity[0, 1])
+    v_end = v - 0.5 * (least + 1.0) * quarter
+    z_end = z + v * quarter - (0.5 * least + (1.0 - least) / 6.0) * quarter**2
+    assert z_end > 0.0  # it comes down later
+    down = math.sqrt(v_end**2 + 2.0 * z_end)
+    own = math.sqrt(2.0 * k)
+
+    def parts(_, d):
+        return d[0]
+
+    parts.terminal, parts.direction = True, -1
+    leaves = solve_ivp(
+        lambda _, d: [d[1], 1.0 - 2.0 * zeta * own * d[1] - own**2 * d[0]],
+        (0.0, 2.0 * math.pi / own), [0.0, down], events=parts, rtol=1e-10, atol=1e-14,
+    )  # fmt: skip
+    lands, up = quarter + v_end + down, -leaves.y[1, -1]
+    time, height, speed, _ = seen[(seen[:, 0] > lands) & (seen[:, 0] < lands + up) & (seen[:, 1] > 1.0)].T
+    assert len(time) > 20
+    np.testing.assert_allclose(np.sqrt(speed**2 + 2.0 * (height - 1.0)), up, atol=1e-3 * down)
+
+
+def test_a_tap_ends_once_its_disks_have_landed(monkeypatch):
+    """Where accelerations stay below 0.1 g, and not much later: what is left is a swing in which contacts stay closed.
+
+    The swing of a disk of damping ratio 0.02 on the floor falls by 6 % in each half."""
+    *_, seen = a_tap_of_one_disk(monkeypatch, 2.0, 3e3, 0.02)
+    acceleration = np.abs(seen[:, 3])
+    assert acceleration[-10:].max() < 0.1
+    assert acceleration[-60:-10].max() > 0.1
 
 
 @pytest.mark.parametrize("speed", [1.0, 5.0, 20.0])

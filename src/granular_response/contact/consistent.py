@@ -26,6 +26,8 @@ BODIES = ((1.0, 1.0), (0.8, 1.1), (1.0, None))
 
 def contradiction(law: Law) -> str:
     """What in a law contradicts itself, in words; nothing if all its parts belong together."""
+    if said := _shapes(law):
+        return said
     for first, second in BODIES:
         shapes = law.shapes(np.array([first]), None if second is None else np.array([second]))
         shape = None if shapes is None else float(shapes[0])
@@ -33,6 +35,18 @@ def contradiction(law: Law) -> str:
             said = _at(law, overlap, shape)
             if said and _at(law, 1.03 * overlap, shape):
                 return said
+    return ""
+
+
+def _shapes(law: Law) -> str:
+    """The same of its geometry factors: contacts of disks and of walls are in one list, which has them or has none."""
+    radii = np.array([first for first, _ in BODIES])
+    between, at_wall = law.shapes(radii, radii[::-1]), law.shapes(radii, None)
+    if (between is None) != (at_wall is None):
+        return "shapes is None for two disks or for a disk and a wall, must be for both or for neither"
+    for found in () if between is None else (between, at_wall):
+        if np.shape(found) != radii.shape or np.asarray(found).dtype.kind != "f" or not np.isfinite(found).all():
+            return f"shapes is {found!r} for {len(radii)} contacts, must be as many finite numbers"
     return ""
 
 

@@ -33,7 +33,7 @@ Integrator = Literal["beeman", "verlet", "leapfrog", "gear"]
 class Taps(Description):
     """Taps of a packing at rest, one after another: one period of a triangular wave of vertical acceleration, up first.
 
-    Up to 1 g contacts stay closed; beyond it they may open.
+    Beyond 1 g disks leave each other. Waves through a deep packing open contacts below 1 g too.
 
     Examples
     --------

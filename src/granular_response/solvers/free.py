@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..linalg import Factor
+from ..scene.arrays import LEAST_MASS
 from ..state import OPEN, FloatArray
 from .system import OPTIONS as SYSTEM
 from .system import StaticSystem, Trial
@@ -23,18 +24,17 @@ from .system import StaticSystem, Trial
 class FreeOptions:
     """Numbers by which motions without resistance are told from soft ones."""
 
-    #: Displacement per force, in units of the inverse normal stiffness, from which on a step may go along a null
-    #: direction: the softest directions of packings have up to 1e5, a null direction 1e10.
-    soft: float = 1e7
+    #: Displacement per force, over that along a null direction, from which on a step may go along one: the softest
+    #: directions of packings have up to 1e-5.
+    soft: float = 1e-3
     #: Force (mean weights) along a null direction up to which it is a residual, and moves nothing. The lightest disk
-    #: that is allowed weighs ten times that, and falls.
-    residual: float = 1e-7
-    #: Normal force (mean weights) up to which a contact bears nothing, as of ``PathOptions.passing``: it is no tie,
+    #: that is allowed weighs more, and falls.
+    residual: float = 0.1 * LEAST_MASS
+    #: Normal force (mean weights) up to which a contact bears nothing, that of ``PathOptions.passing``: it is no tie,
     #: as it may open.
     bare: float = 1e-8
-    #: Random vectors, and times that the tangent's inverse takes from them what some stiffness resists: a direction of
-    #: 1e-4 mean weights per mean radius keeps 3e-8 of itself, a null direction all.
-    vectors: int = 3
+    #: Times that the tangent's inverse takes from a random vector what some stiffness resists: at the default stiffness
+    #: a direction of 1e-4 mean weights per mean radius keeps 3e-8 of itself, a null direction all.
     times: int = 3
     #: Part of itself that a vector keeps from which on a disk moves freely.
     part: float = 1e-6
@@ -45,7 +45,7 @@ OPTIONS = FreeOptions()
 
 def suspicious(system: StaticSystem, step: float, force: float) -> bool:
     """Whether a ``step`` is so large for its ``force`` that it may go along a direction that nothing resists."""
-    return step * system.problem.stiffness > OPTIONS.soft * force
+    return step * SYSTEM.regularisation * system.problem.stiffness > OPTIONS.soft * force
 
 
 def least(system: StaticSystem, solve: Callable[[FloatArray], FloatArray], step: FloatArray) -> FloatArray:
@@ -99,12 +99,11 @@ def free_disks(system: StaticSystem, trial: Trial) -> tuple[int, ...]:
     idle[:, :2] = False
     matrix.data[places.diagonal] += np.where(idle.ravel(), problem.stiffness, 0.0)
     factor = system.storage.factor(places.with_shift(matrix, regularised))
-    # what is left of random vectors along null directions
-    left = np.random.default_rng(0).standard_normal((OPTIONS.vectors, system.dof))
+    # what is left of a random vector along null directions
+    left = np.random.default_rng(0).standard_normal(system.dof)
     for _ in range(OPTIONS.times):
         left = regularised * factor.solve(left)
         if float(np.abs(left).max()) < OPTIONS.part:
             return ()
-    moved = np.stack([system.deinterleave(one) for one in left])
-    size = np.abs(moved).reshape(-1, problem.n).max(axis=0)
+    size = np.abs(system.deinterleave(left)).reshape(-1, problem.n).max(axis=0)
     return tuple(np.flatnonzero(size > OPTIONS.part).tolist())

@@ -15,7 +15,7 @@ from ..kernels.integrators import INTEGRATORS
 from ..state import FloatArray, Reached, State
 from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
-from .equilibrium import OPTIONS, finish
+from .equilibrium import OPTIONS, finish, overlap_at_start
 from .problem import Problem
 from .stability import Spectrum
 from .system import StaticSystem
@@ -100,7 +100,7 @@ def settle(
         settled = relax(dynamics, replace(stop, maximum_steps=steps), gravity=gravity, progress=progress)
         if not settled.reached.settled and steps < stop.maximum_steps:
             first, spent = Reached(first_steps=steps, first_time_step=pace.time_step), steps
-            settled, pace = _in_step(settled, pace.integrator), later
+            settled, pace = in_step(settled, pace.integrator), later
             dynamics = Dynamics(problem, settled, *pace[:2])
             settled = relax(dynamics, left(), progress=progress)
     why = ""
@@ -135,14 +135,17 @@ def settle(
 
 def not_settled(problem: Problem, state: State, what: str) -> str:
     """The message for a packing that is still moving under ``what``."""
-    return (
-        f"the packing did not come to rest under {what} within protocol.maximum_steps = "
-        f"{problem.scene.protocol.maximum_steps} (kinetic energy {state.reached.kinetic_energy:.1e} per disk)"
-        + (f"; {problem.too_soft}" if problem.too_soft else "")
+    why = [problem.too_soft, "" if what == "load" else overlap_at_start(problem)]
+    return "; ".join(
+        [
+            f"the packing did not come to rest under {what} within protocol.maximum_steps = "
+            f"{problem.scene.protocol.maximum_steps} (kinetic energy {state.reached.kinetic_energy:.1e} per disk)",
+            *filter(None, why),
+        ]
     )
 
 
-def _in_step(settled: State, integrator: str) -> State:
+def in_step(settled: State, integrator: str) -> State:
     """A state in motion with its disks where its springs, which are ahead of them, are already."""
     time = INTEGRATORS[integrator].lead * (settled.reached.time_step or 0.0)
     position, angle = settled.position + time * settled.velocity, settled.angle + time * settled.angular_velocity
@@ -152,7 +155,7 @@ def _in_step(settled: State, integrator: str) -> State:
 def _statics(problem: Problem, settled: State, integrator: str) -> State:
     """The equilibrium beside a nearly settled state: without friction the minimum of the energy."""
     if problem.rotations:
-        start = problem.with_static_forces(_in_step(settled, integrator))
+        start = problem.with_static_forces(in_step(settled, integrator))
         return finish(problem, start, maximum_iterations=OPTIONS.tries)
     found = minimise(problem, problem.relisted(settled), load_factor=settled.load_factor)
     return replace(found, reached=found.reached.after(settled.reached))

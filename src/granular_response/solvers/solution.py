@@ -18,7 +18,7 @@ from ..state import FloatArray, State
 from .choice import Choice
 from .dynamics import Dynamics, Stop, relax
 from .energy import minimise
-from .equilibrium import certify, check_overlaps, finish, reaction
+from .equilibrium import certify, check_overlaps, finish, overlap_at_start, reaction
 from .idle import idle_settings
 from .path import follow
 from .path.events import lost, side
@@ -41,9 +41,8 @@ SNAPPED = 0.1
 #: Part of a response that may be rounding, from which on that is said.
 ROUNDED = 1e-3
 
-#: Distance from its given place (mean radii) from which on it is said that a disk has moved, and overlap of disks at
-#: the start from which on that may be why.
-FAR_FROM_GIVEN, OVERLAPS_OF_NOISE = 0.5, 0.01
+#: Distance from its given place (mean radii) from which on it is said that a disk has moved.
+FAR_FROM_GIVEN = 0.5
 
 #: Distance from which on it is said that a packing that was given with its springs was not at rest; what LAMMPS left
 #: there moves by 2e-6 at most.
@@ -130,11 +129,7 @@ class Solution:
                 f"disk {disk} comes to rest {moved[disk]:.2g} mean radii from where it was given: with packing.springs "
                 "disks must be at rest under gravity alone, with the contact law of the scene"
             )
-        cure = "are they whole, and do floor and walls stand where they did?"
-        bare = replace(self.problem, packing=replace(self.problem.packing, contacts=None)).bare_state()
-        pressed = float(bare.pairs.overlap.max(initial=0.0))
-        if pressed > OVERLAPS_OF_NOISE and getattr(self.scene.packing, "overlaps", "removed") == "kept":
-            cure = f"they begin with overlaps of up to {pressed:.2g}, which packing.overlaps: removed takes out gently"
+        cure = overlap_at_start(self.problem) or "are they whole, and do floor and walls stand where they did?"
         return (
             f"disk {disk} comes to rest {moved[disk]:.2g} mean radii from where it was given, half of the disks "
             f"move by more than {np.median(moved):.2g}; {cure}"

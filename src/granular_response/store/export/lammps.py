@@ -112,7 +112,8 @@ def script(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
     wall = model(problem.wall_law, problem.wall_rolling)
     first, last = float(state["state_load_factor"]), scene.protocol.load_factors[-1]
     moving = "loaded_disk" not in state  # of a motion, in which loads have begun to grow
-    step, ramp = resolve_time_step(problem), scene.protocol.ramp_time * (last - first if moving else 1.0)
+    step = float(dataset.attrs["time_step"]) if moving else resolve_time_step(problem)
+    ramp = scene.protocol.ramp_time * (last - first if moving else 1.0)
     steps = max(round(ramp / step), 1)
     file, slips = path.with_suffix(".data"), path.with_suffix(".slip")
     made = lammps_data(dataset, file)
