@@ -175,6 +175,8 @@ def ensemble_scene(parameters: EnsembleGroup, case: Case, realization: int) -> S
     ``longest_time_step``: without friction the limit is far beyond what the collisions of the fall need.
     """
     changes = material(case.polydispersity, realization, case.friction, case.wall_friction)
+    if case.gravity_ramp is not None:
+        changes |= {"preparation.gravity": "slow", "preparation.ramp_time": case.gravity_ramp}
     scene = parameters.base.updated(changes | {"packing.lattice_constant": case.lattice_constant})
     limit = stability_limit(Problem.from_scene(scene), smallest=True)
     step = min(parameters.time_step_part * limit, parameters.longest_time_step)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
-from granular_response.scene.base import Count, Description, Ratio
+from granular_response.scene.base import Count, Description, Positive, Ratio
 from granular_response.scene.lattice import LatticeConstant
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
 from granular_response_paper.parameters import Coefficients, Growing, some
@@ -24,6 +24,7 @@ class Cases(Description):
         default=None, description="Of the starts; null: that of the scene."
     )
     wall_friction: Ratio | None = Field(default=None, description="null: the same as between disks.")
+    gravity_ramp: Positive | None = Field(default=None, description="In sqrt(R/g); null: gravity acts at once.")
     realizations: Count | None = Field(default=None, description="null: those of the survey.")
 
 
@@ -40,5 +41,6 @@ class Parameters(EnsembleGroup):
             starts = entry.lattice_constants or (self.lattice_constant,)
             number = entry.realizations or self.realizations
             for delta, mu, start in product(entry.polydispersities, entry.frictions, starts):
-                found.append(Case(delta, mu, start, entry.forces, number if delta else 1, entry.wall_friction))
+                own = (number if delta else 1, entry.wall_friction, entry.gravity_ramp)
+                found.append(Case(delta, mu, start, entry.forces, *own))
         return found
