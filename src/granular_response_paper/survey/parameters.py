@@ -15,7 +15,7 @@ from granular_response_paper.parameters import Coefficients, Growing, some
 
 
 class Cases(Description):
-    """Every combination of polydispersities, frictions and starts under the same forces."""
+    """Every combination of polydispersities, frictions, starts and ramps of gravity under the same forces."""
 
     polydispersities: Spreads
     frictions: Coefficients
@@ -24,7 +24,9 @@ class Cases(Description):
         default=None, description="Of the starts; null: that of the scene."
     )
     wall_friction: Ratio | None = Field(default=None, description="null: the same as between disks.")
-    gravity_ramp: Positive | None = Field(default=None, description="In sqrt(R/g); null: gravity acts at once.")
+    gravity_ramps: Annotated[tuple[Positive, ...], AfterValidator(some)] | None = Field(
+        default=None, description="Over which gravity grows, in sqrt(R/g); null: it acts at once."
+    )
     realizations: Count | None = Field(default=None, description="null: those of the survey.")
 
 
@@ -40,7 +42,8 @@ class Parameters(EnsembleGroup):
         for entry in self.blocks[block]:
             starts = entry.lattice_constants or (self.lattice_constant,)
             number = entry.realizations or self.realizations
-            for delta, mu, start in product(entry.polydispersities, entry.frictions, starts):
-                own = (number if delta else 1, entry.wall_friction, entry.gravity_ramp)
-                found.append(Case(delta, mu, start, entry.forces, *own))
+            ramps = entry.gravity_ramps or (None,)
+            for delta, mu, start, ramp in product(entry.polydispersities, entry.frictions, starts, ramps):
+                packings = number if delta else 1
+                found.append(Case(delta, mu, start, entry.forces, packings, entry.wall_friction, ramp))
         return found
