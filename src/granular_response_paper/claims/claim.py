@@ -66,7 +66,6 @@ MEANINGS: dict[Kind, str] = {
 ROWS = {
     "statement": "statements",
     "check": "checks of the code, which can hardly fail",
-    "derivation": "derivations, which no simulation can fail",
 }
 
 
@@ -118,7 +117,7 @@ class Claim:
     primary: str = ""
     figures: Sequence[int] = ()
     source: Literal["paper", "literature", "hypothesis"] = "paper"
-    row: Literal["statement", "check", "derivation"] = "statement"
+    row: Literal["statement", "check"] = "statement"
     modal: bool = False
     disorder: bool = False
     finds: Kind | Literal["any"] = "supported"

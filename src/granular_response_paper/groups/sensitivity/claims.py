@@ -1,4 +1,4 @@
-"""Claims N9 and N11: what other laws and dampings change in the response under one force (Sec. III.B)."""
+"""Claim N9: what another contact law changes in the response under one force (Sec. III.B)."""
 
 from __future__ import annotations
 
@@ -33,18 +33,3 @@ def linear_forces(data: Data) -> Numbers:
     for mu in (0.2, 1.0):
         yield f"friction {mu:g}", _difference(data, mu, "hertz")
 
-
-@claim(
-    "N11", "III.B", Ask("largest difference per largest response with dashpots halved", at_most("visible"), "%"),
-    primary="friction 0.2", finds="not supported", figures=[]
-)  # fmt: skip
-def irrelevant(data: Data) -> Numbers:
-    """This value was found to produce the fastest relaxation of the system towards static equilibrium and is irrelevant
-    in the state of mechanical equilibrium itself.
-    Short: Damping is irrelevant in mechanical equilibrium
-    Here: With dashpots of half the strength the response under 15 mg differs by {0} of its peak at friction 0.2 and by
-    {friction 1|0} at friction 1: which equilibrium is reached depends on them.
-    Remark: No dashpot acts in an equilibrium, but with friction the one that is reached depends on the motion before.
-    The first half of the sentence is N6"""
-    for mu in (0.2, 1.0):
-        yield f"friction {mu:g}", _difference(data, mu, "damping_halved")

@@ -15,7 +15,7 @@ from granular_response_paper.records import column, record, stacked, table, vari
 from granular_response_paper.survey.crossover import CONFIDENCE, LEVELS, Ensemble, shapes_of_samples, weights
 
 #: Coordinates of a case.
-CASE = ("polydispersity", "friction", "wall_friction", "lattice_constant", "realizations")
+CASE = ("polydispersity", "friction", "wall_friction", "lattice_constant", "gravity_ramp", "realizations")
 CONTACTS = ("horizontal_contacts", "oblique_contacts")
 _BOOTSTRAPPED = "quantiles of the bootstrapped mean"
 
@@ -44,8 +44,8 @@ def starts_of(source: xr.Dataset, packings: xr.Dataset, asked: Parameters) -> li
     found: list[Start] = []
     lattice, constant = packings.isel(case=0, realization=0), packings["lattice_constant"].values
     for one in asked.compared:
-        alike = np.isclose(source["polydispersity"].values, one.polydispersity)[:, None]
-        places = np.argwhere(alike & np.isclose(source["force"].values, one.force)).tolist()
+        alike = np.isclose(source["polydispersity"].values, one.polydispersity) & (source["gravity_ramp"].values == "")
+        places = np.argwhere(alike[:, None] & np.isclose(source["force"].values, one.force)).tolist()
         if not places:
             had = f"polydispersity {one.polydispersity:g} and a force of {one.force:g}"
             raise ValueError(f"compared: no case of blocks = {list(asked.blocks)} has {had}")
