@@ -282,7 +282,6 @@ def numerics_study():
 
 
 def frictionless_study():
-    forces = [1.0, 2.9, 3.3]
     # a lattice of one open column: two disks in each row, one row above the other
     rows = [8, 7, 7, 6, 6, 6, 5]
     first = 2 * np.arange(len(rows))

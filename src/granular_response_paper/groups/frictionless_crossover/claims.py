@@ -63,7 +63,8 @@ def near_the_floor(data: Data) -> Numbers:
     response (the crossover actually occurs at slightly smaller forces, at which the "teardrop" almost reaches the
     floor).
     Short: The crossover comes as the open region nears the floor
-    Here: Without friction two peaks appear at {0} of the force at which the open region reaches the floor."""
+    Here: Without friction two peaks appear at {0} of the force at which the open region reaches the floor.
+    Remark: The ends are those of the search; without friction the equilibrium does not depend on the protocol"""
     ratio = _event(data, "crossover").per(_event(data, "teardrop_reaches_floor"))
     yield "rows of 61 and 60", ratio, ratio
     literal = (data.event(name, 0.0, "events_equal_rows") for name in ("crossover", "reaches_floor"))
@@ -159,8 +160,9 @@ def deep_and_shallow(data: Data) -> Numbers:
     shallow ones, as studied in some experiments (Sec. II B), should exhibit two peaks.
     Short: Deep slabs have one peak under a load that gives shallow ones two
     Here: In a slab of 20 layers and 82 disks a row the crossover force is {0} times that in 15 layers and 61 disks.
-    Remark: Sec. IV.C asks for contacts that are still closed in the horizontal direction; slabs that have lost some of
-    them at rest are left out"""
+    Remark: The ends are those of the search; without friction the equilibrium does not depend on the protocol. Sec. IV.C
+    asks for contacts that are still closed in the horizontal direction; slabs that have lost some of them at rest are
+    left out"""
     for name in ("sizes", "widths"):
         study = data.get(GROUP, name).sortby("layers")
         slabs = study.isel(

@@ -62,8 +62,8 @@ class Slab(NamedTuple):
 
     def of(self, data: Data, name: str, **labels: float) -> xr.Dataset:
         """The case in a dataset. Raises NotMeasured if there is none."""
-        own = {"polydispersity": self.polydispersity, "friction": self.friction, "lattice_constant": self.start}
-        return at(data.get(GROUP, name), **own, gravity_ramp=self.ramp, **labels)
+        own: dict[str, Any] = {"lattice_constant": self.start, "gravity_ramp": self.ramp, "friction": self.friction}
+        return at(data.get(GROUP, name), polydispersity=self.polydispersity, **own, **labels)
 
     @property
     def lattice(self) -> Slab:
@@ -495,9 +495,9 @@ def fluctuations(data: Data) -> Numbers:
     least = 1.0 - data.words["holds"]
     for slabs in _by_start(data, "shapes", 0.0, 0.2):
         without, full = (_with_interval(_at_15(data, slab, "shapes"), "spread") for slab in slabs)
-        dips = [_at_15(data, slab, "realizations")["shape"].dropna("realization").values for slab in slabs]
-        needs(all(one.size for one in dips), "realizations holds no shapes")
-        yield slabs[0].case(""), without.per(full), _evident_samples(*dips, least)
+        first, second = (_at_15(data, one, "realizations")["shape"].dropna("realization").values for one in slabs)
+        needs(first.size and second.size, "realizations holds no shapes")
+        yield slabs[0].case(""), without.per(full), _evident_samples(first, second, least)
 
 
 @claim(

@@ -23,7 +23,8 @@ def ratio(data: Data) -> Numbers:
     at k_T/k_N ≃ 0.3).
     Short: k_T/k_N of about 0.3 separates two peaks from one
     Here: At friction 10 two peaks first vanish at k_T/k_N = {0}.
-    Remark: Above this ratio a dip of some tenths of a per cent may return, until the response is largest at x = 0"""
+    Remark: Above this ratio a dip of some tenths of a per cent may return, until the response is largest at x = 0. The
+    ends are those of the search; other protocols were not tried"""
     yield _two_peaks_end(data)
 
 
@@ -63,7 +64,8 @@ def criterion(data: Data) -> Numbers:
     Short: The half plane's criterion, 0.2915, gives the slab's ratio quite well
     Here: The criterion has its root at {0:4}, which is {1} times the ratio k_T/k_N at which two peaks of the slab turn
     into one; with disks free to turn, {disks free to turn|1} times.
-    Remark: Eq. (5) keeps the disks from turning; the paper's disks turn"""
+    Remark: Eq. (5) keeps the disks from turning; the paper's disks turn. The ratio of the slab has the ends of the
+    search (K1a)"""
     for case, rotations in (("rotations suppressed", "suppressed"), ("disks free to turn", "free")):
         root = data.value(GROUP, "elastic.root", rotations=rotations)
         yield case, root if rotations == "suppressed" else None, root.per(_two_peaks_end(data))
