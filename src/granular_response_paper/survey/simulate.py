@@ -37,6 +37,7 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles.datasets import Place, ensembles_dataset, packings_dataset, places
 from granular_response_paper.ensembles.parameters import Case
 from granular_response_paper.ensembles.realizations import Realization, ensemble_task
+from granular_response_paper.survey.datasets import gravity_ramp
 from granular_response_paper.survey.parameters import Parameters
 
 #: The sources that every outcome depends on, and those of a realization of an ensemble.
@@ -136,10 +137,9 @@ def run(block: Block, folder: Path, *, workers: int | None = None, progress: Pro
 def block_datasets(cases: list[Case], found: Mapping[Place, Realization]) -> dict[str, xr.Dataset]:
     """Datasets ``ensembles`` and ``packings`` of a block, in the layout of ``polydisperse_averages`` and small."""
     walls = [case.friction if case.wall_friction is None else case.wall_friction for case in cases]
-    grown = ["" if case.gravity_ramp is None else f"{case.gravity_ramp:g}" for case in cases]
     added = {
         "wall_friction": variable(("case",), walls, "coefficient of friction of the walls"),
-        "gravity_ramp": variable(("case",), grown, "time in sqrt(radius/g) over which gravity grows; empty: at once"),
+        "gravity_ramp": gravity_ramp(["" if one.gravity_ramp is None else f"{one.gravity_ramp:g}" for one in cases]),
     }
     ensembles = ensembles_dataset(cases, found)[list(RESPONSES)].assign_coords(added)
     for name, digits in (("floor_response", RESPONSE_DIGITS), ("x", POSITION_DIGITS)):

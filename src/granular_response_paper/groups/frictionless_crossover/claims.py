@@ -160,9 +160,9 @@ def deep_and_shallow(data: Data) -> Numbers:
     shallow ones, as studied in some experiments (Sec. II B), should exhibit two peaks.
     Short: Deep slabs have one peak under a load that gives shallow ones two
     Here: In a slab of 20 layers and 82 disks a row the crossover force is {0} times that in 15 layers and 61 disks.
-    Remark: The ends are those of the search; without friction the equilibrium does not depend on the protocol. Sec. IV.C
-    asks for contacts that are still closed in the horizontal direction; slabs that have lost some of them at rest are
-    left out"""
+    Remark: The ends are those of the search; without friction the equilibrium does not depend on the protocol. Sec.
+    IV.C asks for contacts that are still closed in the horizontal direction; slabs that have lost some of them at rest
+    are left out"""
     for name in ("sizes", "widths"):
         study = data.get(GROUP, name).sortby("layers")
         slabs = study.isel(

@@ -120,8 +120,8 @@ def two_peaks_or_one(data: Data) -> Numbers:
     """As in the ordered case, the response is very different: there are two very distinct peaks in the frictionless
     case, but one peak in the frictional case.
     Short: Two distinct peaks without friction, one at friction 0.2
-    Here: Among means of 15 packings those of the paper are not rare: without friction the deepest of forty dips by {0}
-    of its peak, and at friction 0.2 the flattest of forty by {1}.
+    Here: Of forty means of 15 packings the deepest dips by {0} of its peak without friction, the flattest by {1} at
+    friction 0.2 (below 0: one peak).
     Remark: The paper shows one mean of each, so that what is asked is only that such ones are not rare. A dip beyond
     100 % has a negative response in the middle, one below 0 a single peak. 15 mg, w = 3"""
     for slabs in _by_start(data, "starts", 0.0, 0.2):

@@ -13,9 +13,10 @@ from granular_response.store.variables import RADII, WEIGHTS
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
 from granular_response_paper.records import column, record, stacked, table, variables
 from granular_response_paper.survey.crossover import CONFIDENCE, LEVELS, Ensemble, shapes_of_samples, weights
+from granular_response_paper.survey.datasets import PREPARED
 
 #: Coordinates of a case.
-CASE = ("polydispersity", "friction", "wall_friction", "lattice_constant", "gravity_ramp", "realizations")
+CASE = (*PREPARED, "realizations")
 CONTACTS = ("horizontal_contacts", "oblique_contacts")
 _BOOTSTRAPPED = "quantiles of the bootstrapped mean"
 
