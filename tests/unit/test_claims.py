@@ -673,6 +673,9 @@ def test_the_readme_quotes_the_stored_table():
     found = table.read(ROOT / "figures" / "claims.json")
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert [line for line in table.quoted(found).splitlines() if line not in readme] == []
+    measured = [row for row in found["table"] if row["tests"]]
+    bare = [row["id"] for row in measured if ": " in row["here"][: len(row["tests"][0]["what"]) + 2]]
+    assert bare == []  # each verdict has its sentence, with all of its numbers
     verdicts = {row["here"]: row["verdict"] for row in found["table"]}
     told = re.findall(r"^\d\. .*?\*\*Here:\*\* (.*?) \*([a-z ]+)\*", readme, re.MULTILINE)
     assert len(told) == 6 and all(verdicts[here] == verdict for here, verdict in told)

@@ -35,8 +35,8 @@ def accurate(data: Data) -> Numbers:
     studies (e.g., in [77], the systems are relaxed to E_k^stop = 2·10⁻⁸ mgR per particle).
     Short: To 1 % of the floor forces a run has to stop at 1e-13
     Here: Stopped at 1e-13 mgR per disk, floor forces are off by {0} without friction and by {friction 0.2|0} at
-    friction 0.2. Stopped at 1e-9 they are off by {floor forces, friction 0, 1e-9|1} and the response by {1}; at 1e-11
-    by {floor forces, friction 0, 1e-11|1} and {response, friction 0, 1e-11|1}.
+    friction 0.2. Stopped at 1e-9 they are off by {floor forces, friction 0, 1e-9|0} and the response by {1}; at 1e-11
+    by {floor forces, friction 0, 1e-11|0} and {response, friction 0, 1e-11|0}.
     Remark: The error of the response decides whether so small an energy is needed, since the floor forces are used to
     define it. The paper compares with 2e-8; the nearest energy here is 1e-9. Only powers of a hundred were tried"""
     for mu in (0.0, 0.2):
@@ -60,7 +60,7 @@ def criteria(data: Data) -> Numbers:
     Short: At the end the network is fixed, no contact slides, nothing accelerates
     Here: When a run stops at friction 0.2 and 15 mg, the network has not changed for {0} steps, {1} contact slides and
     {2} disk has fewer than two contacts. The mean acceleration is {3} g if the kinetic energy has to stay below 1e-13
-    for some oscillations of the slab, and {stop as soon as the energy is small|3} g if a run stops as soon as it is.
+    for some oscillations of the slab, and {stop as soon as the energy is small|0} g if a run stops as soon as it is.
     Remark: Several hundred is at least three hundred. In the asymmetric states of Fig. 16(b) one disk of the floor has
     a single contact, with the floor. The kinetic energy first falls below the limit at a turning point, where the
     acceleration is largest"""

@@ -63,7 +63,7 @@ def criterion(data: Data) -> Numbers:
     ≃ 0.3 obtained in the simulation (Fig. 10).
     Short: The half plane's criterion, 0.2915, gives the slab's ratio quite well
     Here: The criterion has its root at {0:4}, which is {1} times the ratio k_T/k_N at which two peaks of the slab turn
-    into one; with disks free to turn, {disks free to turn|1} times.
+    into one; with disks free to turn, {disks free to turn|0} times.
     Remark: Eq. (5) keeps the disks from turning; the paper's disks turn. The ratio of the slab has the ends of the
     search (K1a)"""
     for case, rotations in (("rotations suppressed", "suppressed"), ("disks free to turn", "free")):
