@@ -605,8 +605,8 @@ def shorter_with_disorder(data: Data) -> Numbers:
     response.
     Short: Polydispersity decreases the elastic range
     Here: At friction 0.2 the linear range of the lattice is {0} times that at polydispersity 0.01, from the literal
-    lattice constant 2 {friction 0.2, 1 % off, lattice constant 2.0|0} times; without friction these are {friction 0, 1 %
-    off|0} and {friction 0, 1 % off, lattice constant 2.0|0}. From 0.01 to 0.25 Kendall's τ of the range is {1} (0: no
+    lattice constant 2 {friction 0.2, 1 % off, lattice constant 2.0|0} times; without friction these are {friction 0, 1
+    % off|0} and {friction 0, 1 % off, lattice constant 2.0|0}. From 0.01 to 0.25 Kendall's τ of the range is {1} (0: no
     trend); without friction it is {friction 0, 1 % off|1}.
     Remark: Smooth walls, w = 3, by the whole response, since that at x = 0 is near zero without friction. From the
     literal lattice only polydispersity 0.01 was simulated, so that the order is not asked there"""
