@@ -21,13 +21,13 @@ ENDS = (0, -1)
 
 def crossovers(datasets: Mapping[str, xr.Dataset]) -> list[str]:
     """A line for each disordered case that starts with the largest disks touching, and for each lattice."""
-    found, single = datasets["crossovers"], datasets["realizations"]
+    from granular_response_paper.survey.datasets import usual
+
+    found, single = usual(datasets["crossovers"]), usual(datasets["realizations"])
     w = found["width"].values.tolist().index(WIDTH)
     heads = ["δ", "µ", "realizations (collapsed)", "mean response", "median of realizations"]
     lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
-    usual = found["lattice_constant"].values == found["lattice_constant"].values[0]
-    order = np.lexsort((found["friction"].values, found["polydispersity"].values))
-    for case in order[usual[order]]:
+    for case in np.lexsort((found["friction"].values, found["polydispersity"].values)):
         collapsed = int(np.isfinite(single["collapse_force"].values[case]).sum())
         count = int(found["realizations"].values[case])
         cells = [f"{found['polydispersity'].values[case]:g}", f"{found['friction'].values[case]:g}"]

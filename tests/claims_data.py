@@ -282,7 +282,6 @@ def numerics_study():
 
 
 def frictionless_study():
-    forces = [1.0, 2.9, 3.3]
     # a lattice of one open column: two disks in each row, one row above the other
     rows = [8, 7, 7, 6, 6, 6, 5]
     first = 2 * np.arange(len(rows))
@@ -290,7 +289,7 @@ def frictionless_study():
     slabs = over("slab", layers=[15, 20, 15, 20], normal_stiffness=[3000.0, 3000.0, 1e5, 1e5])
     wide = [[30.0, 40.0, 50.0], [29.0, 39.0, 49.0]] * 2
     crossing = over("slab bracket", crossover_bracket=[[3.0, 3.1], [6.0, 6.1]] * 2) | over("slab", open_at_rest=0)
-    labels = {"force": forces, "normal_stiffness": [500.0, 1000.0, 2000.0, 3000.0, 1e5], "dip": [0.0, 0.01]}
+    labels = {"force": [1.0, 2.9, 15.0], "normal_stiffness": [500.0, 1000.0, 2000.0, 3000.0, 1e5], "dip": [0.0, 0.01]}
     size, along = [[20.0, 30.0, 50.0]] + [[40.0, 60.0, 90.0]] * 4, "normal_stiffness force"
     return {
         "events": events(("crossover", 0.0, 3.0, 3.1), ("teardrop_reaches_floor", 0.0, 3.5, 3.6)),
@@ -324,10 +323,12 @@ def profile(dip, x=None):
 
 
 def disordered_cases():
-    """Coordinates of the cases: the lattice, three frictions at three disorders, and the literal start."""
-    cases = [(delta, mu, STARTS[0]) for delta in (0.0, 0.01, 0.1, 0.25) for mu in (0.0, 0.2, 1.0)]
-    cases += [(0.01, mu, STARTS[1]) for mu in (0.0, 0.2)]
-    return by_row("case", "polydispersity friction lattice_constant realizations", [(*case, FEW) for case in cases])
+    """Coordinates of the cases: the lattice, three frictions at three disorders, the literal start, and a ramp."""
+    cases = [((delta, mu, STARTS[0]), "") for delta in (0.0, 0.01, 0.1, 0.25) for mu in (0.0, 0.2, 1.0)]
+    cases += [((0.01, mu, STARTS[1]), "") for mu in (0.0, 0.2)]
+    cases += [((delta, 0.2, STARTS[0]), "20") for delta in (0.0, 0.01, 0.1)]
+    names = "polydispersity friction lattice_constant gravity_ramp realizations"
+    return by_row("case", names, [(*case, ramp, FEW) for case, ramp in cases])
 
 
 #: Packings of each case.
@@ -340,7 +341,7 @@ DRAWS = np.linspace(0.95, 1.05, 41)
 def phases_study():
     cases = disordered_cases()
     rng = np.random.default_rng(0)
-    grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 14.0], [0.5, 2.0, 8.0], [2.5, 12.0]]
+    grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 14.0], [0.5, 2.0, 8.0], [2.5, 12.0], [18.0, 8.0, 5.0]]
     force = np.array([f for row in grid for f in row])
     mu, delta = cases["friction"][1], cases["polydispersity"][1]
     n, few = len(mu), FEW
@@ -365,7 +366,7 @@ def phases_study():
         if name != "limits"
     }
     ends = np.array([4.0, 1.0, 0.5, 0.25])
-    linear = [(d, m, STARTS[0]) for d in (0.0, 0.01, 0.1, 0.25) for m in (0.0, 0.2)]
+    linear = [(d, m, STARTS[0], "") for d in (0.0, 0.01, 0.1, 0.25) for m in (0.0, 0.2)]
     small = np.array([0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0])
     # packings differ by a few per cent in where they leave the linear range
     apart = 1.0 + 0.05 * rng.standard_normal((len(linear), few, 1))
@@ -413,7 +414,7 @@ def phases_study():
             ),
         ),
         "linear_range": dataset(
-            by_row("case", "polydispersity friction lattice_constant", linear),
+            by_row("case", "polydispersity friction lattice_constant gravity_ramp", linear),
             **over("case realization step", response_at_centre=0.07 * (1.0 - 0.1 * away), profile_change=0.1 * away),
             applied_force=("case step", small),
         ),

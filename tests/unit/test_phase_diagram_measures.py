@@ -311,6 +311,7 @@ def stored(tmp_path_factory):
         if block == "few":  # one collapses under the largest force
             outcome[0, 0, -1], response[0, 0, -1] = COLLAPSED, np.nan
         cases = {"polydispersity": delta, "friction": mu, "wall_friction": mu, "lattice_constant": "touching-largest"}
+        cases |= {"gravity_ramp": ""} if block != "few" else {}  # as blocks that do not say it
         cases = {name: ("case", [value]) for name, value in (cases | {"realizations": count}).items()}
         ensembles = dataset(
             cases,
@@ -345,6 +346,9 @@ def test_blocks_of_different_size_become_one(stored) -> None:
         assert (ensembles["outcome"].values[case, count:] == NOT_REACHED).all()
         assert np.isnan(ensembles["force"].values[case, steps:]).all()
     assert found["packings"]["coordination_number_with_walls"].shape == (3, 10)
+    assert ensembles["gravity_ramp"].values.tolist() == ["", "", ""]
+    twice = survey.read(stored, [*SIZES, "few"])["ensembles"]  # the first of two cases that are prepared alike
+    assert twice.sizes["case"] == 3 and survey.usual(twice).sizes["case"] == 3
 
 
 def parameters(stored, **changes) -> Parameters:

@@ -336,7 +336,7 @@ def crossovers():
     largest = "touching-largest"
     cases = [(0.0, 1.0, largest), (0.0, 0.2, largest), (0.25, 0.2, largest), (0.25, 1.0, "2.0")]
     return dataset(
-        by_row("case", "polydispersity friction lattice_constant", cases) | {"width": [6.0]},
+        by_row("case", "polydispersity friction lattice_constant gravity_ramp", cases) | {"width": [6.0]},
         **over("width case", force=[[3.0, 20.0, 5.0, 9.0]], kind=[[0, 2, 1, 0]]),
         interval=("width case level", [[[3.0, 3.0], [20.0, np.inf], [0.0, 6.0], [8.0, 9.5]]]),
     )

@@ -48,6 +48,15 @@ def test_the_cases_of_a_block_are_all_combinations():
     ]
 
 
+def test_gravity_grows_over_each_ramp_that_a_block_names():
+    slow = {"polydispersities": [0.01], "frictions": [0.2], "forces": [0.5], "gravity_ramps": [5.0, 20.0]}
+    blocks = {"slow": [slow, slow | {"gravity_ramps": None}]}
+    parameters = survey.Parameters(**SMALL | {"blocks": blocks})
+    ramps = [survey.ensemble_task(parameters, case, 0).args[0].preparation for case in parameters.cases("slow")]
+    assert [(one.gravity, one.ramp_time) for one in ramps[:2]] == [("slow", 5.0), ("slow", 20.0)]
+    assert ramps[2].gravity == "at-once"
+
+
 def test_a_run_goes_on_where_it_was_and_stores_what_was_found(file):
     begun = []
     survey.run(survey.ensemble("small", file, 2), file.parent, workers=1, progress=lambda *call: begun.append(call))
@@ -63,7 +72,7 @@ def test_a_run_goes_on_where_it_was_and_stores_what_was_found(file):
     assert (one["outcome"].values[:2] == AT_REST).all()
     np.testing.assert_allclose(one["floor_response"].values[:2], again.floor_response, atol=2.0**-18, rtol=1e-7)
     np.testing.assert_allclose(one["x"].values, again.x, atol=2.0**-13, rtol=1e-7)
-    assert one["wall_friction"] == 0.0
+    assert one["wall_friction"] == 0.0 and one["gravity_ramp"] == ""
     packing = found["packings"].isel(case=1, realization=2)
     for name in survey.PACKINGS:
         np.testing.assert_equal(packing[name].values, np.float32(getattr(again.packing, name)))

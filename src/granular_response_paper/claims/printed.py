@@ -23,6 +23,7 @@ class Printed(NamedTuple):
     unit: str
     claim: str
     ask: int = 0
+    digits: int = 0  #: of ours, if not as many as its interval leaves
 
 
 QUANTITIES = (
@@ -37,7 +38,7 @@ QUANTITIES = (
     Printed("linear range, friction 0.2 over 0", 10.0, "", "R1"),
     Printed("linear range, friction 1 over 0", 10.0, "", "R1", 1),
     Printed("ratio of stiffnesses between two peaks and one", 0.3, "", "K1a"),
-    Printed("the same for a half plane", 0.2915, "", "K2"),
+    Printed("the same for a half plane", 0.2915, "", "K6", digits=4),
     Printed("contacts per disk, δ = 0.01, friction 0", 4.25, "", "D7a"),
     Printed("change of the response with k_N", 0.02, "%", "F8"),
 )
@@ -74,9 +75,8 @@ def superposed(data: Data) -> Quantity:
 
 
 def _entry(printed: Printed, own: Quantity, others: list[dict[str, Any]]) -> dict[str, Any]:
-    named = printed._asdict()
-    named.pop("ask")
-    ours = {"text": text(own, printed.unit), "interval_of": own.method or own.kind, **_point(own)}
+    named = {name: one for name, one in printed._asdict().items() if name not in ("ask", "digits")}
+    ours = {"text": text(own, printed.unit, printed.digits), "interval_of": own.method or own.kind, **_point(own)}
     return {**named, "ours": ours, "others": others}
 
 

@@ -24,6 +24,7 @@ class Case:
     forces: tuple[float, ...]
     realizations: int
     wall_friction: float | None = None  #: None: the same as between disks
+    gravity_ramp: float | None = None  #: time over which gravity grows; None: it acts at once
 
 
 class EnsembleGroup(SceneGroup):

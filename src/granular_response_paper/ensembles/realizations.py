@@ -174,8 +174,9 @@ def ensemble_scene(parameters: EnsembleGroup, case: Case, realization: int) -> S
     The time step is ``time_step_part`` of the stability limit of its lightest disk, at most
     ``longest_time_step``: without friction the limit is far beyond what the collisions of the fall need.
     """
+    slow = {"preparation.gravity": "slow", "preparation.ramp_time": case.gravity_ramp} if case.gravity_ramp else {}
     changes = material(case.polydispersity, realization, case.friction, case.wall_friction)
-    scene = parameters.base.updated(changes | {"packing.lattice_constant": case.lattice_constant})
+    scene = parameters.base.updated({**changes, **slow, "packing.lattice_constant": case.lattice_constant})
     limit = stability_limit(Problem.from_scene(scene), smallest=True)
     step = min(parameters.time_step_part * limit, parameters.longest_time_step)
     return scene.updated({"protocol.time_step": step})

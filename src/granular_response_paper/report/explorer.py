@@ -22,6 +22,7 @@ from granular_response.studies.measures import MARGINS
 
 from ..captions import Datasets
 from ..claims.numbers import Quantity, text
+from ..survey.datasets import usual
 from .typeset import typeset
 
 FRICTIONS = (0.0, 0.2, 1.0)
@@ -232,9 +233,8 @@ def _crossovers(datasets: Datasets) -> list[dict[str, Any]]:
 
     ``kind`` 1 and 2 are bounds: two peaks at the smallest force already, or not yet at the largest.
     """
-    data = datasets["crossovers"]
+    data = usual(datasets["crossovers"])
     data = data.isel(width=int(np.abs(data["width"].values - WIDTH).argmin()))
-    data = data.isel(case=data["lattice_constant"].values == "touching-largest")
     found = []
     for delta in np.unique(data["polydispersity"].values):
         one = data.isel(case=data["polydispersity"].values == delta).sortby("friction")

@@ -8,14 +8,14 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
-from granular_response.scene.base import Count, Description, Ratio
+from granular_response.scene.base import Count, Description, Positive, Ratio
 from granular_response.scene.lattice import LatticeConstant
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
 from granular_response_paper.parameters import Coefficients, Growing, some
 
 
 class Cases(Description):
-    """Every combination of polydispersities, frictions and starts under the same forces."""
+    """Every combination of polydispersities, frictions, starts and ramps of gravity under the same forces."""
 
     polydispersities: Spreads
     frictions: Coefficients
@@ -24,6 +24,9 @@ class Cases(Description):
         default=None, description="Of the starts; null: that of the scene."
     )
     wall_friction: Ratio | None = Field(default=None, description="null: the same as between disks.")
+    gravity_ramps: Annotated[tuple[Positive, ...], AfterValidator(some)] | None = Field(
+        default=None, description="Over which gravity grows, in sqrt(R/g); null: it acts at once."
+    )
     realizations: Count | None = Field(default=None, description="null: those of the survey.")
 
 
@@ -39,6 +42,8 @@ class Parameters(EnsembleGroup):
         for entry in self.blocks[block]:
             starts = entry.lattice_constants or (self.lattice_constant,)
             number = entry.realizations or self.realizations
-            for delta, mu, start in product(entry.polydispersities, entry.frictions, starts):
-                found.append(Case(delta, mu, start, entry.forces, number if delta else 1, entry.wall_friction))
+            ramps = entry.gravity_ramps or (None,)
+            for delta, mu, start, ramp in product(entry.polydispersities, entry.frictions, starts, ramps):
+                packings = number if delta else 1
+                found.append(Case(delta, mu, start, entry.forces, packings, entry.wall_friction, ramp))
         return found

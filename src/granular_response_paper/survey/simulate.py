@@ -37,6 +37,7 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles.datasets import Place, ensembles_dataset, packings_dataset, places
 from granular_response_paper.ensembles.parameters import Case
 from granular_response_paper.ensembles.realizations import Realization, ensemble_task
+from granular_response_paper.survey.datasets import gravity_ramp
 from granular_response_paper.survey.parameters import Parameters
 
 #: The sources that every outcome depends on, and those of a realization of an ensemble.
@@ -136,12 +137,15 @@ def run(block: Block, folder: Path, *, workers: int | None = None, progress: Pro
 def block_datasets(cases: list[Case], found: Mapping[Place, Realization]) -> dict[str, xr.Dataset]:
     """Datasets ``ensembles`` and ``packings`` of a block, in the layout of ``polydisperse_averages`` and small."""
     walls = [case.friction if case.wall_friction is None else case.wall_friction for case in cases]
-    wall_friction = variable(("case",), walls, "coefficient of friction of the walls")
-    ensembles = ensembles_dataset(cases, found)[list(RESPONSES)].assign_coords(wall_friction=wall_friction)
+    added = {
+        "wall_friction": variable(("case",), walls, "coefficient of friction of the walls"),
+        "gravity_ramp": gravity_ramp(["" if one.gravity_ramp is None else f"{one.gravity_ramp:g}" for one in cases]),
+    }
+    ensembles = ensembles_dataset(cases, found)[list(RESPONSES)].assign_coords(added)
     for name, digits in (("floor_response", RESPONSE_DIGITS), ("x", POSITION_DIGITS)):
         values = ensembles[name].values
         ensembles[name] = ensembles[name].copy(data=(np.round(values * 2.0**digits) / 2.0**digits).astype(np.float32))
-    packings = packings_dataset(cases, found)[list(PACKINGS)].assign_coords(wall_friction=wall_friction)
+    packings = packings_dataset(cases, found)[list(PACKINGS)].assign_coords(added)
     return {"ensembles": ensembles, "packings": packings.astype(np.float32)}
 
 

@@ -137,7 +137,8 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     for at, (k, look) in enumerate(family(chosen, of="force", dashed=True)):
         one = data.isel(force=k)
         look |= {"markersize": 3.0, "markevery": (at % 3, 3)}
-        profiles.plot(x, one["floor_response"], **look, label=f"{float(one['force']):g}")
+        peaks = "one peak" if int(one["peak_count"]) == 1 else f"{int(one['peak_count'])} peaks"
+        profiles.plot(x, one["floor_response"], **look, label=f"{float(one['force']):g}: {peaks}")
     zero(profiles)
     profiles.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(x[0], x[-1]))
     profiles.legend(title=style.FORCE, loc="upper right")
@@ -159,7 +160,7 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
             }
             text = f"{EVENTS[str(name)]}, {middle:.2f}"
             note(centre, text, (middle, 1.0), (shift, -4.0), fontsize=7, color=style.MUTED, **upright)
-    style.paper_value(centre, PAPER_OPENING, f"paper: {PAPER_OPENING:g}", side="behind")
+    style.paper_value(centre, PAPER_OPENING, f"paper: opening, {PAPER_OPENING:g}", side="behind")
     centre.set_ylim(0.0, 1.65 * highest)
     centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)
     centre.xaxis.set_major_formatter("{x:g}")

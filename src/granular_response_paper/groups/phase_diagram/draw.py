@@ -16,6 +16,7 @@ from granular_response.scene.lattice import touching_largest
 from granular_response_paper.captions import WEIGHT, Caption, Datasets, Value, of_group
 from granular_response_paper.panels import different, family, label_ends, note, packing, titles
 from granular_response_paper.survey.crossover import ABOVE, FOUND
+from granular_response_paper.survey.datasets import usual
 
 from .parameters import Parameters
 
@@ -39,14 +40,9 @@ UPWARDS, DOWNWARDS = r"$\uparrow$", r"$\downarrow$"
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
     return {
-        "fig22_phase_diagram": _diagram(_usual(datasets["crossovers"]).isel(width=-1)),
+        "fig22_phase_diagram": _diagram(usual(datasets["crossovers"]).isel(width=-1)),
         "initial_lattice": _starts(datasets["starts"]),
     }
-
-
-def _usual(data: xr.Dataset) -> xr.Dataset:
-    """The cases with the initial lattice of the first one."""
-    return data.isel(case=data["lattice_constant"].values == data["lattice_constant"].values[0])
 
 
 def _disorders(data: xr.Dataset) -> list[float]:
@@ -55,7 +51,7 @@ def _disorders(data: xr.Dataset) -> list[float]:
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
-    crossovers = _usual(datasets["crossovers"])
+    crossovers = usual(datasets["crossovers"])
     frictions, deltas = (different(crossovers[name]) for name in ("friction", "polydispersity"))
     realizations = different(crossovers["realizations"][crossovers["polydispersity"].values > 0.0])
     given: dict[str, Value] = {
@@ -82,7 +78,8 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
 def _findings(crossovers: xr.Dataset, starts: xr.Dataset) -> dict[str, str]:
     """What the data show, a sentence for each picture."""
     said = []
-    for delta in different(crossovers["polydispersity"]):
+    deltas = different(crossovers["polydispersity"])
+    for delta in dict.fromkeys((deltas[0], deltas[-1])):
         one = crossovers.isel(case=_of(crossovers, delta))
         known = one["kind"].values == FOUND
         if known.any():

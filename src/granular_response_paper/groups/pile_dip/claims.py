@@ -18,26 +18,15 @@ claim = Claims(
 
 
 @claim(
-    "P1", "V.F, Fig. 17c, d",
-    Ask("dip of the vertical stress under the apex per largest value", at_least("visible"), "%"), figures=[17]
+    "P1", "V.F, Fig. 17c, d", Ask("dip of the vertical stress under the apex per largest value",
+    at_least("visible"), "%"), Ask("the same with friction", at_most("visible"), "%"), figures=[17]
 )  # fmt: skip
 def dip(data: Data) -> Numbers:
     """In particular, as shown in Figs. 17(c),(d), the pile of frictionless disks exhibits a dip in the stress under the
     apex, but the pile of frictional disks does not.
-    Short: Piles have a dip without friction
-    Here: Without friction the stress dips by {0} under the apex."""
-    yield data.value(GROUP, "stress.dip", case="frictionless")
-
-
-@claim(
-    "P2", "V.F, Fig. 17c, d",
-    Ask("dip of the vertical stress under the apex per largest value", at_most("visible"), "%"), figures=[17]
-)  # fmt: skip
-def no_dip(data: Data) -> Numbers:
-    """As P1.
-    Short: ... and none with friction
-    Here: With friction the stress is largest under the apex: there is no dip."""
-    yield data.value(GROUP, "stress.dip", case="frictional")
+    Short: Piles have a dip without friction, and none with friction
+    Here: Without friction the stress dips by {0} under the apex. With friction it is largest there."""
+    yield tuple(data.value(GROUP, "stress.dip", case=case) for case in ("frictionless", "frictional"))
 
 
 @claim(

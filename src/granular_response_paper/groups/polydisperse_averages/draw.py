@@ -41,6 +41,8 @@ FIG21_WIDTH, MOST_FORCES = 6.0, 4
 #: Forces of the keys of Fig. 2 in mean disk weights, under gravity and incremental; incremental force times depth per
 #: load that has the full width.
 KEYS, DEEP = (20.0, 1.0), 4.0
+#: Longest incremental force of Fig. 2(b), as a part of the load: the ones beside the load would hide the disks there.
+CLIPPED = 0.5
 
 #: Of the keys over the panels of Fig. 21.
 OVER: dict[str, Any] = {
@@ -99,6 +101,7 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
             "packings": ensemble,
         },
         keys=KEYS,
+        clipped=CLIPPED * picture.force,
         tolerance=100.0 * float(datasets["linear_range"].attrs["tolerance"]),
         last=chr(ord("a") - 1 + len(disordered) * len(frictions)),
         contacts=PAPER_CONTACTS,
@@ -180,13 +183,15 @@ def _forces(data: xr.Dataset) -> Figure:
     x, z = position[1, disk]
     under_gravity, contacts = (ContactLines.of(data, one) for one in position)
     added = loaded - resting
+    size = np.linalg.norm(added, axis=1, keepdims=True)
+    clipped = added * np.minimum(1.0, CLIPPED * load / np.maximum(size, CLIPPED * load))
     force = style.equals(style.F_EXT, load, style.WEIGHT)
     wide = figure.add_subplot(grid[0, :])
     strongest = float(np.linalg.norm(resting, axis=1).max())
     middle = x - width / 6.0, x + width / 6.0
     drawn = (
         (wide, under_gravity, resting, strongest, KEYS[0], style.WEIGHT, (-1.5, width + 1.5)),
-        (panels[1, 0], contacts, added, 0.5 * load, KEYS[1], style.WEIGHT, middle),
+        (panels[1, 0], contacts, clipped, CLIPPED * load, KEYS[1], style.WEIGHT, middle),
         (panels[1, 1], contacts, added * (z - contacts.point[:, 1:]) / load, DEEP, 1.0, style.RADIUS, middle),
     )
     for axes, where, vector, largest, key, unit, limits in drawn:

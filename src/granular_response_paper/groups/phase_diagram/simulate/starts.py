@@ -13,9 +13,10 @@ from granular_response.store.variables import RADII, WEIGHTS
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
 from granular_response_paper.records import column, record, stacked, table, variables
 from granular_response_paper.survey.crossover import CONFIDENCE, LEVELS, Ensemble, shapes_of_samples, weights
+from granular_response_paper.survey.datasets import PREPARED
 
 #: Coordinates of a case.
-CASE = ("polydispersity", "friction", "wall_friction", "lattice_constant", "realizations")
+CASE = (*PREPARED, "realizations")
 CONTACTS = ("horizontal_contacts", "oblique_contacts")
 _BOOTSTRAPPED = "quantiles of the bootstrapped mean"
 
@@ -44,8 +45,8 @@ def starts_of(source: xr.Dataset, packings: xr.Dataset, asked: Parameters) -> li
     found: list[Start] = []
     lattice, constant = packings.isel(case=0, realization=0), packings["lattice_constant"].values
     for one in asked.compared:
-        alike = np.isclose(source["polydispersity"].values, one.polydispersity)[:, None]
-        places = np.argwhere(alike & np.isclose(source["force"].values, one.force)).tolist()
+        alike = np.isclose(source["polydispersity"].values, one.polydispersity) & (source["gravity_ramp"].values == "")
+        places = np.argwhere(alike[:, None] & np.isclose(source["force"].values, one.force)).tolist()
         if not places:
             had = f"polydispersity {one.polydispersity:g} and a force of {one.force:g}"
             raise ValueError(f"compared: no case of blocks = {list(asked.blocks)} has {had}")

@@ -1,6 +1,6 @@
 """Large friction: how the response depends on the ratio of tangential to normal stiffness (Secs. V.B, V.C).
 
-Fig. 10 and claims K1 to K3. With a coefficient of friction that is hardly ever reached, weaker tangential springs
+Fig. 10 and claims K1, K6 and K7. With a coefficient of friction that is hardly ever reached, weaker tangential springs
 turn one peak into two. ``response`` holds the simulated profiles; ``elastic`` those of elastic bodies with the
 moduli of the spring model without its horizontal springs, which the load has opened, and ``events`` the
 ratios at which the simulated profile changes its form.
@@ -116,7 +116,7 @@ class Elastic:
 
 
 def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float) -> xr.Dataset:
-    """Elastic bodies with the moduli of the spring model without horizontal springs (Sec. V.C); claims K2 and K3.
+    """Elastic bodies with the moduli of the spring model without horizontal springs (Sec. V.C); claim K6.
 
     What a floor disk at ``x`` gets of a unit force is the pressure on the diameter below it, of the half plane at the
     depth of the floor or of a slab of ``layers`` disk layers between smooth walls ``width`` apart. It is nan at a
