@@ -110,7 +110,7 @@ def pip_gone():
 
 
 def begun():
-    Path(".venv/.begun").touch()
+    Path(".venv-begun").touch()
 
 
 def a_file():
@@ -148,7 +148,7 @@ def test_packages_that_another_clone_has_put_there_are_replaced(setup, elsewhere
 def test_the_next_set_up_waits_for_what_a_killed_one_has_started(setup):
     """Else both write into the environment."""
     setup.make()
-    Path(".venv/.begun").unlink()
+    setup.BEGUN.unlink()
     (code,) = Path(".venv").glob("lib/python*/site-packages/pip/__main__.py")
     code.write_text("import sys\nif sys.argv[1] == 'wheel':\n    print('begun', flush=True)\n    open('gate').read()\n")
     os.mkfifo("gate")
