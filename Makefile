@@ -118,5 +118,5 @@ lock: ## Renew requirements.lock with the newest versions that pyproject.toml al
 	rm -rf .venv-lock
 
 clean: ## Remove .venv, caches and datasets; the DVC cache and the figures stay
-	rm -rf .venv .venv-lock docs/_build docs/gallery .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc data/.rest_states data/.*.checkpoint extensions/data/*.nc extensions/data/.rest_states
+	rm -rf .venv .venv-begun .venv-lock docs/_build docs/gallery .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc data/.rest_states data/.*.checkpoint extensions/data/*.nc extensions/data/.rest_states
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
