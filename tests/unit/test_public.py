@@ -79,8 +79,8 @@ def test_a_profile_of_sensors_is_that_of_three_disks():
     assert added.values == pytest.approx([weight, weight], rel=1e-6)
     whole = three.floor_profile(units, 7.5, added=False)
     assert whole.values == pytest.approx([2.5 * weight, 2.5 * weight], rel=1e-6)
-    wide = three.floor_profile(units, 10.0)  # the last one is 5 mm wide
-    assert wide["x"].values == pytest.approx([5.0, 12.5])
+    wide = three.floor_profile(units, 10.0)  # the second one reaches beyond the right wall at 15 mm
+    assert wide["x"].values == pytest.approx([5.0, 15.0]) and wide.values == pytest.approx(added.values)
     part = three.floor_profile(units, [0.0, 5.0, 9.0])  # the second disk is outside
     assert part["x"].values == pytest.approx([2.5, 7.0]) and part.values == pytest.approx([weight, 0.0], rel=1e-6)
     for mistake in (0.0, -1.0, np.nan, "wide", [3.0], [3.0, 2.0], [[1.0, 2.0]]):

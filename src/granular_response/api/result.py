@@ -193,8 +193,8 @@ class Result:
         Parameters
         ----------
         units : of the disks, for one mean radius and one mean particle weight.
-        sensors : the width of each in mm, side by side from the left wall, the last one narrower if the box is no
-            multiple of it; or their edges in mm from the left wall, a growing list.
+        sensors : the width of each in mm, side by side from the left wall until they cover the floor; or their edges,
+            in mm from the left wall, a growing list.
         state : as of :meth:`contacts_table`, with its errors.
         added : the incremental forces, the default for states under load; otherwise the whole forces.
 
@@ -627,7 +627,7 @@ def _edges(sensors: Any, width: float) -> np.ndarray:
     edges = np.array([] if given is None else given)
     if not many and len(edges) and edges[0] > 0.0:
         count = math.ceil(width / edges[0] * (1.0 - 1e-12))  # a whole number but for rounding has no rest
-        edges = np.minimum(edges[0] * np.arange(count + 1), width)
+        edges = edges[0] * np.arange(count + 1)
     if len(edges) < 2 or not (np.diff(edges) > 0.0).all():
         said = " ".join(show(sensors).split())
         raise ValueError(f"sensors = {said}: must be a width in mm, greater than 0, or edges in mm that grow")
