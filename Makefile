@@ -105,8 +105,8 @@ matrix: tools ## The same for each of Python 3.11 to 3.13 that there is
 benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
 	$(PY) -m dvc repro benchmarks/dvc.yaml
 
-arena: setup ## Steps, responses and bounces beside other codes that are installed; says how to install those that are not
-	cd benchmarks && for name in bounces arena responses; do ../$(PY) -m peers.$$name peers/$$name.json || exit; done
+arena: setup ## Steps and responses beside other codes that are installed; says how to install those that are not
+	cd benchmarks && for name in kernel precision arena responses; do ../$(PY) -m peers.$$name peers/$$name.json || exit; done
 	$(PY) benchmarks/document.py
 
 lock: ## Renew requirements.lock with the newest versions that pyproject.toml allows

@@ -1,6 +1,6 @@
-"""Run time against error of the floor response: statics, dynamics with many settings, LAMMPS.
+"""Run time against error of the floor response: statics and LAMMPS.
 
-`python benchmarks/precision.py OUTPUT.json`. Two scenes of the paper's slab: friction 0.2 with a load of 15 disk
+`python -m peers.precision OUTPUT.json`. Two scenes of the paper's slab: friction 0.2 with a load of 15 disk
 weights, and no friction with 4. The error is the largest difference of the normalised response from the quasi-static
 limit: with friction the load path, without it the minimum of the energy. `reference_change` is what another way to the
 limit differs by. Every time includes the fall under gravity, since a response needs it; compilation is not included.
@@ -13,12 +13,11 @@ linearly in the inverse ramp time from its two slowest runs.
 from __future__ import annotations
 
 import sys
-import time
 from typing import Any
 
 import numpy as np
 from peers import lammps
-from timing import floor, scene, write
+from timing import floor, least, scene, write
 
 from granular_response.scene import Scene
 from granular_response.solvers.path import follow
@@ -28,19 +27,15 @@ from granular_response.solvers.solution import loaded_states, rest_state
 SCENES = {"friction": (0.2, 15.0), "frictionless": (0.0, 4.0)}
 #: Increments of the other way with friction, in disk weights, each by the return map.
 INCREMENT = 0.002
-#: Kinetic energies per disk at which the fall under gravity ends, and dynamics hands over to statics.
+#: Kinetic energies per disk at which the fall under gravity ends.
 ENERGIES = (1e-7, 1e-9, 1e-11)
-#: Runs of every method, LAMMPS included, of which the least time counts; the longest dynamics here runs once.
+#: Runs of every method, of which the least time counts.
 REPEATS = 2
 
 
-def solve_used(name: str, together: float | None = None, **protocol: Any) -> tuple[np.ndarray, dict[str, float]]:
-    """Normalised response, and seconds by the clock and of the processor of the whole solution.
-
-    ``together`` asks for a path in such increments of the load.
-    """
+def solve(name: str, together: float | None = None, **protocol: Any) -> np.ndarray:
+    """Normalised response of the whole solution. ``together`` asks for a path in such increments of the load."""
     friction, force = SCENES[name]
-    start, processor = time.perf_counter(), time.process_time()
     problem = Problem.from_scene(scene(friction, force, **protocol))
     rest = rest_state(problem)
     problem = problem.with_loads(rest.position)
@@ -48,38 +43,14 @@ def solve_used(name: str, together: float | None = None, **protocol: Any) -> tup
         loaded = loaded_states(problem, rest, [1.0])[1][0]
     else:
         loaded = follow(problem, rest, [1.0], together=together)[0]
-    used = {"seconds": time.perf_counter() - start, "processor": time.process_time() - processor}
-    return (floor(loaded, problem) - floor(rest, problem)) / force, used
-
-
-def solve(name: str, together: float | None = None, **protocol: Any) -> tuple[np.ndarray, float]:
-    """Normalised response and seconds of the whole solution."""
-    response, used = solve_used(name, together, **protocol)
-    return response, used["seconds"]
+    return (floor(loaded, problem) - floor(rest, problem)) / force
 
 
 def quasi_static(name: str) -> tuple[np.ndarray, float]:
     """The quasi-static limit, and how much another way to it differs: small increments, or a path to the minimum."""
-    reference, _ = solve(name, method="auto")
-    other, _ = solve(name, INCREMENT if SCENES[name][0] else None, method="path")
+    reference = solve(name, method="auto")
+    other = solve(name, INCREMENT if SCENES[name][0] else None, method="path")
     return reference, float(np.abs(reference - other).max())
-
-
-def dynamics_settings() -> list[dict[str, Any]]:
-    """Protocols: what is varied around the paper's."""
-    paper = {"integrator": "beeman", "time_step": 5e-4, "ramp_time": 20.0, "stop_kinetic_energy": 1e-13}
-    settings = []
-    for integrator, steps in {"beeman": (5e-4, 2.5e-4), "verlet": (8e-4, 5e-4, 2.5e-4), "gear": (2.5e-4,)}.items():
-        settings += [{**paper, "integrator": integrator, "time_step": step} for step in steps]
-    settings += [{**paper, "ramp_time": ramp} for ramp in (5.0, 50.0, 100.0, 200.0)]
-    settings += [{**paper, "stop_kinetic_energy": energy} for energy in ENERGIES]
-    both = [{**setting, "static_finish": True} for setting in settings]
-    for energy in (1e-9, 1e-11, 1e-13, 1e-16, 1e-20):
-        both.append({**paper, "stop_kinetic_energy": energy, "static_finish": False})
-    for integrator, step in (("verlet", 5e-4), ("gear", 2.5e-4)):
-        both.append({**paper, "integrator": integrator, "time_step": step, "static_finish": False})
-    both.append({**paper, "ramp_time": 100.0, "static_finish": False, "stop_kinetic_energy": 1e-16})
-    return both
 
 
 def measure(name: str) -> tuple[list[dict], dict]:
@@ -94,13 +65,8 @@ def measure(name: str) -> tuple[list[dict], dict]:
         print(rows[-1], flush=True)
 
     for rest in ({}, *({"stop_kinetic_energy": energy} for energy in ENERGIES if friction)):
-        runs = [solve(name, method="auto", **rest) for _ in range(REPEATS)]
-        add("path" if friction else "minimise", *min(runs, key=lambda run: run[1]), **rest)
-    for setting in dynamics_settings():
-        protocol = {"method": "dynamics", **setting}
-        slow = setting["ramp_time"] > 50 or setting["integrator"] == "gear" or setting["stop_kinetic_energy"] < 1e-13
-        runs = [solve(name, **protocol) for _ in range(1 if slow else REPEATS)]
-        add(setting["integrator"], *min(runs, key=lambda run: run[1]), **{**setting, "integrator": None})
+        response, used = least(lambda: solve(name, method="auto", **rest), REPEATS)  # noqa: B023 called at once
+        add("path" if friction else "minimise", response, used["seconds"], **rest)
     if lammps.executable():
         packing = Scene().packing.build()
         disk = int(np.flatnonzero(packing.row == 14)[30])
@@ -119,8 +85,6 @@ def measure(name: str) -> tuple[list[dict], dict]:
             limit = own[2] + (own[2] - own[1]) * t1 / (t2 - t1)
             for row, response in zip(rows[-3:], own, strict=True):
                 row["error_from_own_limit"] = float(np.abs(response - limit).max())
-    for row in rows:
-        row.pop("integrator", None)
     return rows, {"scene": name, "friction": friction, "force": force, "reference_change": worth}
 
 
@@ -134,18 +98,15 @@ def fastest(rows: list[dict], target: float, key: str = "error") -> float | None
 
 
 def compare(rows: list[dict], name: str) -> dict:
-    """Least times to the target error: statics, dynamics, LAMMPS (along its own line of time against error)."""
+    """Least times to the target error: statics, LAMMPS (along its own line of time against error)."""
     target = TARGETS[name]
     mine = [row for row in rows if row["scene"] == name]
-    statics = [row for row in mine if row["method"] in ("path", "minimise")]
-    others = [row for row in mine if row["method"] == "lammps"]
     key = "error_from_own_limit" if name == "friction" else "error"
     found = {
         "scene": name,
         "target_error": target,
-        "statics_seconds": fastest(statics, target),
-        "dynamics_seconds": fastest([r for r in mine if r not in statics and r not in others], target),
-        "lammps_seconds": fastest(others, target, key),
+        "statics_seconds": fastest([row for row in mine if row["method"] != "lammps"], target),
+        "lammps_seconds": fastest([row for row in mine if row["method"] == "lammps"], target, key),
         "lammps_error_by": key,
     }
     both = found["statics_seconds"] and found["lammps_seconds"]
