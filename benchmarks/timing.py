@@ -53,7 +53,7 @@ def interleaved(
 
 
 def least(action: Callable[[], Any], repeats: int = 1, long: float = np.inf) -> tuple[Any, dict[str, float]]:
-    """What an action returns, and its least seconds by the clock and of the processor; repeated up to ``long`` seconds."""
+    """What an action returns, and its least seconds by the clock and of the processor; none after ``long``."""
     found = {"seconds": np.inf, "processor": np.inf}
     for _ in range(repeats):
         clock, processor = time.perf_counter(), time.process_time()
