@@ -6,7 +6,6 @@ CORES := $(shell getconf _NPROCESSORS_ONLN)
 JOBS ?= $(shell expr $(CORES) + 2)
 REPRO ?=
 EXAMPLES ?= 1000
-BROKEN ?= 10000
 SCENES ?= 5000
 
 # The environment. Its place is relative, since make splits names at blanks.
@@ -29,7 +28,7 @@ export DVC_NO_ANALYTICS := 1
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup tools reproduce extensions figure survey test fuzz broken scenes coverage lint notebooks docs package wheels matrix
+.PHONY: help setup tools reproduce extensions figure survey test fuzz scenes coverage lint notebooks docs package wheels matrix
 .PHONY: benchmark arena lock clean
 
 help: ## Show this list
@@ -70,9 +69,6 @@ test: tools ## Run all tests and the linters (JOBS=2 for two processes)
 
 fuzz: tools ## Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
 	GRANULAR_RESPONSE_FUZZ=$(EXAMPLES) $(PY) -m pytest -m hypothesis -n $(JOBS)
-
-broken: tools ## Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (ten minutes)
-	PYTHONPATH=tests $(PY) tests/integration/broken_files.py $(BROKEN) --output tests/data/broken_files.json
 
 scenes: tools ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (half an hour; goes on where it was interrupted)
 	$(PY) -W ignore tests/unlike_scenes.py $(SCENES) --output tests/data/random_scenes.json

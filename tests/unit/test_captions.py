@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from refusals import refusals
 
-from granular_response.scene import PilePacking, Scene
+from granular_response.scene import Scene
 from granular_response.store import files as store
 from granular_response_paper import captions
 from granular_response_paper.captions import Caption, of_scene
@@ -24,20 +24,6 @@ def test_parameters_end_the_caption_in_the_papers_symbols():
     )
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        (of_scene(Scene().updated({"contact.friction": 0.5, "wall.friction": 0.5})), "µ = µ_wall = 0.5, k_T/k_N"),
-        (of_scene(Scene().updated({"contact.friction": 0.0})), "µ = µ_wall = 0, k_N"),  # without tangential springs
-        (of_scene(Scene(), friction=[0.0, 0.5]), "k_T/k_N"),
-        (of_scene(Scene(packing=PilePacking(layers=11), loads=())), "pile of 11 layers, 31 disks in the lowest"),
-        (of_scene(Scene().updated({"packing.sides": "periodic"})), "15 layers of 61 disks"),
-    ],
-)
-def test_a_scene_is_said_in_the_words_of_its_kind(given, said):
-    assert said in Caption("", "", parameters=given).whole
-
-
 test_what_a_caption_lacks_is_named = refusals(
     ValueError,
     (lambda: Caption("", "", parameters={"frction": 0.2}), "parameters: unknown frction, must be among force"),
@@ -46,13 +32,6 @@ test_what_a_caption_lacks_is_named = refusals(
         "no caption for other",
     ),
 )
-
-
-@pytest.mark.parametrize(
-    ("stem", "number"), [("fig06_one", 6), ("fig24b_two", 24), ("fig25_x", None), ("fig0_x", None), ("pile", None)]
-)
-def test_the_figure_of_a_picture(stem, number):
-    assert captions.number(stem) == number
 
 
 def test_fields_of_a_template_are_filled_in_and_lists_put_in_words():

@@ -1,7 +1,6 @@
 """Arrays of all kinds come in by one door: as their numbers, or refused where numbers or an order are missing."""
 
 from array import array
-from decimal import Decimal
 
 import numpy as np
 import pandas as pd
@@ -124,11 +123,3 @@ def test_what_a_measure_misses_is_nan():
     measured = as_dataset({"a": np.ma.masked_equal([1, 3], 3), "b": np.ma.masked_equal([1.0, 3.0], 1.0)})
     np.testing.assert_array_equal(measured["a"], [1.0, np.nan])
     np.testing.assert_array_equal(measured["b"], [np.nan, 3.0])
-
-
-def test_other_things_stay_what_they_are():
-    for value in (Decimal(1), "13", b"13", None, True, {"a": 1}, xr.Dataset()):
-        assert plain(value) is value
-    assert plain(np.array("a")) == "a" and plain([np.bool_(True), [np.int8(3)]]) == [True, [3]]
-    with pytest.raises(gr.SceneError, match="must be a finite number"):
-        gr.Scene.from_arrays(x=np.longdouble(["1", "1e400"]), z=[1, 1], **BOX)

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import to_hex, to_rgba
-from matplotlib.figure import Figure
 from refusals import refuses
 
 import granular_response as gr
@@ -242,51 +241,6 @@ def test_curves_have_the_colours_that_are_asked_for_and_so_has_their_legend(resu
     other = style.figure()[1][0, 0]
     with matplotlib.rc_context({"axes.prop_cycle": matplotlib.cycler(color=["#123456", "#654321"])}):
         assert colours(gr.plot.response(result, ax=other)) == ["#123456", "#654321"]
-
-
-def test_fonts_and_sizes_are_the_users_also_of_legends_and_pages(result):
-    def sizes(figure) -> dict[str, set]:
-        axes = figure.axes[0]
-        texts = [axes.xaxis.label, axes.title, *axes.get_xticklabels(), *axes.get_legend().get_texts()]
-        return {"size": {text.get_fontsize() for text in texts}, "font": {text.get_fontname() for text in texts}}
-
-    plain = gr.plot.page(result, ["response"], figure=Figure())
-    assert sizes(plain)["font"] == {"STIXGeneral"} and max(sizes(plain)["size"]) == 9.0
-    users = {"font.size": 14.0, "font.family": "DejaVu Sans Mono", "legend.fontsize": 14.0, "axes.titlesize": 14.0}
-    with matplotlib.rc_context({**users, "lines.linewidth": 4.0}):
-        drawn = gr.plot.page(result, ["response"], figure=Figure())
-        assert {line.get_linewidth() for line in drawn.axes[0].get_legend().get_lines()} == {4.0}
-        with style.context():  # figures of the paper
-            fixed = gr.plot.page(result, ["response"], figure=Figure())
-    assert sizes(drawn) == {"size": {14.0}, "font": {"DejaVu Sans Mono"}}
-    assert sizes(fixed) == sizes(plain)
-
-
-def test_a_colour_of_forces_has_one_meaning(result, ax):
-    gr.plot.forces(result, ax=ax, color="tab:blue")
-    names = {line.get_label(): to_rgba(line.get_color()) for line in ax.get_legend().get_lines()}
-    assert names["force increased"] == to_rgba("tab:blue") != names["force decreased"]
-    for name in ("force increased", "force decreased"):
-        assert len(lines(ax, names[name]).get_segments()) > 0
-    other = style.figure()[1][0, 0]
-    gr.plot.contacts(result, ax=other, color={"opened": "magenta"})
-    assert len([c for c in other.collections if np.allclose(c.get_edgecolor()[0], to_rgba("magenta"))]) == 1
-
-
-def test_the_panels_of_a_page_show_one_range_of_x_at_one_place(result):
-    wide = gr.solve({"packing": {"kind": "slab", "layers": 5, "disks_per_row": 41}})
-    for one in (wide, result):
-        figure = gr.plot.page(one, figure=Figure())
-        figure.draw_without_rendering()
-        panels = figure.axes[:4]
-        boxes = [axes.get_window_extent() for axes in panels]
-        assert {(round(box.x0, 6), round(box.x1, 6)) for box in boxes} == {(boxes[0].x0.round(6), boxes[0].x1.round(6))}
-        at_load = [
-            axes.transData.transform((0.0 if k in (0, 3) else one.origin, 0.0))[0] for k, axes in enumerate(panels)
-        ]
-        np.testing.assert_allclose(at_load, at_load[0], atol=1e-6)
-    left, right = gr.plot.page(wide, figure=Figure()).axes[0].get_xlim()
-    assert right - left == pytest.approx(2.0 * pictures.NEAR * pictures.Shown.of(wide).top)
 
 
 def test_a_stress_without_tension_has_a_scale_from_zero(result, ax):

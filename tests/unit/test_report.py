@@ -1,4 +1,4 @@
-"""The page: what it says agrees with the stored table, it needs no network, and a real browser shows all of it."""
+"""The page: what it says agrees with the stored table, and it needs no network."""
 
 import base64
 import html
@@ -8,11 +8,9 @@ import zlib
 from collections import Counter
 from functools import cache
 from html.parser import HTMLParser
-from pathlib import Path
 
 import numpy as np
 import pytest
-from chromium import BROWSER, Chromium
 from claims_data import by_row, dataset, over
 from PIL import Image
 from places import ROOT
@@ -21,8 +19,7 @@ from refusals import refuses
 from granular_response.store import files as store
 from granular_response_paper import report
 from granular_response_paper.claims import table as claims
-from granular_response_paper.claims.claim import ClaimsError, Data, judge
-from granular_response_paper.groups.sensitivity import simulate as sensitivity
+from granular_response_paper.claims.claim import Data, judge
 from granular_response_paper.registry import PAPER, collections
 from granular_response_paper.report import against, explorer, forest, readings
 from granular_response_paper.report.typeset import typeset
@@ -310,10 +307,6 @@ def test_another_parameter_without_a_reason_is_an_error(tmp_path, monkeypatch):
         report.write_fragments(tmp_path / "documents", tmp_path)
 
 
-def test_every_reading_of_the_table_is_a_variant_of_the_study():
-    assert set(readings.READINGS) == set(sensitivity.VARIANTS) - {"reference"}
-
-
 @pytest.mark.parametrize(
     ("plain", "typed"),
     [
@@ -375,94 +368,3 @@ def test_explorer_data_are_those_of_the_states():
     assert data["slabs"][0]["about"] == "ordered packing, µ = 0, µ_wall = 0, k_N = 3000 mg/R"
     assert [one["friction"] for one in data["range"]] == [0.0, 0.2, 1.0]
     assert data["range"][0]["force"] == [1.0, 4.0]  # Fig. 6 ends at 50
-
-
-@pytest.mark.parametrize(("content", "problem"), [(None, "No such file"), ("{", "Expecting"), ("[]", "is not a")])
-def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
-    if content is not None:
-        (tmp_path / "figures").mkdir()
-        (tmp_path / "figures" / "claims.json").write_text(content)
-    refuses(ClaimsError, rf"claims\.json: {problem}", report.files, tmp_path)
-
-
-@pytest.fixture(scope="module")
-def tab(tmp_path_factory):
-    if BROWSER is None:
-        pytest.skip("no Chromium or Chrome is installed (Debian: apt install chromium)")
-    with Chromium(tmp_path_factory.mktemp("profile")) as browser:
-        yield browser
-
-
-@pytest.fixture(scope="module")
-def opened(tab, root, tmp_path_factory):
-    """Opens the page, with its explorer ready."""
-    path = tmp_path_factory.mktemp("page") / "page.html"
-    report.write(path, root, embedded=True)
-
-    def show(width, name="page.html", **options):
-        del tab.problems[:], tab.requests[:]
-        tab.open(path.with_name(name), width, **options)
-        if name == "page.html":
-            tab.wait("'ready' in document.getElementById('explorer').dataset")
-        return tab
-
-    return show
-
-
-def force(tab):
-    return tab.run("[document.getElementById('force').getAttribute('aria-valuetext'), said.textContent]")
-
-
-def drawn(tab):
-    return tab.run("['network', 'floor', 'range', 'phase'].map(id => document.getElementById(id).toDataURL())")
-
-
-@pytest.mark.parametrize(("width", "scheme"), [(390, "dark"), (1400, "light")])
-def test_a_browser_shows_all_of_it(judged, opened, width, scheme):
-    tab = opened(width, scheme=scheme)
-    assert tab.problems == [] and {Path(url).name for url in tab.requests} == {"page.html"}
-    assert tab.run("document.documentElement.scrollWidth") == tab.run("document.documentElement.clientWidth") == width
-    sizes = "i => [i.naturalWidth, i.clientWidth, i.parentElement.clientWidth]"
-    tab.run("document.querySelectorAll('details').forEach(folded => { folded.open = true; })")
-    tab.run("document.querySelectorAll('img').forEach(image => { image.loading = 'eager'; })")
-    tab.wait("Array.from(document.images).every(image => image.complete)")
-    images = tab.run(f"Array.from(document.querySelectorAll('main img'), {sizes})")
-    assert len(images) == 4 + 3 + 2  # the overview three times: a telephone shows a column of it each time
-    assert all(inherent and frame <= width for inherent, _, frame in images)
-    # only on a telephone does a picture scroll sideways, in its own frame, so that its letters can be read
-    assert width == 390 or all(0 <= shown <= 680 for _, shown, _ in images)
-    assert tab.run("document.documentElement.scrollWidth") == width  # folded tables too
-    assert tab.run("getComputedStyle(document.body).backgroundColor") == (
-        "rgb(255, 255, 255)" if scheme == "light" else "rgb(20, 24, 29)"
-    )
-    tab = opened(width, "claims.html", scheme=scheme)
-    assert tab.run("document.documentElement.scrollWidth") == width and tab.problems == []
-    rows = "Array.from(document.querySelectorAll('tr.claim')).filter(row => row.offsetHeight).map(row => row.id)"
-    for kind in ("not measured", "supported"):
-        tab.run(f"document.getElementById('only-{kind.replace(' ', '_')}').click()")
-        assert tab.run(rows) == [f"claim-{row['id']}" for row in judged["table"] if row["verdict"] == kind]
-    tab.run("document.getElementById('only-all').click()")
-    tab.run("search.value = 'R3A Two'; search.dispatchEvent(new Event('input'))")
-    assert tab.run(rows) == ["claim-R3a"] and tab.run("matches.textContent") == "1 shown"
-
-
-def test_the_explorer_follows_mouse_and_keys(opened):
-    tab = opened(1400)
-    assert force(tab)[0] == "90 mg"  # the nearest of 1, 4 and 90 to 20
-    before = drawn(tab)
-    x, y, width = tab.centre("#force")
-    tab.drag(x + 0.49 * width, y, x - 0.49 * width)
-    (said, words), now = force(tab), drawn(tab)
-    assert said == "1 mg" and words.startswith("F = 1 mg: 0 contacts opened, 23 at the Coulomb limit.")
-    # the response of these slabs is the same under every force
-    assert [a != b for a, b in zip(before, now, strict=True)] == [True, False, True, True]
-    tab.key("ArrowRight", 39)
-    assert force(tab)[0] == "4 mg"
-    tab.key("End", 35)
-    assert force(tab)[0] == "90 mg" and drawn(tab) == before
-    tab.click(*tab.centre("#paper button")[:2])
-    assert force(tab)[0] == "4 mg"
-    assert "ordered packing" in tab.run("document.getElementById('network').getAttribute('aria-label')")
-    tab.click(*tab.centre("input[name=friction][value='0.0']")[:2])
-    assert "µ = 0, " in tab.run("document.getElementById('network').getAttribute('aria-label')")
-    assert tab.problems == []

@@ -13,7 +13,6 @@ CONTACT_KEYS = (
 SCENE_KEYS = "packing, contact, wall, loads, preparation, protocol, motion"
 KINDS = "slab or pile or poured or file or arrays"
 RATIO = "must be a number from 0 to 1e6"
-DISK = "must be top-centre, the index of a disk, {x: number}, or {row: top | bottom | number, offset: whole number}"
 
 MALFORMED = {
     # Not YAML, or not a mapping.
@@ -23,22 +22,12 @@ MALFORMED = {
     "contact: !!python/object:os.system {}": (
         "line 1, column 10: not valid YAML: tag 'tag:yaml.org,2002:python/object:os.system' is not allowed"
     ),
-    "{}\n---\n{}": "line 2, column 1: not valid YAML: but found another document",
-    "[a, b]": f"['a', 'b']: must be a mapping with keys among {SCENE_KEYS}",
     # Unknown keys.
     "contacts: {}": f"contacts = {{}}: unknown key, did you mean contact? (allowed: {SCENE_KEYS})",
-    "contact: {fricton: 0.2}": (
-        f"contact.fricton = 0.2: unknown key, did you mean friction? (allowed: {CONTACT_KEYS})"
-    ),
     "loads: [{disk: 0, force: [0, -1], torqe: 1}]": (
         "loads[0].torqe = 1: unknown key, did you mean torque? (allowed: disk, force, displacement, torque)"
     ),
-    "packing: {kind: file, path: a.csv, width: 1.0, layers: 3}": (
-        "packing.layers = 3: unknown key (allowed: kind, path, format, width, origin, sides, columns, overlaps, "
-        "springs)"
-    ),
     # Wrong types and values out of range.
-    "contact: 3": f"contact = 3: must be a mapping with keys among {CONTACT_KEYS}",
     "contact: {normal_stiffness: -3000}": (
         "contact.normal_stiffness = -3000: must be a number greater than 0, at most 1e12"
     ),
@@ -46,46 +35,24 @@ MALFORMED = {
         "contact.normal_stiffness = 600000000000.0: "
         "must be at most 5e11 where wall.normal_stiffness, twice as much, is left open"
     ),
-    "contact: {friction: -0.1}": f"contact.friction = -0.1: {RATIO}",
-    "contact: {friction: true}": f"contact.friction = true: {RATIO}",
     "contact: {damping_ratio: .nan}": f"contact.damping_ratio = nan: {RATIO}",
-    "wall: {friction: null}": f"wall.friction = null: {RATIO}",
+    "contact: {friction: true}": f"contact.friction = true: {RATIO}",
     "contact: {friction: -1, damping_ratio: -1}": f"contact.friction = -1: {RATIO} (and 1 more mistake)",
     # Packings.
-    "packing: {layers: 3}": f"packing = {{'layers': 3}}: key kind is missing, must be {KINDS}",
     "packing: {kind: slub}": f"packing.kind = 'slub': must be {KINDS}, did you mean slab?",
-    "packing: {kind: slab, layers: 0}": "packing.layers = 0: must be a whole number from 1 to 100000",
     "packing: {kind: slab, layers: 100000, disks_per_row: 100000}": (
         "packing.layers = '9999950000 disks': must have at most 100000000 disks"
     ),
-    "packing: {kind: pile, polydispersity: 1.0}": (
-        "packing.polydispersity = 1.0: must be a number, 0 or greater and less than 1"
-    ),
-    "packing: {kind: slab, lattice_constant: touching}": (
-        "packing.lattice_constant = 'touching': must be a number greater than 0, at most 1000, or touching-largest"
-    ),
     # Loads.
-    "loads: {disk: 0, force: [0, -1]}": (
-        "loads = {'disk': 0, 'force': [0, -1]}: must be a list of loads, [] for gravity alone"
-    ),
     "loads: [{disk: 0, force: [0, -1, 0]}]": "loads[0].force = [0, -1, 0]: must be two finite numbers [x, z]",
-    "loads: [{disk: 0, force: [0, 0], torque: big}]": "loads[0].torque = 'big': must be a finite number",
     "loads: [{disk: 0, force: [0, 0]}, {disk: 908, force: [0, 0]}]": (
         "loads[1].disk = 908: must be from 0 to 907, the packing has 908 disks"
-    ),
-    "loads: [{disk: {row: top, x: 2}, force: [0, 0]}]": f"loads[0].disk = {{'row': 'top', 'x': 2}}: {DISK}",
-    "loads: [{disk: {row: 15}, force: [0, 0]}]": (
-        "loads[0].disk.row = 15: must be top, bottom or from 0 to 14, the packing has 15 rows"
     ),
     "loads: [{disk: {row: 1, offset: 31}, force: [0, 0]}]": (
         "loads[0].disk.offset = 31: must be from -29 to 30, row 1 has 60 disks"
     ),
-    "loads: [{disk: 0}]": "loads[0].force = null: must be given, or displacement or torque",
     "loads: [{disk: 0, displacement: [null, null]}]": (
         "loads[0].displacement = [None, None]: must hold a direction at least"
-    ),
-    "loads: [{disk: 0, displacement: 1.0}]": (
-        "loads[0].displacement = 1.0: must be two finite numbers [x, z], null for a direction that is left free"
     ),
     "loads: [{disk: 0, force: [0.0, -1.0], displacement: [null, -1.0]}]": (
         "loads[0].force = [0.0, -1.0]: must be 0 along z, where displacement holds the disk"
@@ -97,8 +64,6 @@ MALFORMED = {
     "protocol: {integrator: verlett}": (
         f"protocol.integrator = 'verlett': must be {' or '.join(INTEGRATORS)}, did you mean verlet?"
     ),
-    "protocol: {time_step: 0}": "protocol.time_step = 0: must be a number greater than 0, or auto",
-    "protocol: {static_finish: no}": "protocol.static_finish = 'no': must be true or false",
 }
 
 
@@ -148,20 +113,15 @@ test_constructors_raise_the_same_error = refusals(
             {"loads.force": [0.0, -1.0]},
             r"^loads\.force: loads has 1 items, no item 'force', did you mean loads\.0\.force",
         ),
-        ({"contact.friction.x": 1.0}, r"^contact\.friction = \{'x': 1\.0\}: must be a number from 0 to 1e6"),
         ({3: 1.0}, "^3: must be the path of a key"),
         ({"contact.friction": 1.0, "contact": {"friction": 1.0}}, r"^contact: 'friction' is named twice"),
-        ({"contact": Contact(friction=1.0), "contact.friction": 0.5}, r"^contact\.friction: 'friction' is named twice"),
-        ({"loads.0.torque": 1.0, "loads[0].torque": 2.0}, r"^loads\[0\]\.torque: 'torque' is named twice"),
         ({"loads": [], "loads.0.torque": 1.0}, r"^loads\.0\.torque: 'loads' is named twice"),
-        ({"packing": {"kind": "pile", "disks_per_row": 5}}, r"^packing\.disks_per_row = 5: unknown key"),
         ({"packing.layers": 2}, r"^loads\[0\]\.disk = 900: must be from 0 to 120"),
         (
             {"contact.normal_stiffness": "3000 N/m"},
             r"at most 1e12; the unit is mg / mean radius, gr\.LaboratoryUnits converts$",
         ),
         ({"protocol.ramp_time": "2 s"}, r"the unit is sqrt\(R/g\), gr\.LaboratoryUnits converts$"),
-        ({"contact.normal_stiffness": "3000"}, "must be a number greater than 0, at most 1e12$"),
     ],
 )
 def test_updates_are_checked(changes, message):

@@ -129,12 +129,6 @@ def test_valid_scenes_survive_yaml(data):
 
 
 @MANY
-@given(st.dictionaries(words | st.text(max_size=3), anything, max_size=6) | anything)
-def test_any_data(data):
-    scene_or_error(Scene.from_dict, data)
-
-
-@MANY
 @given(scenes, st.lists(st.tuples(st.integers(0, 10**6), anything), min_size=1, max_size=2))
 def test_valid_scenes_with_a_value_replaced(data, changes):
     """Reaches the validators of nested fields, which random data seldom do."""
@@ -155,9 +149,3 @@ def leaves(data, path=()):
         yield (*path, key)
         if isinstance(value, dict | list):
             yield from leaves(value, (*path, key))
-
-
-@MANY
-@given(st.text() | st.lists(words | st.sampled_from(list(":-{}[],\n &*!#'\"|>%@0.1e")), max_size=40).map("".join))
-def test_any_text(text):
-    scene_or_error(Scene.from_text, text)
