@@ -1,15 +1,12 @@
 """Animations of a growing load: a frame for each load, on one scale, in a file that is whole or not there."""
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from PIL import Image
-from refusals import refuses
 
 import granular_response as gr
 from granular_response.plot import animation, style
-from granular_response.plot.pictures import PictureError
 
 SCENE = {
     "packing": {"kind": "slab", "layers": 5, "disks_per_row": 11},
@@ -81,21 +78,6 @@ def test_results_stand_side_by_side_with_their_titles(result) -> None:
     assert style.equals(style.F_EXT, 6.0, style.WEIGHT) in [text.get_text() for text in frames.panels[0, 0].texts]
 
 
-def test_what_cannot_be_animated_is_said(result, tmp_path) -> None:
-    other = gr.solve(SCENE, load_factors=[0.2, 0.4])
-    refuses(PictureError, "must have the same forces, one for each frame", gr.plot.animate, {"a": result, "b": other})
-    refuses(PictureError, "no loads, so there is no response", gr.plot.animate, gr.solve({**SCENE, "loads": []}))
-    with pytest.raises(PictureError, match=r"format '.avi' is unknown, must be .gif, .webp, .html, .mp4"):
-        gr.plot.animate(result, output=tmp_path / "growing.avi")
-    with mpl.rc_context({"animation.ffmpeg_path": str(tmp_path / "no-ffmpeg")}):
-        said = "growing.mp4: the program ffmpeg, which writes .mp4, is not installed; .gif, .webp, .html need none"
-        refuses(PictureError, said, gr.plot.animate, result, output=tmp_path / "growing.mp4", figure=Figure())
-    refuses(PictureError, "fps = 0: must be a finite number greater than 0", gr.plot.animate, result, fps=0)
-    said = "cannot be written: there is no folder ~ here"
-    refuses(PictureError, said, gr.plot.animate, result, output="~/growing.gif", figure=Figure())
-    assert not any(tmp_path.iterdir())
-
-
 def test_a_film_holds_its_last_frame(result, tmp_path) -> None:
     """In milliseconds; ffmpeg, where it is there, does the same by the filter that the writer asks for."""
     gr.plot.animate(result, output=tmp_path / "a.gif", dpi=30, fps=5, figure=Figure())
@@ -109,12 +91,3 @@ def test_a_film_holds_its_last_frame(result, tmp_path) -> None:
         gr.plot.animate(result, output=tmp_path / "a.mp4", dpi=31, fps=5, figure=Figure())
         assert b"ftyp" in (tmp_path / "a.mp4").read_bytes()[:16]
     assert "stop_duration=1.5" in " ".join(animation._Film(5.0).extra_args)
-
-
-def test_a_frame_says_how_many_peaks_its_response_has(result) -> None:
-    frames = animation.Frames(result, figure=Figure())
-    said = []
-    for k in (0, -1):
-        frames.draw(k)
-        said += [text.get_text() for text in frames.panels[1, 0].texts if "peak" in text.get_text()]
-    assert said == ["1 peak", "2 peaks"]

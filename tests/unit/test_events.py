@@ -71,19 +71,6 @@ def test_events_as_a_table(result):
     assert len(none) == 0 and list(none.to_dataframe().columns) == list(table.columns)
 
 
-def test_events_as_text(result):
-    events = with_lost(result).events
-    counts = ", ".join(f"{count} {kind}" for kind, count in events.counts().items())
-    lines = repr(events).splitlines()
-    assert lines[0] == f"Events: {counts}" and lines[-1] == f"  and {len(events) - 20} more"
-    assert lines[1].startswith(f"  {events[0].load_factor:.9g}: {events[0].kind}, {events[0].where}")
-    assert events._repr_html_().count("<tr>") == 21
-    html = events.lost._repr_html_()
-    for cell in ("0.75", "jump", "disk 3", "0.8", "0.5", "no, that is: none, nearby"):
-        assert f"<td>{cell}</td>" in html
-    assert gr.Event(0.1, "closes", 4, 2, at_wall=True).where == "disk 4 and the right wall"
-
-
 def test_stored_events_come_back(result, tmp_path):
     both = (result, with_lost(result))
     for one in both:

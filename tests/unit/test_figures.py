@@ -7,9 +7,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.colors import to_hex, to_rgb
-from PIL import Image
-from refusals import refusals
+from matplotlib.colors import to_hex
 
 from granular_response.plot import network as nd
 from granular_response.plot import style
@@ -59,53 +57,6 @@ def test_saved_files_carry_no_date_and_no_program(tmp_path) -> None:
     assert b"Software" not in png.read_bytes()
     assert b"CreationDate" not in pdf.read_bytes()
     assert sorted(path.name for path in png.parent.iterdir()) == [pdf.name, png.name]
-
-
-def test_a_png_has_the_pixels_of_matplotlib_in_fewer_bytes() -> None:
-    lines, (field_figure, panels) = _drawn(), style.figure()
-    panels[0, 0].pcolormesh(np.add.outer(np.linspace(0.0, 1.0, 60), np.linspace(0.0, 2.0, 90)), shading="gouraud")
-    for drawn in (lines, field_figure):  # the one is smaller without, the other with filtered rows
-        plain = io.BytesIO()
-        with style.context():
-            drawn.savefig(plain, format="png", dpi=200)
-        reduced = style.render(drawn)
-        assert len(reduced) < len(plain.getvalue())
-        with Image.open(plain) as one, Image.open(io.BytesIO(reduced)) as other:
-            np.testing.assert_array_equal(np.asarray(one.convert("RGB")), np.asarray(other))
-            assert other.info["dpi"] == pytest.approx((200.0, 200.0), rel=1e-3)
-
-
-@pytest.mark.parametrize("of", style.RAMPS)
-def test_ordered_colours_darken_to_one_side_and_are_seen_on_white(of: str) -> None:
-    colours = np.array([to_rgb(colour) for colour in style.ordered_colours(9, of=of)])
-    linear = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
-    luminance = linear @ np.array([0.2126, 0.7152, 0.0722])  # of WCAG 2
-    assert np.all(np.diff(luminance) > 0.0)
-    assert 1.05 / (luminance[-1] + 0.05) > 2.9
-
-
-test_settings_and_arrays_that_do_not_fit_are_named = refusals(
-    ValueError,
-    (lambda: style.ordered_colours(0), "count = 0"),
-    (lambda: style.render(_drawn(), "bmp"), "file_format = 'bmp'"),
-    (lambda: nd.draw_disks(style.figure()[1][0, 0], [1.0, 2.0], 1.0), r"position: must have shape \(n, 2\)"),
-    (
-        lambda: nd.draw_forces(
-            style.figure()[1][0, 0], POSITION[:2], POSITION[:1], POSITION[:1], length_per_force=1.0, width_per_force=1.0
-        ),
-        "force: 1 given for 2",
-    ),
-)
-
-
-def test_names_beside_curves_do_not_cover_each_other():
-    axes = style.figure()[1][0, 0]
-    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
-    panels.label_ends(axes, [("high", 0.5, 0.52, "black"), ("low", 0.5, 0.5, "black"), ("far", 0.5, 0.9, "black")])
-    axes.figure.draw_without_rendering()
-    low, high, far = (one.get_window_extent() for one in axes.texts)
-    assert [text.get_text() for text in axes.texts] == ["low", "high", "far"]
-    assert low.y1 <= high.y0 + 2.0 and high.y1 < far.y0
 
 
 def test_lines_of_forces_and_their_key_have_one_scale():

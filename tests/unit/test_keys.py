@@ -14,7 +14,7 @@ from refusals import refuses
 
 from granular_response.scene import Scene
 from granular_response.scene.material import KNOWN_LAWS, KnownLaw
-from granular_response.sweeps.keys import Indistinct, _imports, key
+from granular_response.sweeps.keys import Indistinct, key
 
 
 @dataclasses.dataclass(frozen=True)
@@ -164,10 +164,3 @@ def test_a_module_that_a_law_imports_counts(tmp_path, monkeypatch):
     assert (key(scene), key(of_problem)) == before
     (tmp_path / "constants_of_mine.py").write_text("PART = 2.0\n")
     assert not {*before} & {key(scene), key(of_problem)}
-
-
-def test_a_module_that_cannot_be_parsed_or_goes_beyond_its_package_counts_by_itself():
-    assert _imports(b"from ... import beyond, other\nimport a.b\nfrom .c import d\n", "top") == {
-        "a.b", "top.c", "top.c.d",
-    }  # fmt: skip
-    assert _imports(b"def (:", "top") == frozenset()

@@ -1,7 +1,6 @@
 """Scenes at the edge of what can be solved: an answer, or the line that says what is wrong with the scene."""
 
 import warnings
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,8 +12,7 @@ from granular_response.errors import EquilibriumError
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers import solution as solving
 from granular_response.solvers.dynamics import Dynamics
-from granular_response.solvers.equilibrium import check_overlaps, finish
-from granular_response.solvers.problem import Problem
+from granular_response.solvers.equilibrium import finish
 from granular_response.solvers.settle import NotSettled
 from granular_response.solvers.solution import solve_scene
 from granular_response.solvers.stability import Spectrum
@@ -138,24 +136,3 @@ def test_a_limit_of_steps_holds_to_the_step(most, integrator):
         assert [one.reached.relaxation_steps for one in (result.rest, *result.loaded)] == [most] * 3
         assert result.rest.reached.steps == most
         assert result.rest.reached.time == pytest.approx(most * 1e-4)
-
-
-def test_walls_have_names_in_messages():
-    scene = gr.Scene.from_arrays(x=[1, 5], z=[1, 1], radius=1.0, width=10, scene={"loads": []})
-    problem = Problem.from_scene(scene)
-    for place, wall in (([-0.5, 3.0], "left wall"), ([10.5, 3.0], "right wall"), ([5.0, -0.5], "floor")):
-        state = problem.bare_state()
-        sunk = problem.relisted(replace(state, position=np.array([place, [5.0, 6.0]])))
-        with pytest.raises(gr.SolveError, match=rf"^disk 0 and the {wall} overlap by 1\.5 mean radii at load"):
-            check_overlaps(problem, sunk)
-        with pytest.raises(gr.SolveError, match=r"take a larger contact\.normal_stiffness$"):  # no load does this
-            check_overlaps(problem, sunk)
-        with pytest.raises(gr.SolveError, match=r"take a smaller load or a larger contact\.normal_stiffness$"):
-            check_overlaps(problem, replace(sunk, load_factor=0.5))
-
-
-def test_two_disks_inside_each_other_are_named_as_an_event_names_them():
-    problem = Problem.from_scene(gr.Scene.from_arrays(x=[1, 5], z=[1, 1], radius=1.0, width=10, scene={"loads": []}))
-    sunk = problem.relisted(replace(problem.bare_state(), position=np.array([[4.5, 3.0], [5.0, 3.0]])))
-    two = gr.Event(0.0, "opens", 0, 1).where
-    refuses(gr.SolveError, rf"^{two} overlap by 1\.5 mean radii at load factor 0", check_overlaps, problem, sunk)

@@ -107,19 +107,6 @@ def test_stress_carries_the_load(result):
     refuses(IndexError, "state = 3: must be from -3 to 2", result.stress, state=3)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "error", "said"),
-    [
-        ({"state": 1.0}, TypeError, r"^state = 1.0: must be an integer"),
-        ({"x": [[1, 2]]}, ValueError, r"^x = \[\[1, 2\]\]: must be a list of finite numbers$"),
-        ({"z": 3.0}, ValueError, r"^z = 3.0: must be a list of finite numbers$"),
-        ({"width": "wide"}, ValueError, r"^width = 'wide': must be a finite number greater than 0$"),
-    ],
-)
-def test_mistakes_of_a_stress_are_one_line(result, arguments, error, said):
-    refuses(error, said, result.stress, **arguments)
-
-
 def test_periodic_sides_are_crossed_the_shortest_way(tmp_path):
     packing = {"packing.layers": 5, "packing.disks_per_row": 11, "packing.sides": "periodic", "wall.friction": 0.3}
     scene = gr.Scene().updated({**packing, "loads.0.disk": {"row": "top", "offset": -4}})

@@ -11,7 +11,6 @@ import pytest
 from granular_response.scene import Scene
 from granular_response.solvers import solution as solve
 from granular_response.solvers.problem import Problem
-from granular_response.store import atomic
 from granular_response.sweeps import rest as settled
 from granular_response.sweeps.keys import key
 from granular_response.sweeps.memory import Memory, MemoryWarning
@@ -138,16 +137,6 @@ def test_states_of_other_sources_go_after_a_week(folder, computed):
         os.utime(shelf, (long_ago, long_ago))
     settled.rest_state(Problem.from_scene(SCENE))
     assert not old.exists() and new.exists() and thesis.exists() and odd.exists()
-
-
-def test_a_full_disk_costs_a_warning(folder, computed, monkeypatch):
-    def full(*_, **__):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(atomic, "write_bytes", full)
-    with pytest.warns(MemoryWarning, match="No space left on device"):
-        settled.rest_state(Problem.from_scene(SCENE))
-    assert len(computed) == 1 and files(folder) == []
 
 
 class Runs:

@@ -1,13 +1,10 @@
 """The survey's parameters, and that its runs go on where they were."""
 
-import os
 
 import numpy as np
 import pytest
 import yaml
-from refusals import refuses
 
-from granular_response.scene import SceneError
 from granular_response.store import files as store
 from granular_response_paper.ensembles import AT_REST
 from granular_response_paper.survey import simulate as survey
@@ -70,14 +67,3 @@ def test_a_run_goes_on_where_it_was_and_stores_what_was_found(file):
     marks = store.read_attributes(path)
     assert marks["block"] == "small" and marks["seed"] == "0" and "collapse_depth" in marks["parameters"]
     assert survey.sources(*survey.SOURCES) in marks["sources"]
-
-
-def test_mistakes_are_one_line_each(file, tmp_path):
-    with pytest.raises(survey.SurveyError, match=r"^block large: there is none of this name, must be one of small$"):
-        survey.ensemble("large", file)
-    refuses(survey.SurveyError, r"none\.yaml: cannot be read", survey.read_parameters, tmp_path / "none.yaml")
-    os.mkfifo(tmp_path / "pipe.yaml")  # it was waited for without end
-    with pytest.raises(survey.SurveyError, match=r"pipe\.yaml: cannot be read: is not a regular file"):
-        survey.read_parameters(tmp_path / "pipe.yaml")
-    file.write_text(yaml.safe_dump({**SMALL, "realizations": 0}))
-    refuses(SceneError, r"params\.yaml: realizations = 0", survey.read_parameters, file)

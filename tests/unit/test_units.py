@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from refusals import refusals, refuses
+from refusals import refusals
 
 from granular_response.scene import (
     Contact,
@@ -111,11 +111,3 @@ def test_a_table_that_names_its_unit_has_the_mean_radius_of_the_units(tmp_path, 
     for unit in ("", "_px"):  # of no known size
         (tmp_path / "disks.csv").write_text(f"x{unit},z{unit},radius{unit}\n1,1,1\n")
         assert LaboratoryUnits().reduced_scene({"packing": packing})
-
-
-def test_what_is_wrong_with_a_table_is_for_the_scene_to_say(tmp_path):
-    (tmp_path / "disks.csv").write_text("x_mm,z_mm,radius_mm\n1,1,one\n")
-    for given in ({"path": str(tmp_path / "disks.csv")}, {"path": 5}, {"path": "disks.csv", "widht": 3}):
-        data = {"packing": {"kind": "file", **given}}
-        assert LaboratoryUnits().reduced_scene(data) == data
-        refuses(SceneError, r"^packing\.", lambda data=data: Scene.from_dict(data).packing.build())
