@@ -99,15 +99,11 @@ def test_chosen_states_keep_the_events_that_lead_to_them(result):
 
 
 DAMAGE = {
-    "half of them": (lambda d: d.drop_vars("event_until"), "variable event_until is missing"),
     "no such kind": (lambda d: spoil(d, "event_kind", 11), "variable event_kind: holds 11, must be from 0 to 10"),
     "no such disk": (lambda d: spoil(d, "event_first", 99), "variable event_first: holds 99, must be from -1 to 33"),
     "no such partner": (lambda d: spoil(d, "event_second", -2), "variable event_second: holds -2, must be from -1"),
     "no such wall": (lambda d: spoil(spoil(d, "event_at_wall", 1), "event_second", 3), "event_second: holds 3"),
-    "no such state": (lambda d: spoil(d, "event_state", 4), "variable event_state: holds 4, must be from 0 to 3"),
     "no load": (lambda d: spoil(d, "event_load_factor", np.nan), "variable event_load_factor: must be finite"),
-    "words": (lambda d: d.assign(event_first=d["event_first"].astype(str)), "event_first: has values of type"),
-    "other dimensions": (lambda d: d.rename_dims(event="change"), "event_load_factor: has dimensions change, must"),
 }
 
 
@@ -235,10 +231,7 @@ test_what_cannot_be_looked_for_is_refused = refusals(
     ValueError,
     (asked("open", 0.0, 1.0), r"^kind = 'open': must be opens or"),
     (asked("opens", -0.5, 1.0), r"^low = -0.5: must be 0 or greater"),
-    (asked("opens", "0", 1.0), r"^low = '0', high = 1.0: must be .*numbers"),
     (asked(bool, 0.0, 1.0), r"^low = 0.0: must be greater than 0"),
-    (asked(bool, 1.0, 0.5), r"low below high"),
-    (asked(None, 0.0, 1.0), r"^happened = None: must be a kind of event, or a function of the result"),
     (asked(bool, 0.1, 1.0, where=bool), r"^where: is asked of events, must be left out"),
     (asked(bool, 0.1, 1e9), r"^loads\[0\].force: 6e\+09 mg at the largest load"),
     (asked(bool, 0.1, 1.0, tolerance=0.0), r"^tolerance = 0.0: must be a finite number greater than 0"),

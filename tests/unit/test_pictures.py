@@ -188,9 +188,6 @@ def test_bad_input_is_named(result, ax):
             result, ax=ax, color="no colour"
         ),
         "must be a colour, or 2, one for": lambda: gr.plot.response(result, ax=ax, color=["red", "blue", "green"]),
-        "cmap = 'rainbow2': must be a colour map": lambda: gr.plot.response(result, ax=ax, cmap="rainbow2"),
-        "'lw' and 'linewidth', which are aliases": lambda: gr.plot.response(result, ax=ax, lw=1.0, linewidth=2.0),
-        "must be a colour, or two": lambda: gr.plot.forces(result, ax=ax, color=["red"]),
         "must be colours by kind, which are unchanged, sliding": lambda: gr.plot.contacts(result, ax=ax, color="red"),
     }.items():
         refuses(pictures.PictureError, message, call)

@@ -307,24 +307,6 @@ def test_another_parameter_without_a_reason_is_an_error(tmp_path, monkeypatch):
         report.write_fragments(tmp_path / "documents", tmp_path)
 
 
-@pytest.mark.parametrize(
-    ("plain", "typed"),
-    [
-        ("-2.6 % at -.5, (-3)", "\u22122.6 % at \u2212.5, (\u22123)"),
-        ("0.5-0.7 and A-1", "0.5-0.7 and A-1"),
-        ("1.2e-12 or 1e-13", "1.2\u202f×\u202f10<sup>\u221212</sup> or 10<sup>\u221213</sup>"),
-        ("sigma_zz, k_T/k_N", "<i>σ</i><sub>zz</sub>, <i>k</i><sub>T</sub>/<i>k</i><sub>N</sub>"),
-        ("R^2 and R^-1", "R<sup>2</sup> and R<sup>\u22121</sup>"),
-        ("sqrt(k), sqrt(R/g)", "√k, √(R/g)"),
-        ("stop_1e-9, fig_01.png, mu_0.2, floor_disk", "stop_1e-9, fig_01.png, mu_0.2, floor_disk"),
-        ("µ_wall = 0, F_ext", "<i>µ</i><sub>wall</sub> = 0, <i>F</i><sub>ext</sub>"),
-        ("<b> & c", "&lt;b&gt; &amp; c"),
-    ],
-)
-def test_texts_are_set_with_minus_signs_powers_and_subscripts(plain, typed):
-    assert typeset(plain) == typed
-
-
 def crossovers():
     largest = "touching-largest"
     cases = [(0.0, 1.0, largest), (0.0, 0.2, largest), (0.25, 0.2, largest), (0.25, 1.0, "2.0")]
