@@ -51,6 +51,7 @@ MALFORMED = {
     "loads: [{disk: {row: 1, offset: 31}, force: [0, 0]}]": (
         "loads[0].disk.offset = 31: must be from -29 to 30, row 1 has 60 disks"
     ),
+    "loads: [{disk: 0}]": "loads[0].force = null: must be given, or displacement or torque",
     "loads: [{disk: 0, displacement: [null, null]}]": (
         "loads[0].displacement = [None, None]: must hold a direction at least"
     ),
