@@ -276,6 +276,11 @@ MISTAKES = [
     ("a.dump", DUMP[:-20], "holds 1 of 2 atoms in its last frame"),
     ("a.gsd", "not a gsd file", "is not a GSD file with particles"),
     ("a.csv", MARK + "x,z,radius,mass\n1,1,1,1\n3,1,1,1", "is cut: its last line has no end"),
+    ("a.csv", '#,"a comment\nx,z,radius\n1,1,1\n#,"\n1_0,1,1\n', "line 5: x = '1_0': must be a finite number"),
+    ("a.txt", "# granular-response: 2 disks, width 9.0, si1 0 1 1\n3 0 1 1\n",
+     "line 1: is a damaged first line of a table of granular-response"),
+    ("a.csv", "x,z,radius\n1,1,1\n# a note\u20283,1,1\n", "line 3: has a line or page end of another kind within"),
+    ("a.csv", "x,z,radius,mass,density\n1,1,1,5,1\n", "columns mass and density: must have one of them"),
     # columns that are missing, unknown or a key's
     ("a.csv", "x,z\n1,1\n", "column radius is missing, header must name x, z and radius; there are x, z; packing.col"),
     ("a.csv", "x,z,radius,k_n\n1,1,1,5\n", "column k_n: must be left out, contact.normal_stiffness is"),
