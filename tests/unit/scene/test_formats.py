@@ -1,5 +1,8 @@
 """Packings from other programs, and back."""
 
+import bz2
+import gzip
+import lzma
 import re
 import warnings
 from pathlib import Path
@@ -152,6 +155,16 @@ WALLS = {"width": 10.0, "origin": (10.0, -5.0)}
 
 TWO = "1,1,1,1\n4,1,2,3\n"
 ONE = "x,z,radius,mass\n1,1,1,1\n"
+#: A frame whose bounds come last, cut before they do.
+LATE_BOX = """\
+ITEM: TIMESTEP
+0
+ITEM: NUMBER OF ATOMS
+1
+ITEM: ATOMS id x y z radius
+1 5 1 0 1
+ITEM: BOX BOUNDS ff ff pp
+"""
 
 
 def test_lammps_data(tmp_path):
@@ -238,61 +251,104 @@ MISTAKES = [
     # rows that would be lost
     ("a.dump", DUMP + "3 0.6 0 3.0 2.0 1.0\n", "line 19: holds 3 of 2 atoms in its last frame"),
     ("a.dump", DUMP.replace("1 1 0.5", "2 1 0.2 0.2 0 0.1\n1 1 0.5"), "line 9: holds 2 of 1 atoms in its frame 1 of 2"),
+    ("a.dump", DUMP.replace("ATOMS\n2", "ATOMS\n0_2"), "line 14: '0_2': must be the number of atoms"),
     ("a.dump", DUMP.replace("ff pp ff", "ff qq ff").replace("ff ff pp", "ff qq pp"), "and have flags of three axes or"),
     ("a.data", DATA + "4 0 0 0 0 0 0\n", "section Velocities has 4 lines, must have 3, as the header atoms says"),
     ("a.data", DATA.replace("\nVelocities\n", ""), "as many atoms as it says (found 6)"),
+    ("a.data", DATA.replace("3 atoms", "0_3 atoms"), "line 3: '0_3 atoms': is no header of a LAMMPS data file"),
+    ("a.data", DATA + "\nDisks\n\n1 1\n", "line 26: 'Disks': is no section that atoms of style sphere have"),
     ("a.csv", 'x,z,radius,note\n1,1,1,a\n3,1,1,"big\n5,1,1,c\n7,1,1,d\n',
      "line 3: is not CSV: a quote that is not closed in its line"),
+    ("a.csv", '#,"a comment\nx,z,radius\n1,1,1\n#,"\n1_0,1,1\n', "line 5: x = '1_0': must be a finite number"),
     ("a.txt", "1 0 1 1\n3 0 1 1 0.5\n", "line 2: has 5 values, must have x y z r"),
+    ("a.txt", "#format x_y_z_r_attrs\n1 0 1 1 5 6\n3 0 1 1 7\n", "line 3: has 5 values, must have x y z r attrs"),
     # tables that say a thing twice
     ("a.dump", DUMP.replace("id xs", "id xs xs").replace("0.1 0", "0.1 0.2 0").replace("0.4 0", "0.4 0.4 0"),
      "line 19: column xs is given 2 times, as columns 2 and 3; must be given once"),
     ("a.dump", DUMP.replace("id xs", "id x xs").replace("0.1 0", "1 0.1 0").replace("0.4 0", "-1 0.4 0"),
      "line 20: columns x and xs contradict each other; must agree, or be one of the two"),
+    ("a.dump", DUMP.replace("diameter", "radius diameter").replace("2.0 1.0", "1 2.0 1").replace("3.0 5.0", "1 3.0 5"),
+     "line 21: columns radius and diameter contradict each other; must agree, or be one of the two"),
     ("a.dump", DUMP.replace("r mass", "r density mass").replace("2.0 1.0", "2 1 1").replace("3.0 5.0", "3 1 5"),
      "line 19: columns mass and density: must have one of them"),
     ("a.dump", DUMP + HEADER + "\n1 0.1 0 3.0 2.0 1.0\n2 0.4 0 3.5 3.0 5.0\n",
      "line 22: ITEM: ATOMS: is given twice in a frame, in line 19 and here"),
+    ("a.data", DATA.replace("3 atoms", "2 atoms\n3 atoms"), "line 4: atoms: is given twice, in line 3 and here"),
+    ("a.data", DATA.replace("-5.0 5.0 ylo yhi", "0 9 xlo xhi"),
+     "line 7: bounds in x: is given twice, in line 6 and here"),
+    ("a.data", DATA + DATA[DATA.index("Atoms") :], "line 25: section Atoms: is given twice, in line 14 and here"),
     ("a.data", DATA.replace("made by hand", "granular-response: 3 disks, width 8.0, sides walls"),
      "line 1: says width 8.0, the bounds xlo xhi 10.0 to 20.0; must agree"),
+    ("a.csv", "x,z,radius\n1,1,1\nx,z,radius\n3,1,1\n", "line 3: header: is given twice, in line 1 and here"),
     ("a.csv", "x,z,radius,diameter\n1,1,1,2\n3,1,1,4\n", "line 3: columns radius and diameter contradict each other"),
+    ("a.csv", "x,z,radius,R\n1,1,1,2\n", "column radius stands in radius and R, header must name x, z and radius"),
     ("a.csv", "x,y,z,radius\n1,1,1,1\n3,2,2,1\n", "disks must lie in one plane, y or z must be the same for all"),
     ("a.csv", "# granular-response: 1 disks, width 9.0, sides walls\nx,z,radius,99\n1,1,1,5\n",
      "column mass is missing, which tables of granular-response have"),
-    ("a.txt", "#format x_y_z_r\n#1 0 1 1\n3 0 1 1\n# end, granular-response: 2 disks, width 9.0, sides walls\n",
-     "the mark of granular-response in its last line is there, that above the spheres is missing or damaged"),
-    # tables of several frames, of tracked disks, and without a header
-    ("a.csv", "x,z,radius,t\n1,1,1,0\n3,1,1,1\n", "column t: each disk has another one; a table must have"),
-    ("a.csv", "x,z,radius,trackid\n1,1,1,7\n3,1,1,7\n", "line 3: trackid '7': is given twice, in line 2 and here"),
-    ("a.csv", "x,z,radius,mass,ecc\n1,1,1,300,0\n", "column mass: is a brightness where disks are tracked, as column "
-     "ecc shows; must have a unit, as mass [g], or packing.columns = {mass: mass} says that it is one"),
-    ("a.csv", "1,1,1\n3,1,1\n", "the first line has numbers alone, must be a header that names x, z and radius"),
-    # files of another kind than their name says
-    ("a.csv", DUMP, "is of format lammps-dump by its content, not csv: packing.format says so"),
-    ("a.dump", DUMP.replace("NUMBER OF ATOMS", "NUMBER OF ENTRIES"), "but of contacts, which packing.springs takes"),
-    # files that are not whole
-    ("a.data", DATA.replace("3 atoms", "4 atoms"), "is not a whole LAMMPS data file"),
-    ("a.dump", DUMP[:-1], "is cut: its last line has no end"),
-    ("a.dump", DUMP[:-20], "holds 1 of 2 atoms in its last frame"),
-    ("a.gsd", "not a gsd file", "is not a GSD file with particles"),
-    ("a.csv", MARK + "x,z,radius,mass\n1,1,1,1\n3,1,1,1", "is cut: its last line has no end"),
-    ("a.csv", '#,"a comment\nx,z,radius\n1,1,1\n#,"\n1_0,1,1\n', "line 5: x = '1_0': must be a finite number"),
     ("a.txt", "# granular-response: 2 disks, width 9.0, si1 0 1 1\n3 0 1 1\n",
      "line 1: is a damaged first line of a table of granular-response"),
     ("a.csv", "x,z,radius\n1,1,1\n# a note\u20283,1,1\n", "line 3: has a line or page end of another kind within"),
-    ("a.csv", "x,z,radius,mass,density\n1,1,1,5,1\n", "columns mass and density: must have one of them"),
+    ("a.txt", "1 0 1 1\n# page 1\f3 0 1 1\n", "line 2: has a line or page end of another kind within"),
+    ("a.csv", "x,z,radius,vx,vx\n1,1,1,0,5\n", "line 1: column vx is given 2 times, must be given once"),
+    ("a.data", DATA.replace("\n3 0 0 0", "\n4 0 0 0"), "line 24: id = '4': must be that of an atom, section"),
+    ("a.data", DATA.replace("1 atom types", "2 atom types").replace("1 1.0\n", "1 1.0\n1 2.0\n"),
+     "line 13: 1 in section Masses: is given twice, in line 12 and here"),
+    ("a.txt", "#format x_y_z_r\n#1 0 1 1\n3 0 1 1\n# end, granular-response: 2 disks, width 9.0, sides walls\n",
+     "the mark of granular-response in its last line is there, that above the spheres is missing or damaged"),
+    ("a.txt", "#format x_y_z_r_r\n1 0 1 1 0.5\n", "line 1: format names 'r' 2 times, must name it once"),
+    # tables of several frames, of tracked disks, and without a header
+    ("a.csv", "x,z,radius,image\n1,1,1,a.png\n3,1,1,b.png\n3,1,1,b.png\n", "line 2: image = 'a.png': must be a finite"),
+    ("a.csv", "x,z,radius,t\n1,1,1,0\n3,1,1,1\n", "column t: each disk has another one; a table must have"),
+    ("a.csv", "x,z,radius,frame,Frame\n1,1,1,0,0\n", "line 1: column frame is given 2 times, must be given once"),
+    ("a.csv", "x,z,radius,trackid\n1,1,1,7\n3,1,1,7\n", "line 3: trackid '7': is given twice, in line 2 and here"),
+    ("a.csv", "x,z,radius,mass,ecc\n1,1,1,300,0\n", "column mass: is a brightness where disks are tracked, as column "
+     "ecc shows; must have a unit, as mass [g], or packing.columns = {mass: mass} says that it is one"),
+    ("a.csv", "x,z,radius,mass,particle\n1,1,1,300,0\n", "column mass: is a brightness where disks are tracked"),
+    ("a.csv", "1,1,1\n3,1,1\n", "the first line has numbers alone, must be a header that names x, z and radius"),
+    ("a.csv", "x\tz\tradius\n1\t1\t1\n", "columns are separated by blanks or tabs, must be separated by commas"),
+    ("a.csv", "pos,height,size\n1,1,1\n", "are missing, header must name x, z and radius; there are pos, height, size; "
+     "packing.columns says which are meant, as {z: Y, radius: R}"),
+    ("a.csv", "secret;a b\n", "columns x, z and radius are missing, header must name x, z and radius"),
+    # files of another kind than their name says
+    ("a.csv", DUMP, "is of format lammps-dump by its content, not csv: packing.format says so"),
+    ("a.txt", "x,z,radius\n1,1,1\n", "is of format csv by its content, not yade"),
+    ("a.csv", "1 0 1 1\n3 0 1 1\n", "is of format yade by its content, not csv"),
+    ("a.dump", DATA, "is of format lammps-data by its content, not lammps-dump"),
+    ("a.dump", "---\ncreator: LAMMPS\ntimestep: 0\n", "is a LAMMPS dump of style yaml, must be one of style custom"),
+    ("a.csv", '2\nLattice="1 0 0 0 1 0 0 0 1"\nX 1 1\n', "is a file of extended XYZ, which is written and not read"),
+    ("a.dump", DUMP.replace("NUMBER OF ATOMS", "NUMBER OF ENTRIES"), "but of contacts, which packing.springs takes"),
+    # files that are not whole
+    ("a.data", DATA.replace("3 atoms", "4 atoms"), "is not a whole LAMMPS data file"),
+    ("a.data", DATA[:-1], "is cut: its last line has no end"),
+    ("a.dump", DUMP[: DUMP.rindex("ITEM: BOX")], "the last frame lacks its number, box or atoms"),
+    ("a.dump", DUMP[:-1], "is cut: its last line has no end"),
+    ("a.dump", DUMP[:-20], "holds 1 of 2 atoms in its last frame"),
+    ("a.dump", LATE_BOX, "line 7: must be followed by three lines of bounds, and have flags of three axes or none"),
+    ("a.txt", "", "has no spheres"),
+    ("a.gsd", "not a gsd file", "is not a GSD file with particles"),
+    ("a.csv", "x,z,radius\n", "has no disks, must have a header x,z,radius and a line for each disk"),
+    ("a.csv", MARK + "x,z,radius,mass\n1,1,1,1\n3,1,1,1", "is cut: its last line has no end"),
+    ("a.csv", "x,z,radius\n1,1,1\n3,1\n", "line 3: has 2 values, must have 3 as the header"),
     # columns that are missing, unknown or a key's
     ("a.csv", "x,z\n1,1\n", "column radius is missing, header must name x, z and radius; there are x, z; packing.col"),
+    ("a.csv", "id,X,height,size\n1,1,1,1\n", "columns z and radius are missing, header must name x, z and radius; "
+     "there are id, X, height, size; packing.columns says which are meant, as {z: Y, radius: R}"),
     ("a.csv", "x,z,radius,k_n\n1,1,1,5\n", "column k_n: must be left out, contact.normal_stiffness is"),
+    ("a.csv", "x,z,radius,Mu\n1,1,1,5\n", "column mu: must be left out, contact.friction is"),
+    ("a.csv", "x,z,radius,mass,density\n1,1,1,5,1\n", "columns mass and density: must have one of them"),
     ("a.csv", f"x,z,radius,weight\n{TWO}", "column weight: unknown, did you mean mass? (mass or density, or neither)"),
     ("a.csv", f"x [mm],z [mm],radius [cm],mass\n{TWO}", "columns x, z and radius: must have the same unit of length, "
      "not mm, mm, cm; convert them in the table"),
+    ("a.dump", DUMP.replace("diameter", "size"), "line 19: column radius or diameter is missing; there are id, xs"),
     ("a.data", DATA.replace("# sphere", "# atomic"), "line 14: atoms must be of style sphere"),
     # values that cannot be, and those that leave no digits for the others
     ("a.csv", "x,z,radius\n1,1,1\nnan,1,1\n", "line 3: x = 'nan': must be a finite number"),
     ("a.data", DATA.replace("3 1 1.0", "1 1 1.0"), "line 18: id = 1: must differ from that of line 16"),
+    ("a.dump", DUMP.replace("2 0.4", "2.5 0.4"), "line 21: id = '2.5': must be a whole number"),
+    ("a.txt", "1 0 1 1\n2 1 2 1\n", "disks must lie in one plane"),
     ("a.csv", "x,z,radius\n1,1,1\n3,1,1\n1,1,2\n", "line 4: disk is in the same place as that of line 2"),
     ("a.csv", "x,z,radius\n1,-1,1\n", "line 2: z = -1.0: must be above the floor 0, which packing.origin says"),
+    ("a.csv", f"{ONE}1e300,1,1,1\n", "reach from 0 to 1e+300, packing.origin says where left wall and floor are"),
     ("a.csv", f"{ONE}4,1e300,1,1\n", "z = 1e+300: must be at most 1e+09, 1e9 mean radii"),
     ("a.csv", f"{ONE}4,1,1,1e-7\n", "line 3: mass = 1e-07: must be at least 1e-06, a millionth of the largest"),
     ("a.csv", f"{ONE}4,1,1e-4,1\n", "line 3: radius = 0.0001: must be at least 0.001, a thousandth of the largest"),
@@ -347,6 +403,19 @@ def test_heights_that_point_down_are_asked_about_and_turned(tmp_path):
     np.testing.assert_allclose(packing.position, [[2, 1], [4, 1.5]])
     refuses(SceneError, r"radius = '-r_px': there is no such", build, tmp_path / "a.csv", columns={"radius": "-r_px"})
     refuses(SceneError, "must name a column once", FilePacking, path="a.csv", columns={"z": "-y", "x": "y"})
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.dump.gz", "a.data", "a.txt", "a.gsd"])
+def test_packed_files_are_named_as_what_they_are(tmp_path, name):
+    """The message went by chance of the bytes."""
+    packed = {
+        "(gzip)": gzip.compress(DUMP.encode()), "(bzip2)": bz2.compress(DUMP.encode()),
+        "(xz)": lzma.compress(DUMP.encode()), "(zstd)": b"\x28\xb5\x2f\xfd\x00", "zip archive": b"PK\x03\x04",
+        "UTF-16": DUMP.encode("utf-16"), "netCDF": b"\x89HDF\r\n\x1a\n",
+    }  # fmt: skip
+    for said, content in packed.items():
+        (tmp_path / name).write_bytes(content)
+        refuses(SceneError, rf"{name}': is .*{re.escape(said)}", build, tmp_path / name)
 
 
 @pytest.mark.parametrize(
@@ -430,6 +499,30 @@ def test_a_table_is_read_and_rescaled(tmp_path):
     assert packing.n == 3 and list(packing.row) == [-1, -1, -1] and packing.position.flags.c_contiguous
     text = "\ufeff# lengths in mm\n\nid, radius ,z,x\n a, 1.0, 2.0, 3.0\n\n# the second\nb,1,2,5e0\n,,,\n"
     np.testing.assert_allclose(build(tmp_path / "b.csv", text, width=10.0).position, [[3.0, 2.0], [5.0, 2.0]])
+
+
+def test_a_packing_in_two_scenes_is_read_where_each_is(tmp_path):
+    for folder, count in (("a", 2), ("b", 3)):
+        (tmp_path / folder).mkdir()
+        rows = "".join(f"{2 * k + 1},1,1\n" for k in range(count))
+        (tmp_path / folder / "disks.csv").write_text(f"x,z,radius\n{rows}")
+    shared = Scene.from_dict({"packing": {"kind": "file", "path": "disks.csv", "width": 10.0}, "loads": []}).packing
+    scenes = [Scene.from_dict({"packing": shared, "loads": []}, folder=tmp_path / folder) for folder in "ab"]
+    assert [scene.packing.build().n for scene in scenes] == [2, 3] and shared.folder is None
+
+
+def test_files_that_cannot_be_opened_and_those_that_say_too_little(tmp_path):
+    (tmp_path / "a.csv").write_bytes(b"x,z,radius\n\xff,1,1")
+    (tmp_path / "b.csv").write_text("x,z,radius\n1,1,1\n")
+    for path, said in (
+        ("nowhere.csv", r"^packing\.path = 'nowhere\.csv': no such file$"),
+        (tmp_path, "cannot be read: "),
+        (tmp_path / "a.csv", r"is not a text file in UTF-8$"),
+        (tmp_path / "b.csv", r"packing\.width = null: must be given, the file has no box"),
+    ):
+        refuses(SceneError, said, build, path)
+    with pytest.raises(SceneError, match=r"packing\.format = 'vtk': must be csv or lammps-data or"):
+        Scene.from_dict({"packing": {"kind": "file", "path": "a", "format": "vtk"}})
 
 
 def test_periodic_sides_take_any_place(tmp_path):
@@ -602,6 +695,25 @@ def test_semicolons_between_columns_and_units_after_an_underscore(tmp_path, head
     packing = build(tmp_path / "a.csv", "\n".join(row.replace(",", between) for row in rows), width=9.0)
     np.testing.assert_allclose(packing.position, np.array([[1, 1], [4, 1]]) / 1.5)
     np.testing.assert_allclose(packing.mass, [2 / 3, 4 / 3] if "density" in header else [4 / 3, 2 / 3])
+
+
+@pytest.mark.parametrize(
+    ("text", "columns", "message"),
+    [
+        ("x;z;radius\n1,5;2;1\n", None, "line 2: x = '1,5': must be a finite number with a decimal point, not a comma"),
+        ("x_mm,z_mm,radius_um\n1,1,1\n", None, "columns x, z and radius: must have .*, not mm, mm, um; convert them "),
+        ("x_mm,z_mm,radius\n1,1,1\n", None, "the same unit of length, not mm, mm, none; "),
+        ("x_left,z_mm,r_mm\n1,1,1\n", None, "column x is missing"),
+        ("x_mm,z_mm,r_mm,r_cm\n1,1,1,1\n", {"x": "X_mm", "radius": "r_cm"}, "not mm, mm, cm; "),
+    ],
+)  # fmt: skip
+def test_separators_and_units_that_cannot_be_meant(tmp_path, text, columns, message):
+    refuses(SceneError, message, build, tmp_path / "a.csv", text, width=9.0, columns=columns)
+
+
+def test_a_name_without_a_unit_comes_before_one_with_it(tmp_path):
+    packing = build(tmp_path / "a.csv", "x_mm,x,z,radius,radius_mm\n9,1,1,1,9\n", width=9.0)
+    np.testing.assert_allclose(packing.position, [[1, 1]])
 
 
 def test_velocities_with_a_unit_are_not_taken_for_reduced_ones(tmp_path):

@@ -209,10 +209,18 @@ ROW = re.compile(r"^1,.*\n", re.MULTILINE)
         (ROW, "1,0,15,,1.0,1.0,sticking,1.0,0.1\n", "packing.springs: line 3: disks 0 and 15 do not touch"),
         (ROW, lambda row: row[0] * 2, "packing.springs = '.*': line 4: contact of disks .*: is given twice, in line 3"),
         (ROW, "", r"packing.springs: disks \d+ and \d+ overlap by .* mean radii, must be among them"),
+        (ROW, "1,0,16,,1.0,1.0,sticking,1.0,0.1\n", ".*: line 3: disk 16: must be another one of the 16 disks"),
         (ROW, "1,3,3,,1.0,1.0,sticking,1.0,0.1\n", ".*: line 3: disk 3: must be another one of the 16 disks"),
+        (ROW, "1,0,3,,1.0,1.0,sticking,nan,0.1\n", ".*: line 3: normal_force = 'nan': must be a finite number"),
         (ROW, "1,0,3,,1.0,1.0,sticking,1.0,inf\n", ".*: line 3: tangential_force = 'inf': must be a finite number"),
+        (ROW, "1,0,3,,1.0,1.0,sticking,0.0,0.1\n", ".*: line 3: normal force 0.0: must be greater than 0"),
         (ROW, "1,0,,ceiling,1.0,1.0,sticking,1.0,0.1\n", ".*: line 3: wall = 'ceiling': must be floor or left_wall or"),
+        (ROW, "1,x,3,,1.0,1.0,sticking,1.0,0.1\n", ".*: line 3: first and second: must be numbers of disks"),
+        (ROW, "1,0,3\n", ".*: line 3: has 3 values, must have 9 as the header"),
+        (",normal_force", ",force", ".*: line 1: column normal_force is missing, which a .contacts.csv has"),
         (",normal_force", ",nomal_force", ".*: line 1: column nomal_force: unknown, did you mean normal_force[?]$"),
+        ("sticking,", "sticking,0.0,", ".*: has 10 values, must have 9"),
+        ("tial_force\n", "tial_force,rolling_force,rolling_force\n", ".*: line 1: column rolling_force is given 2"),
         (re.compile(r"\n$"), "", ".*: is cut: its last line has no end"),
     ],
 )  # fmt: skip
@@ -230,6 +238,8 @@ def test_contacts_that_are_not_those_of_the_packing_are_refused(tables, tmp_path
         ({"wall.friction": 0.0}, r"packing.springs: line \d+: disk \d+ and the .*, wall.friction must be greater"),
         ({"preparation.gravity": "slow"}, "preparation.gravity = 'slow': must be at-once with packing.springs"),
         ({"packing.overlaps": "removed"}, "packing.overlaps = 'removed': must be kept with springs"),
+        ({"packing.springs": 3}, "packing.springs = 3: must be the path of a file"),
+        ({"packing.springs": "none.csv"}, "packing.springs = 'none.csv': no such file"),
     ],
 )
 def test_springs_that_the_scene_cannot_have_are_refused(tables, changes, said):
@@ -322,6 +332,7 @@ def test_velocities_go_to_lammps_and_come_back(tmp_path):
     ("old", "new", "said"),
     [
         ("1 0.5 0.25 0.0 0.0 0.0 2.0", "1 fast 0.25 0.0 0.0 0.0 2.0", "line 17: vx = 'fast': must be a finite number"),
+        ("1 0.5 0.25 0.0 0.0 0.0 2.0", "1 0.5 0.25 0.0 0.0 0.0 nan", "line 17: wz = 'nan': must be a finite number"),
         ("1 0.5 0.25 0.0 0.0 0.0 2.0", "1 0.5 0.25 0.0", "line 17: has 4 values, must have id vx vy vz wx wy wz"),
     ],
 )
