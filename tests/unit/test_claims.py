@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from contextlib import suppress
 from dataclasses import replace
 from itertools import chain
@@ -16,7 +17,7 @@ from scipy.stats import binom
 from granular_response.store import files as store
 from granular_response_paper.claims import bootstrap, bounds, preparations, printed, table
 from granular_response_paper.claims.bootstrap import RARE, over_brackets, over_realizations, part_of
-from granular_response_paper.claims.bounds import Limits, about, sampled
+from granular_response_paper.claims.bounds import Limits, about, less_than, more_than, sampled
 from granular_response_paper.claims.claim import (
     MEANINGS,
     PREPARATION,
@@ -32,7 +33,7 @@ from granular_response_paper.claims.claim import (
     rise,
 )  # fmt: skip
 from granular_response_paper.claims.claim import tests as made_of
-from granular_response_paper.claims.numbers import NotMeasured, Quantity, text
+from granular_response_paper.claims.numbers import NotMeasured, Quantity, digits, shown, text
 from granular_response_paper.groups.frictionless_crossover.claims import size_in_steps
 from granular_response_paper.groups.phase_diagram import claims as phases
 from granular_response_paper.groups.phase_diagram.claims import (
@@ -390,6 +391,14 @@ def test_sampled_events_lie_at_most_a_term_below_the_papers_force():
     assert outcome(7.0, 7.4) == outcome(10.1, 10.2) == outcome(20.0, NAN) == "no"
 
 
+def test_bounds_are_said_in_words():
+    said = [
+        one.limits(bounds.THRESHOLDS).text(unit)
+        for one, unit in ((about(20.0), "mg"), (less_than(1.0), "%"), (more_than(4.0), ""))
+    ]
+    assert said == ["15.0 mg to 25.0 mg", "less than 100 %", "more than 4.00"]
+
+
 def test_orders_use_the_smallest_step():
     up = [Quantity.bracket(1.0, 1.1), Quantity.bracket(2.0, 2.1), Quantity.bracket(3.0, NAN)]
     assert rise(up).low > 1.0 > rise(up[:2][::-1]).high
@@ -421,6 +430,15 @@ WRITTEN = [
 @pytest.mark.parametrize(("found", "unit", "written"), WRITTEN)
 def test_numbers_are_written_in_one_way(found, unit, written):
     assert text(found, unit) == written
+
+
+def test_no_sentence_says_more_than_three_digits_or_nonsense(entries):
+    for entry in entries.values():
+        said = entry.here
+        assert not re.search(r"at (least|most) (all|none|no|100 %|0 )|by none|by all|nan|inf\b|[{}]", said), said
+        numbers = re.findall(r"\d+\.\d+", said)
+        assert all(len(number.replace(".", "").lstrip("0")) <= 4 for number in numbers), said
+    assert digits(0.0, 2) == "0" and shown(0.0, "mg") == "0 mg"
 
 
 def test_the_numbers_that_the_paper_prints(good, entries):
@@ -626,6 +644,20 @@ def test_the_stored_table_is_the_one_file_of_verdicts(tmp_path):
         refuses(ClaimsError, "is not a whole table of claims", table.read, tmp_path / "claims.json")
 
 
+def test_the_counts_in_words(good, entries):
+    data = changed(good, "pile_dip", "stress", dip=np.zeros(3))
+    found = table.document([judge(claim, data) if claim.group == "pile_dip" else entries[claim.id] for claim in EVERY])
+    ordered, disorder, extension, rest = table.quoted(found).splitlines()
+    number = sum(found["counts"]["ordered"].values())
+    assert ordered == (
+        f"{number - 2} of {number} statements on ordered slabs, piles, theory and method are supported, "
+        "1 not supported, 1 not measured."
+    )
+    assert disorder.endswith("are supported.") and "beyond the paper" in extension
+    checks = sum(claim.row == "check" for claim in EVERY)
+    assert f"Not counted: {checks} checks of the code, which can hardly fail, 2 derivations" in rest
+
+
 def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path, good):
     """It has the layout of the dataset ``events``, and says what it was made from."""
     events = good.groups["preparation"]
@@ -638,3 +670,13 @@ def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path
     store.write(tmp_path / "other.nc", pile_study(), {"group": "pile_dip"})
     with pytest.raises(NotMeasured, match="no events of the group preparation"):
         preparations.write(tmp_path / "other.nc", tmp_path / "summary.nc")
+
+
+def test_the_readme_quotes_the_stored_table():
+    """The counts in words, and the verdict of each of its findings."""
+    found = table.read(ROOT / "figures" / "claims.json")
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert [line for line in table.quoted(found).splitlines() if line not in readme] == []
+    verdicts = {row["here"]: row["verdict"] for row in found["table"]}
+    told = re.findall(r"^\d\. .*?\*\*Here:\*\* (.*?) \*([a-z ]+)\*", readme, re.MULTILINE)
+    assert len(told) == 6 and all(verdicts[here] == verdict for here, verdict in told)
