@@ -6,7 +6,6 @@ CORES := $(shell getconf _NPROCESSORS_ONLN)
 JOBS ?= $(shell expr $(CORES) + 2)
 REPRO ?=
 EXAMPLES ?= 1000
-BROKEN ?= 10000
 SCENES ?= 5000
 
 # The environment. Its place is relative, since make splits names at blanks.
@@ -29,7 +28,7 @@ export DVC_NO_ANALYTICS := 1
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup tools reproduce extensions figure survey test fuzz broken scenes coverage lint notebooks docs package wheels matrix
+.PHONY: help setup tools reproduce extensions figure survey test fuzz scenes coverage lint notebooks docs package wheels matrix
 .PHONY: benchmark arena lock clean
 
 help: ## Show this list
@@ -71,9 +70,6 @@ test: tools ## Run all tests and the linters (JOBS=2 for two processes)
 fuzz: tools # Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
 	GRANULAR_RESPONSE_FUZZ=$(EXAMPLES) $(PY) -m pytest -m hypothesis -n $(JOBS)
 
-broken: tools # Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (ten minutes)
-	PYTHONPATH=tests $(PY) tests/integration/broken_files.py $(BROKEN) --output tests/data/broken_files.json
-
 scenes: tools # Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (half an hour; goes on where it was interrupted)
 	$(PY) -W ignore tests/unlike_scenes.py $(SCENES) --output tests/data/random_scenes.json
 
@@ -105,8 +101,8 @@ matrix: tools # The same for each of Python 3.11 to 3.13 that there is
 benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
 	$(PY) -m dvc repro benchmarks/dvc.yaml
 
-arena: setup # Steps, responses and bounces beside other codes that are installed; says how to install those that are not
-	cd benchmarks && for name in bounces arena responses; do ../$(PY) -m peers.$$name peers/$$name.json || exit; done
+arena: setup # Steps and responses beside other codes that are installed; says how to install those that are not
+	cd benchmarks && for name in kernel precision arena responses; do ../$(PY) -m peers.$$name peers/$$name.json || exit; done
 	$(PY) benchmarks/document.py
 
 lock: ## Renew requirements.lock with the newest versions that pyproject.toml allows

@@ -134,14 +134,13 @@ def page(found: Stored) -> str:
     """The template with its tables."""
     machine = found["machine"]
     versions = {f"{row['code'].partition(', ')[0]} {row['version']}": None for row in found["arena"]["runs"]}
-    reached = [{**row, "scene": {"friction": "friction 0.2, 15 mg", "frictionless": "no friction, 4 mg"}[row["scene"]]}
-               for row in found["responses"]["reached"]]  # fmt: skip
+    named = {"friction": "friction 0.2, 15 mg", "frictionless": "no friction, 4 mg"}
+    reached = [{**row, "scene": named[row["scene"]]} for row in found["responses"]["reached"]]
     filled = {
         "processor": found["kernel"]["measured_on"],
         "software": f"{machine['cores']} cores, Python {machine['python']}, Numba {machine['numba']}",
         "versions": ", ".join(name.replace("granular_response", "this package") for name in versions),
-        "steps": table(pick(found["arena"]["runs"], disks=908), code="code", version="version",
-                       processor_microseconds="processor time of a step [µs]", times_ours="this package = 1"),
+        "steps": steps(found["arena"]["runs"]),
         "reached": table(reached, scene="scene", code="code", **{"0.01": "1e-2", "0.001": "1e-3", "0.0001": "1e-4",
                          "1e-05": "1e-5", "least_error": "smallest error reached"}),
         "exactness": table(found["exactness"]["groups"], kind="packings", equilibria="equilibrium lost by",
@@ -152,6 +151,16 @@ def page(found: Stored) -> str:
     for name, value in filled.items():
         text = text.replace("{" + name + "}", value)
     return text
+
+
+def steps(runs: list[dict[str, Any]]) -> str:
+    """Processor time of a step of each code by number of disks, and how many times ours that is."""
+    rows: dict[str, dict[str, Any]] = {}
+    for run in runs:
+        row = rows.setdefault(run["code"], {"code": run["code"], "version": run["version"]})
+        row[f"{run['disks']:,} disks"] = f"{cell(run['processor_microseconds'])} ({run['times_ours']:.3g})"
+    (first, *_) = made = list(rows.values())
+    return table(made, **{key: key for key in first})
 
 
 def large(found: Stored) -> str:

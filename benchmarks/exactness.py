@@ -17,14 +17,13 @@ import itertools
 import json
 import os
 import sys
-import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from timing import floor, write
+from timing import floor, least, write
 from timing import scene as paper
 
 from granular_response.errors import SolveError
@@ -126,8 +125,8 @@ def measure(kind: str, k: int, given: Scene) -> dict[str, Any]:
         problem = problem.with_loads(rest.position)
         load = problem.load_size
         found |= {"disks": problem.n, "load": load}
-        (path, record), found["seconds"] = timed(lambda: loaded(problem, rest), REPEATS if kind == "nine points" else 1)
-        found |= {"events": len(record.events), "lost": lost(record)}
+        (path, record), used = least(lambda: loaded(problem, rest), REPEATS if kind == "nine points" else 1, LONG)
+        found |= {"seconds": used["processor"], "events": len(record.events), "lost": lost(record)}
         most = MOST_OF_SLAB if kind == "nine points" and contact.friction > 0.1 else MOST
         count = min(most, int(np.ceil(load / INCREMENT)))
         found["increment"] = load / count
@@ -143,18 +142,6 @@ def measure(kind: str, k: int, given: Scene) -> dict[str, Any]:
     except SolveError as error:
         found["failed"] = str(error)
     return found
-
-
-def timed(solve: Callable[[], Any], repeats: int = REPEATS) -> tuple[Any, float]:
-    """What is solved, and the least processor time."""
-    least = np.inf
-    for _ in range(repeats):
-        start = time.process_time()
-        found = solve()
-        least = min(least, time.process_time() - start)
-        if least > LONG:
-            break
-    return found, least
 
 
 def loaded(problem: Problem, rest: State) -> tuple[State, PathRecord]:
@@ -197,9 +184,9 @@ def increments(problem: Problem, rest: State, ends: np.ndarray) -> tuple[State, 
 def moved(rest: State, path: State, friction: float, force: float) -> dict[str, float]:
     """Processor time of dynamics from rest to a point of the paper's slab, and the error of its floor response."""
     problem = Problem.from_scene(paper(friction, force, **DYNAMICS)).with_loads(rest.position)
-    state, seconds = timed(lambda: loaded_states(problem, rest, [1.0])[1][0])
+    state, used = least(lambda: loaded_states(problem, rest, [1.0])[1][0], REPEATS, LONG)
     off = np.abs(floor(state, problem) - floor(path, problem)).max()
-    return {"dynamics_seconds": seconds, "dynamics_error": float(off) / force}
+    return {"dynamics_seconds": used["processor"], "dynamics_error": float(off) / force}
 
 
 def lost(record: PathRecord) -> dict[str, int]:

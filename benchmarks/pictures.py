@@ -1,4 +1,4 @@
-"""The pictures of `docs/benchmarks.md`, one function for each JSON file."""
+"""Pictures that the documents show of benchmarks, one function for each JSON file."""
 
 from __future__ import annotations
 
@@ -38,80 +38,6 @@ def _power(value: float, _: int) -> str:
     exponent = int(np.floor(np.log10(value * 1.0001)))
     digit = round(value / 10**exponent)
     return f"$10^{{{exponent}}}$" if digit == 1 else f"${digit}\\times 10^{{{exponent}}}$"
-
-
-#: Of old styles of codes.
-OLD_MARKS = {"X": "x", "P": "+"}
-
-
-def _codes(rows: Rows) -> dict[str, dict[str, Any]]:
-    """How each code is drawn in all pictures of the arena: ours first, full; styles of one code in one colour."""
-    colours = {
-        "granular_response": style.GREEN, "LAMMPS": style.VERMILION, "newest LAMMPS": style.ORANGE,
-        "LIGGGHTS": style.PURPLE, "YADE": style.SKY,
-    }  # fmt: skip
-    marks = {"granular_response": "o", "LAMMPS": "X", "newest LAMMPS": "P", "LIGGGHTS": "s", "YADE": "^"}
-    drawn = {}
-    for code in dict.fromkeys(row["code"] for row in rows):
-        family, _, kind = code.partition(", ")
-        mark = marks.get(family, "v")
-        old = kind in ("hooke/history", "dynamics")
-        label = {"granular_response": "ours"}.get(family, family) + (f", {kind}" if kind else "")
-        drawn[code] = {
-            "color": colours.get(family, style.MUTED), "label": label,
-            "marker": OLD_MARKS.get(mark, mark) if old else mark, "linestyle": "--" if old else "-",
-            "markerfacecolor": "white" if old else colours.get(family, style.MUTED),
-            "markersize": 4.5, "linewidth": 1.0,
-        }  # fmt: skip
-    return drawn
-
-
-@style.context()
-def arena(metrics: Metrics) -> Figure:
-    """Processor time of a step, and peak memory, against the number of disks."""
-    figure, axes = style.figure(1, 2, height=3.2)
-    drawn = _codes(metrics["runs"])
-    for panel, key in zip(axes[0], ("processor_microseconds", "peak_mebibytes"), strict=True):
-        for code, look in drawn.items():
-            rows = [row for row in pick(metrics["runs"], code=code) if row[key]]
-            panel.plot([row["disks"] for row in rows], [row[key] for row in rows], **look)
-        text = {"processor_microseconds": "processor time of a step [µs]", "peak_mebibytes": "peak memory [MiB]"}[key]
-        _logarithmic(panel, xlabel="disks", ylabel=text)
-    style.letter(axes[0, 0], "a", place="above", text="time")
-    style.letter(axes[0, 1], "b", place="above", text="memory")
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
-    return figure
-
-
-@style.context()
-def responses(metrics: Metrics) -> Figure:
-    """Error of the floor response against processor time."""
-    scenes = list(dict.fromkeys(row["scene"] for row in metrics["runs"]))
-    figure, axes = style.figure(1, len(scenes), height=3.2, sharey=True)
-    drawn = _codes(metrics["runs"])
-    for panel, scene in zip(axes[0], scenes, strict=True):
-        for code, look in drawn.items():
-            rows = pick(metrics["runs"], scene=scene, code=code)
-            key = "processor" if all(row["processor"] for row in rows) else "seconds"
-            panel.plot([row[key] for row in rows], [max(row["error"], LEAST_DRAWN) for row in rows], **look)
-        _logarithmic(panel, xlabel="processor time [s]")
-        panel.set_title(
-            {"friction": "friction 0.2, " + style.equals("F", 15, style.WEIGHT)}.get(
-                scene, "no friction, " + style.equals("F", 4, style.WEIGHT)
-            ),
-            fontsize=9,
-        )
-    axes[0, 0].set_ylabel("largest error of the response")
-    handles = {}
-    for panel in axes[0]:
-        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
-            handles.setdefault(label, handle)
-    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=4)
-    return figure
-
-
-#: Errors below it are drawn there.
-LEAST_DRAWN = 1e-7
 
 
 @style.context()
@@ -170,4 +96,4 @@ def depth(metrics: Metrics) -> Figure:
     return figure
 
 
-DRAWN: dict[str, Callable[[Metrics], Figure]] = {"arena": arena, "responses": responses, "scale": scale, "depth": depth}
+DRAWN: dict[str, Callable[[Metrics], Figure]] = {"scale": scale, "depth": depth}

@@ -12,15 +12,12 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
-import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
-from timing import processor, write
+from timing import process, processor, write
 
 from granular_response.machine.threads import cores
 from granular_response.scene import Scene
@@ -58,13 +55,7 @@ def measure(layers: int, per_row: int, method: str, friction: float, force: floa
         file.write_text(described.to_yaml(), encoding="utf-8")
         command = [sys.executable, "-m", "granular_response", "run", str(file), "-o", str(result)]
         command += ["--threads", str(threads)]
-        start = time.perf_counter()
-        process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-        _, status, usage = os.wait4(process.pid, 0)
-        seconds = time.perf_counter() - start
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode:
-            raise RuntimeError(f"{method} on {layers} layers ended with code {process.returncode}")
+        used = process(command)
         data = store.read(result)[""]
         size = result.stat().st_size
     return {
@@ -76,9 +67,7 @@ def measure(layers: int, per_row: int, method: str, friction: float, force: floa
         "friction": friction,
         "force": force,
         "normal_stiffness": described.contact.normal_stiffness,
-        "seconds": seconds,
-        "cpu_seconds": usage.ru_utime + usage.ru_stime,
-        "peak_gibibytes": usage.ru_maxrss / 2**20,
+        **used,
         "result_mebibytes": size / 2**20,
         "force_residual": float(data["certificate_force_residual"].max()),
         "negative_modes": int(data["certificate_negative_modes"].max()),

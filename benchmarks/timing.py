@@ -1,10 +1,12 @@
-"""What all benchmarks share: the scene they time, minima of repeats, and whole JSON files."""
+"""What all benchmarks share: the scene they time, seconds of calls and of processes, and whole JSON files."""
 
 from __future__ import annotations
 
 import json
+import os
 import platform
 import re
+import subprocess
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -48,6 +50,32 @@ def interleaved(
             action()
             row[k] = clock() - start
     return seconds.min(axis=0).tolist()
+
+
+def least(action: Callable[[], Any], repeats: int = 1, long: float = np.inf) -> tuple[Any, dict[str, float]]:
+    """What an action returns, and its least seconds by the clock and of the processor; none after ``long``."""
+    found = {"seconds": np.inf, "processor": np.inf}
+    for _ in range(repeats):
+        clock, processor = time.perf_counter(), time.process_time()
+        made = action()
+        used = {"seconds": time.perf_counter() - clock, "processor": time.process_time() - processor}
+        found = {key: min(found[key], used[key]) for key in found}
+        if used["processor"] > long:
+            break
+    return made, found
+
+
+def process(command: list[str], **environment: str) -> dict[str, float]:
+    """Wall-clock and processor seconds, and GiB of memory, of a process. Raises RuntimeError where it fails."""
+    start = time.perf_counter()
+    running = subprocess.Popen(command, env={**os.environ, **environment}, stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(running.pid, 0)
+    seconds = time.perf_counter() - start
+    running.returncode = os.waitstatus_to_exitcode(status)
+    if running.returncode:
+        raise RuntimeError(f"{' '.join(command)} ended with code {running.returncode}")
+    used = usage.ru_utime + usage.ru_stime
+    return {"seconds": seconds, "cpu_seconds": used, "peak_gibibytes": usage.ru_maxrss / 2**20}
 
 
 def write(path: str, metrics: dict[str, Any], *, measured: bool = True) -> None:

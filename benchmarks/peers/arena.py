@@ -16,9 +16,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import kernel
 import numpy as np
-from peers import codes, ours, processes
+from peers import codes, kernel, ours, processes
 from timing import write
 
 from granular_response import __version__

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from peers import bounce, lammps, liggghts, processes, yade_dem
+from peers import lammps, liggghts, processes, yade_dem
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,6 @@ class Peer:
     version: str | None
     steps: Callable[..., processes.Used]  #: packing, friction, settling steps, steps, time step, repeats
     response: Callable[..., lammps.Run] | None  #: as `lammps.response`; None where another style stands for it
-    bounce: Callable[..., bounce.After]  #: as `bounce.lammps_bounce`
 
 
 def lammps_peers(name: str, install: str, command: str | None) -> list[Peer]:
@@ -35,7 +34,6 @@ def lammps_peers(name: str, install: str, command: str | None) -> list[Peer]:
             version,
             partial(lammps.steps_used, command=command, law=law),
             partial(lammps.response, command=command, law=law) if law == "linear" else None,
-            partial(bounce.lammps_bounce, command=command, law=law),
         )
         for style, law in (("hooke/history", "linear"), ("granular", "granular"))
     ]
@@ -46,21 +44,11 @@ def known() -> list[Peer]:
     wheel = "pip install lammps mpich, ARENA_LMP=its lmp"
     found = lammps_peers("LAMMPS", "apt-get install lammps", lammps.executable())
     found += lammps_peers("newest LAMMPS", wheel, processes.found("lmp", "ARENA_LMP"))
-    for name, code, its_bounce in (
-        ("LIGGGHTS", liggghts, bounce.liggghts_bounce),
-        ("YADE", yade_dem, bounce.yade_bounce),
-    ):
-        command = code.executable()
-        found.append(
-            Peer(
-                name,
-                f"apt-get install {name.lower()}",
-                code.version(command) if command else None,
-                partial(code.steps_used, command=command),
-                partial(code.response, command=command),
-                partial(its_bounce, command=command),
-            )
-        )
+    for name, code in (("LIGGGHTS", liggghts), ("YADE", yade_dem)):
+        command, install = code.executable(), f"apt-get install {name.lower()}"
+        version = code.version(command) if command else None
+        steps, response = (partial(one, command=command) for one in (code.steps_used, code.response))
+        found.append(Peer(name, install, version, steps, response))
     return found
 
 

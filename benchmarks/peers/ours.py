@@ -14,9 +14,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # it runs in a folder of its own
 
-import kernel
 import numpy as np
-from peers import processes
+from peers import kernel, processes
 
 from granular_response.scene import Packing
 from granular_response.solvers.dynamics import Dynamics

@@ -13,9 +13,8 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-import precision
-from peers import codes
-from timing import write
+from peers import codes, precision
+from timing import least, write
 
 from granular_response import __version__
 from granular_response.scene import Scene
@@ -61,9 +60,8 @@ def responses(there: list[codes.Peer], most: int) -> Iterator[list[dict]]:
         for name, settings in OURS[scene].items():
             for setting in settings:
                 precision.solve(scene, **setting)  # compiles
-                runs = [precision.solve_used(scene, **setting) for _ in range(REPEATS)]
-                least = {key: min(used[key] for _, used in runs) for key in ("seconds", "processor")}
-                yield add(f"granular_response, {name}", __version__, scene, runs[0][0], least)
+                response, used = least(lambda: precision.solve(scene, **setting), REPEATS)  # noqa: B023 called at once
+                yield add(f"granular_response, {name}", __version__, scene, response, used)
     for ramp, rest, steps in PLANS:
         for scene in limits:
             friction, force = precision.SCENES[scene]

@@ -46,19 +46,10 @@ def _scene(packing: Packing, friction: float, time_step: float) -> dict:
             "frictionAngle": math.atan(friction),
         },
         "wall": {"kn": 0.0, "ks": 0.0, "cn": own * kn**0.5, "cs": own * kt**0.5, "frictionAngle": 0.0},
-        **geometry(packing, time_step),
-    }
-
-
-def geometry(packing: Packing, time_step: float) -> dict:
-    """Disks at rest, and their weight."""
-    return {
         "x": packing.position.tolist(),
-        "velocity": (0.0 * packing.position).tolist(),
         "radius": packing.radius.tolist(),
         "mass": packing.mass.tolist(),
         "width": packing.width,
-        "weight": 1.0,
         "time_step": time_step,
     }
 

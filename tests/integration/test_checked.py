@@ -142,15 +142,6 @@ def test_a_sealed_file_that_is_no_result(solution, tmp_path, damage):
         gr.open_result(tmp_path / "bad.nc")
 
 
-def test_what_a_file_says_is_shown_as_it_is(solution, tmp_path):
-    data = to_dataset(solution).assign_attrs(title="[red]not[/red] red [/] \x1b[31m:smile:", history="[bold")
-    store.write(tmp_path / "result.nc", data, {"note": "[/nothing]"})
-    shown = succeeded("show", "result.nc", folder=tmp_path)
-    for text in ("[red]not[/red] red [/]", ":smile:", "[bold", "[/nothing]"):
-        assert text in shown
-    assert "\x1b" not in shown
-
-
 @pytest.mark.parametrize("layout", [2, 4])
 def test_a_result_of_another_layout_is_refused_in_one_line(solution, path, tmp_path, monkeypatch, layout):
     with monkeypatch.context() as other:

@@ -5,8 +5,6 @@ import os
 import resource
 import shutil
 import stat
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -110,11 +108,6 @@ def test_missing_folders_are_made_but_none_that_should_be_home(inputs, tmp_path,
     assert not (tmp_path / "~").exists()
 
 
-def test_the_name_of_a_result_says_what_it_is(tmp_path):
-    refuses(StoreError, r"must end in \.nc", store.write, tmp_path / "r.nc.txt", xr.Dataset())
-    assert not any(tmp_path.iterdir())
-
-
 def test_a_link_is_followed_and_stays(tmp_path):
     (tmp_path / "elsewhere").mkdir()
     target, link, new = tmp_path / "elsewhere" / "a.nc", tmp_path / "link.nc", tmp_path / "new.nc"
@@ -140,27 +133,6 @@ def test_devices_and_pipes_stay(tmp_path):
     refuses(StoreError, "symbolic links", store.write, loop, xr.Dataset())
     assert stat.S_ISFIFO(pipe.stat().st_mode) and stat.S_ISCHR(os.stat("/dev/null").st_mode)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["link.nc", "loop.nc", "pipe.nc"]
-
-
-def test_standard_output_on_a_full_device(inputs, tmp_path):
-    run = ["run", inputs / "scene.yaml", "-o", "a.nc"]
-    for arguments in (["show", inputs / "result.nc"], run):
-        with open("/dev/full", "w") as full:
-            command = [sys.executable, "-m", "granular_response", *map(str, arguments)]
-            finished = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True)
-        said = "granular-response: standard output cannot be written: No space left on device\n"
-        assert (finished.returncode, finished.stderr) == (2, said)
-    assert "" in store.read(tmp_path / "a.nc")
-
-
-def test_a_locale_of_plain_letters_and_a_home_that_is_not_there(inputs, tmp_path):
-    changes = {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "LC_ALL": "C", "HOME": "/nonexistent"}
-    shutil.copy(inputs / "scene.yaml", tmp_path / "größe.yaml")
-    for arguments in (["run", "größe.yaml", "-o", "größe.nc"], ["show", "größe.nc"]):
-        finished = process(*arguments, folder=tmp_path, encoding="utf-8", env={**os.environ, **changes})
-        assert finished.returncode == 0, finished.stderr
-        assert finished.stderr == ""
-    assert (tmp_path / "größe.nc").exists()
 
 
 def test_too_little_memory_is_said_before_it_is_taken(tmp_path):

@@ -4,7 +4,6 @@ import contextlib
 import io
 import multiprocessing
 import os
-import random
 import signal
 import sys
 import threading
@@ -20,10 +19,8 @@ from commands import PAPER, package_of, python
 from places import ROOT
 
 from granular_response.cli import main as cli
-from granular_response.store import files as store
 from granular_response_paper import cli as paper
 
-KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "8"))
 SCENE = {
     "packing": {"kind": "slab", "layers": 5, "disks_per_row": 11},
     "contact": {"friction": 0.3},
@@ -54,49 +51,6 @@ def command(folder: str, arguments: list[str], moves: Event | None = None) -> No
 @pytest.fixture(scope="module")
 def processes():
     return multiprocessing.get_context("forkserver")  # starts in milliseconds, with everything imported
-
-
-def killed_at_random(processes, folder: Path, arguments: list[str], output: Path, kills: int) -> None:
-    """Kill the command ``kills`` times. Each file found is whole, and the next whole run tidies up."""
-    generator = random.Random(1)
-
-    def started():
-        process = processes.Process(target=command, args=(str(folder), arguments))
-        process.start()
-        return process
-
-    def whole_run() -> float:
-        begun, process = time.perf_counter(), started()
-        process.join()
-        assert process.exitcode == 0
-        return time.perf_counter() - begun
-
-    whole_run()  # it also reads compiled code
-    longest = 1.1 * whole_run()
-    output.unlink()
-    hit = 0
-    while hit < kills:
-        process = started()
-        process.join(generator.uniform(0.0, longest))
-        if process.is_alive():
-            process.kill()
-        process.join()
-        if process.exitcode:
-            hit += 1
-        else:
-            longest *= 0.8  # machines are not always as busy
-        if output.exists():
-            assert store.read(output)
-            if generator.random() < 0.5:
-                output.unlink()
-    whole_run()
-    assert store.read(output)
-    assert not list(output.parent.glob(".*")), "what killed runs left is gone after the next whole one"
-
-
-def test_killed_runs_leave_whole_results_or_none(tmp_path, processes):
-    (tmp_path / "scene.yaml").write_text(yaml.safe_dump(SCENE))
-    killed_at_random(processes, tmp_path, ["run", "scene.yaml", "-o", "result.nc"], tmp_path / "result.nc", KILLS)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])

@@ -1,7 +1,6 @@
 """Datasets on disk: whole or not there, equal after a round trip, equal bytes for equal data."""
 
 import contextlib
-import errno
 import os
 import resource
 import tempfile
@@ -139,13 +138,6 @@ def test_a_damaged_file_is_never_read(tmp_path, whole, cut, place, flip):
     refuses(StoreError, None, store.read, path)
 
 
-def test_a_file_written_anew_by_another_program_is_not_ours(path, tmp_path):
-    store.write(path, dataset())
-    with xr.open_dataset(path, decode_timedelta=False) as read:
-        read.to_netcdf(tmp_path / "copy.nc")
-    refuses(StoreError, r"copy.nc: .* another program has written it anew", store.read, tmp_path / "copy.nc")
-
-
 @contextlib.contextmanager
 def space_for(size: int) -> Iterator[None]:
     """No file may be longer than ``size`` bytes, as if its disk were full."""
@@ -164,26 +156,6 @@ def test_no_space_left_keeps_the_old_file(path):
         atomic.write_bytes(path, bytes(50_000))
     assert path.read_bytes() == before
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
-
-
-def test_no_space_left_for_temporary_files_is_an_error_that_names_their_folder(path, monkeypatch):
-    temporary = path.parent / "temporary"
-    temporary.mkdir(parents=True)
-    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
-    store.write(path, dataset(0))
-    before = path.read_bytes()
-    said = rf"result.nc: cannot be written: NetCDF: HDF error; is there space in {temporary}\?"
-    with space_for(20_000), pytest.raises(StoreError, match=said):
-        store.write(path, dataset(1, size=20_000))
-    assert path.read_bytes() == before
-    assert list(temporary.iterdir()) == []
-    links = Path("/proc/self/fd")
-    if links.exists():  # HDF5 keeps its file open, removed or not: it must hold no space
-        for link in links.iterdir():
-            with contextlib.suppress(FileNotFoundError):  # closed meanwhile
-                assert not os.readlink(link).startswith(str(temporary)) or link.stat().st_size == 0
-    store.write(path, dataset(1, size=20_000))
-    xr.testing.assert_equal(store.read(path)[""], dataset(1, size=20_000))
 
 
 def test_without_a_folder_for_temporary_files_a_dataset_is_made_beside_its_place(path, tmp_path, monkeypatch):
@@ -244,37 +216,6 @@ def test_an_interrupted_write_leaves_nothing(tmp_path, monkeypatch):
         with pytest.raises(KeyboardInterrupt):
             atomic.write_bytes(tmp_path / "a.nc", b"new")
     assert [(entry.name, entry.read_bytes()) for entry in tmp_path.iterdir()] == [("a.nc", b"old")]
-
-
-def test_a_folder_taken_for_a_leftover_before_it_is_locked_is_made_again(tmp_path, monkeypatch):
-    lock, met = atomic.fcntl.flock, []
-
-    def late(descriptor, how):
-        if not met:
-            met.extend(tmp_path.iterdir())
-            met[0].rmdir()
-        return lock(descriptor, how)
-
-    monkeypatch.setattr(atomic.fcntl, "flock", late)
-    atomic.write_bytes(tmp_path / "a.nc", b"whole")
-    assert len(met) == 1 and [entry.name for entry in tmp_path.iterdir()] == ["a.nc"]
-
-
-def test_a_file_system_without_locks_keeps_leftovers(tmp_path, monkeypatch, next_run):
-    def unsupported(*_):
-        raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
-
-    (tmp_path / LEFT).mkdir()
-    monkeypatch.setattr(atomic.fcntl, "flock", unsupported)
-    atomic.write_bytes(tmp_path / "a.nc", b"whole")
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == [LEFT, "a.nc"]
-
-
-def test_names_are_as_long_as_the_system_allows(tmp_path):
-    for name in ("a" * 252 + ".nc", "ü" * 126 + ".nc"):
-        store.write(tmp_path / name, dataset(size=3))
-        assert store.read(tmp_path / name)
-    refuses(StoreError, "File name too long", store.check_writable, tmp_path / ("a" * 253 + ".nc"))
 
 
 KILL_LOOP = """

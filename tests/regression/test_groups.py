@@ -96,7 +96,6 @@ def few(group: str, factor: float) -> dict[str, Any]:
 #: Allowed parameters, or nearly, that nobody would take: what is measured is then often nothing.
 ODD = {
     "one of each": lambda group: shortened(reduced.parameters(group), 1),
-    "weak forces": lambda group: few(group, 1e-3),
     "strong forces": lambda group: few(group, 8.0),
 }
 

@@ -9,7 +9,6 @@ from html.parser import HTMLParser
 from pathlib import Path
 from typing import get_args
 
-import matplotlib.pyplot as plt
 import pytest
 from markdown_it import MarkdownIt
 from places import ROOT
@@ -98,14 +97,6 @@ def test_a_page_has_no_directive_in_place_of_content(name):
     assert {comment for comment in html(text).comments if not re.fullmatch(r"generated: [\w-]+|end", comment)} == set()
 
 
-def test_broken_targets_are_told_from_others():
-    page = ROOT / "README.md"
-    assert broken("docs/no-such-page.md", page) and broken("docs/tutorial.md#no-such-heading", page)
-    assert broken("../outside", page) and not broken("docs/tutorial.md#a-first-response", page)
-    assert html('<!-- picture: x --><a href="y"><img src="z"></a>').found == ["y", "z"]
-    assert html("<!-- picture: x -->").comments == ["picture: x"]
-
-
 PLACES = [(name, place["name"]) for name, page in zip(NAMES, PAGES, strict=True)
           for place in expand.PLACE.finditer(page.read_text(encoding="utf-8"))]  # fmt: skip
 
@@ -127,12 +118,6 @@ def test_every_fragment_stands_in_a_page():
     assert set(expand.MADE) <= {place for _, place in PLACES}
 
 
-def test_the_gallery_takes_figures_without_claims(monkeypatch):
-    monkeypatch.setattr(expand, "claims", lambda: {"table": []})
-    text = expand.gallery()
-    assert text.count("## Fig.") == text.count(f"* {expand.UNJUDGED}") > 20
-
-
 @pytest.mark.parametrize("name", pictures.pages())
 def test_the_python_of_a_page_draws_and_prints_what_it_says(name, tmp_path, monkeypatch):
     with pictures.scratch():
@@ -148,16 +133,6 @@ def test_every_picture_belongs_to_a_page_and_all_are_small():
     files = {path.name: path.stat().st_size for path in pictures.FOLDER.glob("*.png")}
     assert set(files) == {file for name in pictures.pages() for file in pictures.images(name)}
     assert sum(files.values()) < 1.5e6
-
-
-def test_pictures_that_differ_are_told_apart(tmp_path):
-    for name, slope in (("one", 1.0), ("same", 1.0), ("other", 2.0)):
-        figure, ax = plt.subplots()
-        ax.plot([0.0, slope], linewidth=5.0)
-        ax.set(ylim=(0.0, 2.0))
-        pictures.save(figure.number, tmp_path / f"{name}.png")
-    assert pictures.same(tmp_path / "one.png", tmp_path / "same.png")
-    assert not pictures.same(tmp_path / "one.png", tmp_path / "other.png")
 
 
 def test_the_shell_blocks_of_the_readme_say_what_a_reader_runs():

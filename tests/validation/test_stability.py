@@ -10,9 +10,8 @@ from stress.time_steps import BLOWS_UP, CYCLES, SETTLES, tried
 
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.observe.floor import floor_force
-from granular_response.scene import Scene, SceneError
+from granular_response.scene import Scene
 from granular_response.solvers.energy import minimise
-from granular_response.solvers.settle import NotSettled
 
 SEED = 20260101
 #: Of a system without dashpots: time step per limit of velocity Verlet, and the velocity of the kick, in mean overlaps
@@ -142,47 +141,6 @@ def test_a_table_of_disks_has_twins_too(tmp_path):
         assert trial.twin_difference < random_scenes.TWINS
 
 
-def test_a_twin_that_answers_otherwise_is_caught(tmp_path, monkeypatch):
-    solve = random_scenes.solve_scene
-    calls = []
-
-    def wrong(scene):
-        calls.append(scene)
-        loads = [{"disk": 0, "force": [0.0, -1.0]}]
-        return solve(scene.updated({"loads": loads}) if len(calls) == 3 else scene)
-
-    monkeypatch.setattr(random_scenes, "solve_scene", wrong)
-    trial = random_scenes.attempt(DESCRIPTION, str(tmp_path), twin=True)
-    assert trial.outcome == "wrong"
-    assert trial.message.startswith("the response of the twin differs")
-
-
-def test_scenes_are_drawn_from_all_that_a_scene_may_say():
-    drawn = [random_scenes.draw(np.random.default_rng(seed), 1000)[0] for seed in range(400)]
-    protocols = [scene["protocol"] for scene in drawn]
-    assert {p["method"] for p in protocols} == set(random_scenes.METHODS)
-    assert {p["static_finish"] for p in protocols} == {True, False}
-    assert {scene["preparation"]["gravity"] for scene in drawn} == {"at-once", "slow", "frictionless"}
-    assert {scene["contact"]["law"] for scene in drawn} == {"linear", "hertz"}
-    assert {(scene["packing"]["kind"], "sides" in scene["packing"]) for scene in drawn} >= {
-        ("slab", True), ("file", True), ("slab", False), ("file", False), ("pile", False),
-    }  # fmt: skip
-    stiffness = [scene["contact"]["normal_stiffness"] for scene in drawn]
-    assert min(stiffness) < 10.0
-    assert max(stiffness) > 1e8
-    resists = [(scene["contact"].get("rolling_friction", 0.0) > 0.0, scene["wall"].get("rolling_friction", 0.0) > 0.0)
-               for scene in drawn]  # fmt: skip
-    assert set(resists) == {(True, True), (True, False), (False, True), (False, False)}
-    assert 0.2 < np.mean([random_scenes.rolls(scene) for scene in drawn]) < 0.6
-    assert any(random_scenes.rolls(s) and "rolling_stiffness_ratio" not in s["wall"] for s in drawn)
-    programmes = [p["load_factors"] for p in protocols]
-    assert any(f != sorted(f) and 0.0 in f and len(set(f)) < len(f) for f in programmes)
-    steps = [p["time_step"] for p in protocols]
-    assert None in steps
-    assert "auto" in steps
-    assert min(step for step in steps if isinstance(step, float)) < 1e-6
-
-
 def test_a_solver_that_gives_a_wrong_answer_is_caught(tmp_path, monkeypatch):
     solve = random_scenes.solve_scene
 
@@ -194,26 +152,6 @@ def test_a_solver_that_gives_a_wrong_answer_is_caught(tmp_path, monkeypatch):
     monkeypatch.setattr(random_scenes, "solve_scene", wrong)
     trial = random_scenes.attempt(DESCRIPTION, str(tmp_path))
     assert trial.outcome == "wrong" and "force_residual is" in trial.message
-
-
-@pytest.mark.parametrize(
-    ("error", "outcome"),
-    [
-        (NotSettled("not at rest"), "not settled"),
-        (SceneError("contact.friction = -1: must be 0 or more"), "scene refused"),
-        (NotSettled("two\nlines"), "wrong"),
-        (NotSettled(""), "wrong"),
-        (FloatingPointError("overflow"), "wrong"),
-        (IndexError("out of bounds"), "wrong"),
-    ],
-    ids=repr,
-)
-def test_errors_that_a_user_would_not_understand_count_as_wrong(tmp_path, monkeypatch, error, outcome):
-    def fails(scene, **keywords):
-        raise error
-
-    monkeypatch.setattr(random_scenes, "solve_scene", fails)
-    assert random_scenes.attempt(DESCRIPTION, str(tmp_path)).outcome == outcome
 
 
 def test_a_rest_state_disturbed_in_its_last_digits_gives_the_same_response():

@@ -2,8 +2,8 @@
 
 Row ``i`` of ``a`` holds the matrix entries ``(i, i - b) ... (i, i + b)`` and padding, one row after the other. Four
 unknowns are eliminated at once from two rows in one pass, which spares memory traffic and keeps the units for fused
-products busy: LAPACK's banded LU, which exchanges rows, takes 2.5 times as long, a plain loop seven times
-(docs/benchmarks.md). Nothing is checked: a zero pivot leaves infinities behind, callers check residuals.
+products busy: LAPACK's banded LU, which exchanges rows, takes 2.5 times as long, a plain loop seven times.
+Nothing is checked: a zero pivot leaves infinities behind, callers check residuals.
 
 The half-width ``b`` is rounded up (:func:`rounded`) and rows are padded with zeros, so that all rows and columns that
 four pivots reach are done alike, in whole lanes. Each row begins one column further on than the one before and is one

@@ -1,0 +1,166 @@
+"""Keys from content: equal values, equal keys; where two values cannot be told apart there is no key."""
+
+import dataclasses
+import enum
+import functools
+import importlib
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+from commands import python
+from refusals import refuses
+
+from granular_response.scene import Scene
+from granular_response.scene.material import KNOWN_LAWS, KnownLaw
+from granular_response.sweeps.keys import Indistinct, key
+
+
+@dataclasses.dataclass(frozen=True)
+class Task:
+    friction: float
+    forces: np.ndarray
+
+    def total(self, item):
+        return self.forces.sum() + item
+
+
+class Colour(enum.Enum):
+    RED = 1
+    BLUE = 2
+
+
+def test_equal_for_equal_values_only():
+    def task(friction=0.2, last=3.0):
+        return {"task": Task(friction, np.array([1.0, last])), "seed": 1}
+
+    assert key(task()) == key(dict(reversed(task().items())))
+    different = [
+        task(), task(friction=0.3), task(last=4.0), (1, 2), [1, 2], (1, 2.0), (1, True), "12", b"12", {1, 2}, 0.0, -0.0,
+        np.float64(1.0), np.float32(1.0), 1.0, np.zeros(4), np.zeros((2, 2)), range(3), Colour.RED, Colour.BLUE,
+        ("ab", "c"), ("a", "bc"), (("a",), "b"), {"a": 1}, {"a": 2}, {1: "a"}, np.sin, np.cos, len, None,
+    ]  # fmt: skip
+    assert len({key(value) for value in different}) == len(different)
+
+
+def test_equal_in_every_process():
+    script = "import sys; sys.path.insert(0, sys.argv[1]); from test_keys import *; print(key((Task, {'b', 'a'})))"
+    for seed in ("1", "2"):
+        name = python("-c", script, Path(__file__).parent, PYTHONHASHSEED=seed)
+        assert name.strip() == key((Task, {"a", "b"}))
+
+
+def table(folder, radius):
+    folder.mkdir(exist_ok=True)
+    (folder / "disks.csv").write_text(f"x,z,radius\n2,1,{radius}\n5,1,1\n")
+    text = "packing: {kind: file, path: disks.csv, width: 10}\nloads: []\n"
+    return Scene.from_text(text, folder=folder)
+
+
+def test_a_table_counts_by_its_content(tmp_path):
+    one, same, other = table(tmp_path / "a", 1.0), table(tmp_path / "b", 1.0), table(tmp_path / "c", 0.9)
+    assert one.to_dict() == other.to_dict()
+    assert key(one) == key(same) != key(other)
+    before = key(one)
+    table(tmp_path / "a", 0.8)
+    assert key(one) != before
+    (tmp_path / "a" / "disks.csv").unlink()
+    refuses(Indistinct, r"disks.csv cannot be read", key, one)
+    (tmp_path / "a" / "disks.csv").symlink_to("/dev/zero")  # which never ends
+    refuses(Indistinct, r"disks.csv cannot be read: is not a regular file", key, one)
+
+
+def test_functions_of_modules_count_by_name_and_file(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    file = tmp_path / "mine_to_measure.py"
+    file.write_text("def one(x): return x\ndef other(x): return x\n")
+    import mine_to_measure as mine
+
+    assert key(functools.partial(mine.one, 1)) == key(functools.partial(mine.one, 1))
+    assert len({key(f) for f in (mine.one, mine.other, functools.partial(mine.one, 1), abs, np.linalg.norm)}) == 5
+    before, by_name = key(mine.one), key(mine.one, packages=["mine_to_measure"])
+    file.write_text(file.read_text().replace("return x", "return x + 1"))
+    assert key(mine.one) != before and key(mine.one, packages=["mine_to_measure"]) == by_name
+
+
+def test_what_cannot_be_told_apart_has_no_key():
+    class Local:
+        pass
+
+    bound = [Task(0.1, np.ones(2)).total, [1].append]
+    local = [Local(), Local, [Local()], np.array([Local()]), lambda: 1]
+    for value in (*local, *bound, threading.Lock(), (n for n in [1])):
+        refuses(Indistinct, None, key, value)
+
+
+def test_functions_of_a_script_count_by_its_file_and_those_of_a_notebook_not_at_all(tmp_path):
+    lines = "from granular_response.sweeps.keys import key\ndef measure(x):\n    return x\nprint(key(measure))\n"
+    (tmp_path / "script.py").write_text(lines)
+
+    first, again = (python(tmp_path / "script.py") for _ in range(2))
+    (tmp_path / "script.py").write_text(lines.replace("return x", "return 2 * x"))
+    assert first == again != python(tmp_path / "script.py")
+    with pytest.raises(AssertionError, match="Indistinct: function measure stands in no module that can be imported"):
+        python("-c", lines)
+
+
+def test_the_springs_of_a_packing_count_by_their_content(tmp_path):
+    (tmp_path / "disks.csv").write_text("x,z,radius\n2,1,1\n5,1,1\n")
+    text = "packing: {kind: file, path: disks.csv, width: 10, springs: disks.contacts.csv}\nloads: []\n"
+    keys = []
+    for force in ("0.1", "-0.05", "0.1"):
+        (tmp_path / "disks.contacts.csv").write_text(
+            f"first,second,wall,normal_force,tangential_force\n0,,floor,1,{force}\n"
+        )
+        keys.append(key(Scene.from_text(text, folder=tmp_path)))
+    assert keys[0] != keys[1] and keys[0] == keys[2]
+    (tmp_path / "disks.contacts.csv").unlink()
+    refuses(Indistinct, r"disks.contacts.csv cannot be read", key, Scene.from_text(text, folder=tmp_path))
+
+
+PACKING = """
+from pathlib import Path
+from typing import Literal
+from granular_response.scene.base import PackingDescription
+class Mine(PackingDescription):
+    kind: Literal["mine"] = "mine"
+    @property
+    def files(self):
+        return [Path(__file__).with_suffix(".txt")]
+"""
+
+
+def test_files_that_a_packing_of_ones_own_lists_count(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "packing_of_mine.py").write_text(PACKING)
+    (tmp_path / "packing_of_mine.txt").write_text("1")
+    mine = importlib.import_module("packing_of_mine").Mine()
+    before = key(mine)
+    assert key(mine) == before
+    (tmp_path / "packing_of_mine.txt").write_text("2")
+    assert key(mine) != before
+
+
+LAW = """
+import granular_response as gr
+from granular_response.contact import Linear
+import constants_of_mine
+class Stiffer(Linear):
+    def elastic_force(self, overlap, shape):
+        return constants_of_mine.PART * self.normal_stiffness * overlap
+"""
+
+
+def test_a_module_that_a_law_imports_counts(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "stiffer_law.py").write_text(LAW)
+    (tmp_path / "constants_of_mine.py").write_text("PART = 1.0\n")
+    law = importlib.import_module("stiffer_law").Stiffer
+    monkeypatch.setitem(KNOWN_LAWS, "stiffer", KnownLaw(law=law))
+    scene = Scene().updated({"contact.law": "stiffer"})
+    of_problem = law.of(1.0, 1.0, 1.0, 1.0, 0.2, 0.0, 0.5)  # as in the name of a rest state
+    before = key(scene), key(of_problem)
+    assert (key(scene), key(of_problem)) == before
+    (tmp_path / "constants_of_mine.py").write_text("PART = 2.0\n")
+    assert not {*before} & {key(scene), key(of_problem)}
