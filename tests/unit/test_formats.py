@@ -413,8 +413,8 @@ def test_packed_files_are_named_as_what_they_are(tmp_path, name):
         "(xz)": lzma.compress(DUMP.encode()), "(zstd)": b"\x28\xb5\x2f\xfd\x00", "zip archive": b"PK\x03\x04",
         "UTF-16": DUMP.encode("utf-16"), "netCDF": b"\x89HDF\r\n\x1a\n", "zip archive,": b"PK\x05\x06" + bytes(18),
         "RAR": b"Rar!\x1a\x07\x01\x00", "Git LFS": b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\n",
-        "web page": b"<!DOCTYPE html>\n<title>404</title>\n", "Parquet": b"PAR1\x15\x04", "MATLAB": b"MATLAB 5.0 MAT-file",
-        "SQLite": b"SQLite format 3\x00",
+        "web page": b"<!DOCTYPE html>\n<title>404</title>\n", "Parquet": b"PAR1\x15\x04",
+        "MATLAB": b"MATLAB 5.0 MAT-file", "SQLite": b"SQLite format 3\x00",
     }  # fmt: skip
     for said, content in packed.items():
         (tmp_path / name).write_bytes(content)
