@@ -80,6 +80,17 @@ def test_a_step_is_suspicious_from_a_thousandth_of_one_along_a_null_direction(pa
     assert free.suspicious(equations, part * fall, 1.0) == (part > 1e-3)
 
 
+@pytest.mark.parametrize(("stiffness", "rolls"), [(60.0, True), (80.0, False)])
+def test_a_disk_rolls_freely_up_to_a_stiffness(stiffness, rolls):
+    """Against springs of so many times the regularisation, which is 1e-10 of a contact's stiffness: 70 of them leave
+    (1 + 70)^-3, 2.8e-6 of a random number of about 0.4, of its part along the rolling."""
+    rough = {"wall__friction": 0.5, "wall__rolling_friction": 0.1, "wall__rolling_stiffness_ratio": 1e-10 * stiffness}
+    alone, state = free_disks([[500.0, 1.0 - 1.0 / 6000.0]], contact__friction=0.5, **rough)
+    equations = StaticSystem(alone, state)
+    known = equations.start(state)
+    assert free.free_disks(equations, equations.trial(known, known.q)) == ((0,) if rolls else ())
+
+
 def test_a_periodic_slab_rolls_on_a_rough_floor_as_a_whole():
     """Without friction between its disks the bottom row rolls: all of it is free along x, and the load moves none."""
     scene = gr.Scene.from_dict(
@@ -110,6 +121,21 @@ def test_a_minimisation_that_snaps_is_an_event_with_its_side(monkeypatch):
     monkeypatch.setattr(solution, "minimise", escaped)
     left = gr.solve(scene, load_factors=[10.0], progress=False)
     assert [(event.kind, event.reason.split(",")[0]) for event in left.events] == [("bifurcation", "unstable")]
+
+
+@pytest.mark.filterwarnings("ignore:disk 5 comes to rest")
+@pytest.mark.parametrize("way", [-1.0, 1.0])
+def test_mirror_images_snap_to_the_opposite_sides(way):
+    """A disk is pushed between two of a row, left or right of its middle one; the row makes room on the other side."""
+    x, z = [1.0, 3.0, 5.0, 7.0, 9.0, 5.0 + 0.05 * way], [1.0] * 5 + [3.0]
+    smooth = {"contact": {"friction": 0.0}, "loads": [{"disk": 5, "force": [0.0, -1.0]}]}
+    row = gr.Scene.from_arrays(x, z, 1.0, width=10.0, scene=smooth)
+    result = gr.solve(row, load_factors=[50.0, 600.0], progress=False)
+    (event,) = result.events
+    moved = result.loaded[1].position - result.loaded[0].position
+    side = "right" if moved[:, 0].sum() > 0.0 else "left"
+    assert event.kind == "jump" and event.reason.endswith(f"to the {side}")
+    assert side == ("left" if way > 0.0 else "right")
 
 
 def test_a_minimum_far_from_the_one_before_is_a_jump(monkeypatch):
