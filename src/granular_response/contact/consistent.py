@@ -42,9 +42,10 @@ def _shapes(law: Law) -> str:
     """The same of its geometry factors: contacts of disks and of walls are in one list, which has them or has none."""
     radii = np.array([first for first, _ in BODIES])
     between, at_wall = law.shapes(radii, radii[::-1]), law.shapes(radii, None)
-    if (between is None) != (at_wall is None):
-        return "shapes is None for two disks or for a disk and a wall, must be for both or for neither"
-    for found in () if between is None else (between, at_wall):
+    if between is None or at_wall is None:
+        both = between is at_wall
+        return "" if both else "shapes is None for two disks or for a disk and a wall, must be for both or for neither"
+    for found in (between, at_wall):
         if np.shape(found) != radii.shape or np.asarray(found).dtype.kind != "f" or not np.isfinite(found).all():
             return f"shapes is {found!r} for {len(radii)} contacts, must be as many finite numbers"
     return ""
