@@ -309,7 +309,7 @@ def test_another_parameter_without_a_reason_is_an_error(tmp_path, monkeypatch):
 
 def crossovers():
     largest = "touching-largest"
-    cases = [(0.0, 1.0, largest), (0.0, 0.2, largest), (0.25, 0.2, largest), (0.25, 1.0, "2.0")]
+    cases = [(0.0, 1.0, largest, 0.0), (0.0, 0.2, largest, 0.0), (0.25, 0.2, largest, 0.0), (0.25, 1.0, "2.0", 0.0)]
     return dataset(
         by_row("case", "polydispersity friction lattice_constant gravity_ramp", cases) | {"width": [6.0]},
         **over("width case", force=[[3.0, 20.0, 5.0, 9.0]], kind=[[0, 2, 1, 0]]),

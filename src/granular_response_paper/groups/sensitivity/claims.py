@@ -56,7 +56,7 @@ def _dashpots(data: Data, name: str, friction: float) -> Quantity:
 
 @claim(
     "N10", "III.A", Ask("largest change with dashpots halved or doubled", at_most("nearly"), "%"),
-    primary="all results at friction 0.2", figures=[6, 7], finds="any"
+    primary="most sensitive result at friction 0.2", figures=[6, 7], finds="not supported"
 )  # fmt: skip
 def dissipation(data: Data) -> Numbers:
     """Since we focus on the static response and small deformations the results should not be sensitive to the precise
@@ -65,7 +65,7 @@ def dissipation(data: Data) -> Numbers:
     Here: At friction 0.2 dashpots of half strength change the response under 15 mg by {response under 15 mg, friction
     0.2|0} of its peak. Dashpots of half or double strength move the force of two peaks by up to {force of two peaks,
     friction 0.2|0} and the end of the linear range by up to {force of the end of the linear range, friction 0.2|0}.
-    Remark: The text does not say which results, so that the range over them decides. The strength of the linear
+    Remark: The text does not say which results, so that the most sensitive one decides. The strength of the linear
     dashpots stands for the mechanism. Without friction nothing depends on it; with friction it decides which
     equilibrium is reached"""
     for mu in (0.2, 1.0):
@@ -74,6 +74,6 @@ def dissipation(data: Data) -> Numbers:
             with suppress(NotMeasured):  # not every event happens
                 found[f"force of {event}, friction {mu:g}"] = _dashpots(data, name, mu)
         if mu == 0.2:
-            two_peaks = _dashpots(data, "crossover", mu)
-            yield "all results at friction 0.2", Quantity.over([two_peaks, *found.values()])
+            _dashpots(data, "crossover", mu)  # not measured where nothing but the response is
+            yield "most sensitive result at friction 0.2", max(found.values(), key=lambda change: change.low)
         yield from found.items()
