@@ -155,6 +155,15 @@ def test_a_fall_that_takes_minutes_is_said_before():
     assert "min (preparation.gravity: frictionless" in long_fall(rough(160, 641))
 
 
+def test_progress_of_a_swinging_packing_is_not_complete_before_it_rests():
+    """Its mean acceleration passes zero twice in each period of the breathing, long before the end."""
+    seen: list[float] = []
+    problem = rough(4, 9, contact__friction=0.2, wall__friction=0.0)
+    rest_state(problem, progress=lambda done, total, what: seen.append(done / total))
+    assert len(seen) > 40 and seen == sorted(seen)
+    assert np.flatnonzero(np.array(seen) > 0.99)[0] > 0.9 * len(seen)
+
+
 def test_a_try_that_goes_round_in_a_circle_with_whole_steps_backtracks(monkeypatch):
     """A fall of a slab of 205 disks half-way: without, thirty iterations lead nowhere."""
     problem = Problem.from_scene(scene(10, 21, contact__friction=0.2))
