@@ -383,6 +383,11 @@ class Dynamics:
         return np.hypot(self.history[0][:n], self.history[0][n : 2 * n])
 
 
+def half_swing(problem: Problem, time_step: float) -> int:
+    """How many looks half a swing takes, at least as many as a judgement needs."""
+    return max(math.ceil(0.5 * problem.swing_time / (OPTIONS.check_every * time_step)), OPTIONS.readings)
+
+
 class Relaxation:
     """Ramps of gravity and load that start now, and the relaxation to rest after them.
 
@@ -412,8 +417,7 @@ class Relaxation:
         self.ramp_time = max(gravity[2], load[2])
         checks = max(1, round(OPTIONS.envelope_time / (OPTIONS.check_every * dynamics.time_step)))
         self.envelope: deque[float] = deque(maxlen=checks if stop.rule == "envelope" else 1)
-        half = math.ceil(0.5 * dynamics.problem.swing_time / (OPTIONS.check_every * dynamics.time_step))
-        self.unrest: deque[float] = deque(maxlen=max(half, OPTIONS.readings))
+        self.unrest: deque[float] = deque(maxlen=half_swing(dynamics.problem, dynamics.time_step))
         self.network: NDArray[np.bool_] | None = None
         self.fixed = 0
         self.largest = 0.0
