@@ -559,6 +559,15 @@ class TestExecutors:
         said = r"Refusing takes no tasks: RuntimeError: cannot schedule new futures after shutdown"
         refuses(SweepError, said, map_tasks, slow_first, range(4), executor=Refusing(2))
 
+    def test_calls_of_two_sweeps_differ(self, monkeypatch):
+        """Dask takes the same call for the same task: a sweep would lose it when the one before cancels its own."""
+        calls = []
+        with concurrent.futures.ThreadPoolExecutor(1) as pool:
+            submit = pool.submit
+            monkeypatch.setattr(pool, "submit", lambda *call: calls.append(call) or submit(*call))
+            assert map_tasks(slow_first, range(2), executor=pool) == map_tasks(slow_first, range(2), executor=pool)
+        assert len(calls) == 4 and not set(calls[:2]) & set(calls[2:])
+
     def test_the_executor_of_the_resources_is_used_unless_workers_are_named(self):
         with using(executor=Refusing(0)):
             refuses(SweepError, "Refusing takes no tasks", map_tasks, slow_first, range(2))

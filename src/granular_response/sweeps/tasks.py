@@ -16,6 +16,7 @@ import os
 import pickle
 import queue
 import reprlib
+import secrets
 import signal
 import sys
 import threading
@@ -199,13 +200,14 @@ def _submitted(
     task that fails or is lost, but what is of the class ``own`` as it comes.
     """
     sent = _packed(waiting[0], items, task)
+    token = secrets.token_hex(8)
     done: queue.SimpleQueue[Future] = queue.SimpleQueue()
     try:
         while waiting or running:
             while waiting and len(running) < ahead:
                 packed = _packed(waiting[0], items, items[waiting[0]])
                 try:
-                    future = executor.submit(_run, sent, packed, os.getpid())
+                    future = executor.submit(_run, sent, packed, os.getpid(), token)
                 except own:
                     raise
                 except (BrokenExecutor, EOFError, OSError, RuntimeError) as error:
@@ -241,8 +243,12 @@ def _settings() -> dict[str, str | None]:
     return {name: os.environ.get(name) for name in floating_point.variables()}
 
 
-def _run(function: bytes, item: bytes, parent: int) -> bytes:
-    """In a worker: call a packed function with a packed item."""
+def _run(function: bytes, item: bytes, parent: int, token: str) -> bytes:
+    """In a worker: call a packed function with a packed item.
+
+    Dask takes calls with the same arguments for one, and would cancel those of a sweep with those of the one before;
+    ``token`` is the sweep's own.
+    """
     # a thread of the parent process says its warnings itself
     heard_here = warnings.catch_warnings(record=True) if os.getpid() != parent else contextlib.nullcontext()
     with heard_here as heard, threads.using(1):  # whatever the process had that was forked

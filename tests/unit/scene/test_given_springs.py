@@ -318,7 +318,8 @@ def test_velocities_go_to_lammps_and_come_back(tmp_path):
     with pytest.warns(UserWarning, match="begin anew"):
         script = gr.export(started, tmp_path / "in.lammps", state=2).read_text()
     assert "group loaded0 id 1\n" in script  # a quarter of the ramp is over
-    assert "variable factor equal 0.25+(0.75)*((step<30000)*step/30000+(step>=30000))\n" in script
+    steps = round(15.0 / started.attrs["time_step"])  # the rest of the ramp, with the step of the motion
+    assert f"variable factor equal 0.25+(0.75)*((step<{steps})*step/{steps}+(step>={steps}))\n" in script
     weightless = gr.motion(BALLS.updated({"motion.weightless": True}), [0.0], progress=False)
     assert "gravity" not in gr.export(weightless, tmp_path / "in.lammps").read_text()
     with pytest.raises(gr.ExportError, match=r"a.xyz: a motion has no contacts, must be .csv or .data or"):
