@@ -226,7 +226,7 @@ def quoted(found: dict[str, Any]) -> str:
         return "\n".join(lines)
     statements = [row for row in own if row["row"] == "statement"]
     starred = sum(bool(row["star"]) for row in statements)
-    rest = ", ".join(f"{number} {ROWS[row]}" for row, number in found["checks"].items() if number)
+    rest = ", ".join(f"{ROWS[row]} ({number})" for row, number in found["checks"].items() if number)
     tried = {name: [row[name] for row in statements if row[name]["of"]] for name in ("gravity", "lattice")}
     whole = {name: sum(one["holds"] == one["of"] for one in found_) for name, found_ in tried.items()}
     lines.append(
