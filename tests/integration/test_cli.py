@@ -93,7 +93,7 @@ def test_stored_claims_are_listed_and_not_judged_anew(tmp_path):
     assert re.match(r"A1   [a-z ]+ +\S", lines[0])
     said = [text for row in rows for text in (row["here"], row["paper"], row["cases"]) if text]
     assert len(lines) == len(said) + 3 and all(text in line for text, line in zip(said, lines, strict=False))
-    assert re.search(r"4 of \d+ statements on ordered slabs", lines[-3]) and "halved or doubled" in lines[-1]
+    assert re.search(r"3 of \d+ statements on ordered slabs", lines[-3]) and "halved or doubled" in lines[-1]
     drawn = succeeded("claims", "--figure", 7, folder=tmp_path).splitlines()
     listed = [row["id"] for row in rows if 7 in row["figures"]]
     assert [line.split()[0] for line in drawn[:-3] if line[0] != " "] == listed != []

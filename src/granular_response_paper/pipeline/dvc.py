@@ -12,7 +12,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,9 @@ def modified(path: str | os.PathLike[str], fs: Any = None) -> Iterator[dict[str,
     yield content
     atomic.write_bytes(file, dumps_yaml(content).encode())
 
+
+#: Seconds that a stage has to end after an interruption, which a shell misses while it starts a command.
+PATIENCE = 10.0
 
 #: Ends its process group when the process that holds its input is gone, however that ended.
 _GUARD = ["sh", "-c", "read -r nothing; kill -TERM 0"]
@@ -48,8 +51,15 @@ def running(arguments: Sequence[str], folder: Path) -> Iterator[subprocess.Popen
     ):
         try:
             yield run
-        except BaseException as error:  # an interruption by the terminal reaches this process alone
-            os.killpg(guard.pid, signal.SIGINT if isinstance(error, KeyboardInterrupt) else signal.SIGTERM)
+        except KeyboardInterrupt:  # by the terminal, which reaches this process alone
+            os.killpg(guard.pid, signal.SIGINT)
+            with suppress(subprocess.TimeoutExpired):
+                run.wait(PATIENCE)
+            if run.poll() is None:
+                os.killpg(guard.pid, signal.SIGTERM)
+            raise
+        except BaseException:
+            os.killpg(guard.pid, signal.SIGTERM)
             raise
         finally:
             run.wait()

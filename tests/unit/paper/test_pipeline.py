@@ -204,15 +204,22 @@ def test_a_stage_that_fails_is_shown_and_ends_the_run(tmp_path):
     assert said[0].split()[:4] == ["1", "of", "2", "claims"] and "the reason" in said[-1]
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT], ids=lambda one: one.name)
-def test_a_run_that_is_killed_ends_its_children_and_keeps_its_lock(tmp_path, number):
+@pytest.mark.parametrize(
+    ("number", "deaf"),
+    [(signal.SIGTERM, ""), (signal.SIGKILL, ""), (signal.SIGINT, ""), (signal.SIGINT, "trap : INT; ")],
+    ids=["SIGTERM", "SIGKILL", "SIGINT", "SIGINT, missed"],
+)
+def test_a_run_that_is_killed_ends_its_children_and_keeps_its_lock(tmp_path, number, deaf):
     """Its stage holds a pipe as long as it runs, so that this test sees it begin and end."""
     os.mkfifo(tmp_path / "alive")
-    stages = "stages: {first: {cmd: 'true'}, second: {cmd: 'exec 3> alive; echo begun >&3; sleep 1000'}}\n"
+    # a shell that is told while it starts a command misses an interruption
+    stage = f"{deaf}exec 3> alive; echo begun >&3; while :; do sleep 1000; done"
+    stages = f"stages: {{first: {{cmd: 'true'}}, second: {{cmd: '{stage}'}}}}\n"
     environment = in_pipeline(tmp_path, stages)
     script = (
         "from pathlib import Path; from granular_response_paper.pipeline import reproduce;"
         "from granular_response_paper.registry import Collection;"
+        f"reproduce.dvc.PATIENCE = {0.1 if deaf else 10.0};"
         "reproduce.reproduce(Collection('empty', 'granular_response_paper.pipeline', '.', 'nothing'), Path())"
     )
     run = subprocess.Popen([sys.executable, "-c", script], cwd=tmp_path, env=environment, stderr=subprocess.DEVNULL)
