@@ -288,7 +288,7 @@ def export(
         ),
     ] = None,
 ) -> None:
-    """Write a result for OVITO, ParaView, or LAMMPS, or as a table.
+    """Write a result for OVITO, ParaView or LAMMPS, or as a table.
 
     OVITO: .gsd, .xyz; ParaView: .pvd, .vtu; LAMMPS: .lammps (input script), .data, .dump. Tables: .csv
     (disks), .contacts.csv, .events.csv.

@@ -224,22 +224,13 @@ class OneShape(Cubic):
     [
         (Stronger, r"Stronger: elastic_force is \S+ at overlap 1\.01e-06, where the derivative of energy is \S+$"),
         (Softer, r"Softer: stiffness is .* at overlap 1\.01e-06, where the derivative of elastic_force is"),
+        (Unlike, r"Unlike: shapes is None for two disks or for a disk and a wall, must be for both or for neither$"),
+        (OneShape, r"OneShape: shapes is 0\.5 for 3 contacts, must be as many finite numbers$"),
     ],
 )
 def test_a_law_that_contradicts_itself_is_refused(wrong, said):
     refuses(gr.GranularError, said, gr.register_law, "wrong", wrong)
     assert "wrong" not in KNOWN_LAWS
-
-
-@pytest.mark.parametrize(
-    ("wrong", "said"),
-    [
-        (Unlike, r"Unlike: shapes is None for two disks or for a disk and a wall, must be for both or for neither$"),
-        (OneShape, r"OneShape: shapes is 0\.5 for 3 contacts, must be as many finite numbers$"),
-    ],
-)
-def test_a_law_whose_geometry_factors_do_not_fit_is_refused(wrong, said):
-    refuses(gr.GranularError, said, gr.register_law, "wrong", wrong)
 
 
 def test_parameters_with_which_a_law_contradicts_itself_are_refused():

@@ -29,6 +29,11 @@ SCENE = Scene.from_dict(
 @pytest.fixture
 def computed(monkeypatch):
     """How often a packing was settled."""
+    return counted(monkeypatch)
+
+
+def counted(monkeypatch):
+    """The problems that are settled from now on."""
     calls = []
     original = solve.rest_state
 
@@ -157,15 +162,8 @@ def test_reading_a_state_runs_no_code(folder, computed, capsys):
 
 def settle_where(folder):
     """Settle in this process; the number of times that it was computed here."""
-    calls = []
-    original = solve.rest_state
-
-    def count(problem):
-        calls.append(problem)
-        return original(problem)
-
-    solve.rest_state = count
-    with using(rest_states=folder):
+    with pytest.MonkeyPatch.context() as monkeypatch, using(rest_states=folder):
+        calls = counted(monkeypatch)
         settled.rest_state(Problem.from_scene(SCENE))
     return len(calls)
 
