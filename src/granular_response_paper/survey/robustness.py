@@ -2,20 +2,18 @@
 
 Each event of Secs. V.A, V.B and V.E is looked for with the paper's protocol and with one thing changed: the *protocol*
 (dashpots halved and doubled, another integrator, a smaller time step, ten copies of the packing displaced by 1e-9 R,
-the
-duration of the load ramp), the *width* of the slab, or the *stiffness* of its disks. At large forces and friction 1 ten
-displaced copies under each force tell which way the response leans, and the same with friction 10, at which no contact
-reaches its limit, whether sliding or opening breaks the symmetry.
+the duration of the load ramp), the *width* of the slab, or the *stiffness* of its disks. At large forces and friction 1
+ten displaced copies under each force tell which way the response leans, and the same with friction 10, at which no
+contact reaches its limit, whether sliding or opening breaks the symmetry.
 
 The study takes some minutes and stands outside the pipeline of the figures; its dataset is part of the repository,
-``survey/data/robustness.nc``. ``python -m granular_response_paper.survey.robustness`` makes it anew, with the names of
-parts (paths, paths_between, dynamics, copies) only these. Units are reduced: mean radius, mean mass, g.
+``survey/data/robustness.nc``. ``python -m granular_response_paper.survey.robustness`` makes it anew. Units are reduced:
+mean radius, mean mass, g.
 """
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -34,6 +32,7 @@ from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.parameters import UNIT_LOAD
 from granular_response_paper.records import column, record, table, variables
+from granular_response_paper.survey.simulate import MECHANICS, made_by
 from granular_response_paper.tasks import computed
 
 OUTPUT = Path("survey") / "data" / "robustness.nc"
@@ -53,8 +52,8 @@ LAST = {0.0: 10.0, 0.05: 20.0, 0.1: 30.0, 0.2: 50.0, 0.5: 50.0, 1.0: 90.0}
 #: control, which a stable symmetric branch forgets.
 DISPLACEMENT, KICK = 1e-9, 1e-4
 
-#: Copies at each force beyond the loss of symmetry, and of each load path, which is followed through all its events.
-COPIES, PATH_COPIES = 10, 3
+#: Copies at each force beyond the loss of symmetry, and of each load path.
+COPIES = 10
 
 #: Asymmetry of the response from which symmetry is lost, as in Fig. 16; forces between which it is lost.
 ASYMMETRY, BETWEEN = 0.2, (70.0, 110.0)
@@ -96,7 +95,7 @@ def variants() -> Iterator[Variant]:
     yield Variant("protocol", "velocity Verlet", {"protocol.integrator": "verlet"})
     yield Variant("protocol", "half of the time step", {"protocol.time_step": 2.5e-4})
     yield Variant("protocol", "a quarter of the time step", {"protocol.time_step": 1.25e-4})
-    for seed in range(1, PATH_COPIES + 1):
+    for seed in range(1, COPIES + 1):
         yield Variant("protocol", f"displaced copy {seed}", {}, seed)
     for disks in (121, 241):
         yield Variant("width", f"{disks} disks a row", {"packing.disks_per_row": disks})
@@ -190,11 +189,11 @@ def _stacked(done: Mapping[tuple[float, float, int], xr.Dataset]) -> xr.Dataset:
     return slab.measured_along("run", list(done.values())).assign(given)
 
 
-def paths(frictions: Sequence[float]) -> dict[str, xr.Dataset]:
-    """Dataset ``events`` (event): all variants along load paths, of these frictions."""
+def paths() -> dict[str, xr.Dataset]:
+    """Dataset ``events`` (event): all variants along load paths."""
     tasks = {
         (mu, k): partial(along_path, mu, one)
-        for mu in frictions
+        for mu in FRICTIONS
         for k, one in enumerate(variants())
         # without friction the equilibrium is one minimum; the widest slab takes ten times as long as others
         if not (mu == 0.0 and one.seed > 0) and not (mu in (0.05, 0.1, 0.5) and "241" in one.name)
@@ -245,27 +244,12 @@ def copies() -> dict[str, xr.Dataset]:
     return {"copies": _stacked(done).assign(shift), "control": _stacked(control).assign(kick)}
 
 
-#: Parts that are made one by one, each in a few minutes: the first two give the same dataset.
-PARTS: dict[str, Callable[[], dict[str, xr.Dataset]]] = {
-    "paths": partial(paths, (0.0, 0.2, 1.0)),
-    "paths_between": partial(paths, (0.05, 0.1, 0.5)),
-    "dynamics": dynamics,
-    "copies": copies,
-}
-
-
-def main(names: Sequence[str], output: Path = OUTPUT) -> None:
-    """Make the parts ``names``, all if none is named, and keep the others of the file as they are."""
-    datasets = store.read(output) if output.exists() else {}
-    for name in names or PARTS:
-        made = PARTS[name]()
-        if name.startswith("paths") and "events" in datasets:
-            found = made["events"]
-            others = ~np.isin(datasets["events"]["friction"].values, found["friction"].values)
-            made = {"events": xr.concat([datasets["events"].isel(event=others), found], "event")}
-        datasets |= labelled(made, BASE)
-    store.write(output, datasets, {"group": "robustness", "package_version": __version__, "parameters": BASE.to_yaml()})
+def main(output: Path = OUTPUT) -> None:
+    """Make the study anew."""
+    made = labelled(paths() | dynamics() | copies(), BASE)
+    attributes = {"group": "robustness", "package_version": __version__, "parameters": BASE.to_yaml()}
+    store.write(output, made, attributes | made_by(MECHANICS))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -14,7 +14,7 @@ from __future__ import annotations
 import json
 import operator
 import platform
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib import metadata
@@ -149,13 +149,16 @@ def block_datasets(cases: list[Case], found: Mapping[Place, Realization]) -> dic
     return {"ensembles": ensembles, "packings": packings.astype(np.float32)}
 
 
-def provenance(block: Block) -> dict[str, str]:
-    """Attributes of the file: what it was made from, and by what."""
+def made_by(parts: Sequence[str]) -> dict[str, str]:
+    """Attributes of a file: the sources of these parts, and versions of what computes."""
     versions = {name: metadata.version(name) for name in ("numba", "numpy", "scipy")}
     return {
-        "block": block.name,
-        "parameters": text.write(block.given),
-        "sources": f"{sources(*block.parts)} ({', '.join(block.parts)})",
+        "sources": f"{sources(*parts)} ({', '.join(parts)})",
         "versions": json.dumps({"python": platform.python_version(), **versions}),
-        "seed": str(block.scene.packing.model_dump()["seed"]),
     }
+
+
+def provenance(block: Block) -> dict[str, str]:
+    """Attributes of the file of a block: what it was made from, and by what."""
+    seed = str(block.scene.packing.model_dump()["seed"])
+    return {"block": block.name, "parameters": text.write(block.given), **made_by(block.parts), "seed": seed}
