@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from refusals import refuses
 
 import granular_response as gr
 from granular_response.solvers.problem import Problem
@@ -86,5 +87,4 @@ def test_a_band_is_that_of_one_disk():
     ],
 )
 def test_ways_that_are_none(ways, said):
-    with pytest.raises(gr.SceneError, match=f"^{said}"):
-        gr.preparations(SLAB, ways)
+    refuses(gr.SceneError, f"^{said}", gr.preparations, SLAB, ways)
