@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 from places import ROOT
-from refusals import refuses
 
 #: In place of pip: writes down what it was asked, and knows the settings in the file ``settings`` of the folder.
 PIP = """
@@ -158,7 +157,8 @@ def test_the_next_set_up_waits_for_what_a_killed_one_has_started(setup):
     run.kill()
     run.wait()
     with open(setup.__file__) as held:
-        refuses(BlockingIOError, None, fcntl.flock, held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        with pytest.raises(BlockingIOError):
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         open("gate", "w").close()  # now it ends
         fcntl.flock(held, fcntl.LOCK_EX)
 

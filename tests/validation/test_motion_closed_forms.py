@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from refusals import refuses
 from scipy.integrate import solve_ivp
 
 import granular_response as gr
@@ -235,7 +234,8 @@ def test_bodies_do_not_pass_through_each_other():
     with pytest.raises(gr.SolveError, match=r"^disks 0 and 1 overlap by .* at time 0\.01.*: take smaller velocities"):
         gr.motion(two, [1.0], progress=False)
     ball = gr.Scene.from_arrays([500.0], [5.0], 1.0, width=1000.0, vz=-300.0, scene=fast)
-    refuses(gr.SolveError, r"^disk 0 and the floor overlap by ", gr.motion, ball, [1.0], progress=False)
+    with pytest.raises(gr.SolveError, match=r"^disk 0 and the floor overlap by "):
+        gr.motion(ball, [1.0], progress=False)
 
 
 def test_an_equilibrium_stays_and_a_load_moves_it():
