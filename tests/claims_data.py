@@ -2,11 +2,8 @@
 
 import numpy as np
 import xarray as xr
-import yaml
-from places import ROOT
 
 from granular_response.state import OPEN, SLIDING, STICKING
-from granular_response_paper.groups.theory import simulate as theory
 
 FORCES = np.unique(np.concatenate([0.1 * 1.05 ** np.arange(141), [4.0, 5.0, 15.0, 25.0, 30.0, 40.0, 50.0]]))
 X = np.linspace(-60.0, 60.0, 61)
@@ -74,7 +71,6 @@ def friction_study():
     response = {
         # one per cent off at these forces, five at five times as much
         "response_at_centre": 0.07 * (1.0 - 0.01 * FORCES / np.array([[0.9], [5.5], [7.5]])),
-        "double_peaked": (np.array([[3.0], [20.1], [np.inf]]) < FORCES).astype(float),
         "half_maximum_width": 28.0 - 0.1 * FORCES * np.array([[0.0], [0.0], [1.0]]),
         "third_peak_prominence": 0.1 * (FORCES > 38.0) * np.array([[0.0], [1.0], [0.0]]),
         "opened_contacts": opened,
@@ -93,7 +89,6 @@ def friction_study():
     axis = {
         "central_dip": [0.9, 0.5, -0.01, -0.03, -0.03],
         "sliding_contacts": [0.0, 300.0, 200.0, 100.0, 50.0],
-        "opened_contacts": [110.0, 80.0, 40.0, 20.0, 0.0],
     }
     # a column of disks below the loaded one, whose contacts slide one after the other, and three disks beside it
     column = np.stack([np.zeros(14), -2.0 * np.arange(14.0)], axis=1)
@@ -178,8 +173,6 @@ def ratio_study():
         "events": events(("two_peaks_end", 10.0, 0.295, 0.3), ("central_maximum_begins", 10.0, 0.31, 0.315)),
         "response": dataset(
             {"stiffness_ratio": ratio, "interior": ("floor_disk", INSIDE)},
-            double_peaked=("stiffness_ratio", [1, 1, 1, 0, 0, 0, 0, 0]),
-            response_at_centre=("stiffness_ratio", centre),
             floor_response=("stiffness_ratio floor_disk", centre[:, None] * np.exp(-((X / 20.0) ** 2))),
             sliding_contacts=("stiffness_ratio", np.zeros(8)),
         ),
@@ -269,7 +262,6 @@ def numerics_study():
             {"friction": [0.0, 0.2], "stop_kinetic_energy": [1e-9, 1e-11, 1e-13]},
             **over("friction stop_kinetic_energy", rest_error=error, loaded_error=error, response_error=error),
         ),
-        "restart": dataset(sizes={"load": 2, "reading": 3}, kinetic_energy=("load reading", 1e-28)),
         "at_rest": dataset(network_fixed_steps=6000.0, sliding_contacts=0.0, loose_disks=0.0),
         "swing": dataset(
             {"stop_rule": ["instantaneous", "envelope"]}, {"reading": 3}, mean_acceleration=("stop_rule reading", 1e-6)
@@ -378,7 +370,7 @@ def phases_study():
             seen=("width case", 0.9),
             seen_interval=("width case level", [0.8, 0.9, 0.95]),
         ).assign_attrs(tolerance=0.01),
-        "medians": dataset(labels, **crossovers, collapsed=("case", np.where(delta == 0.25, 3, 0))),
+        "medians": dataset(labels, **crossovers),
         "definitions": dataset(labels | {"tolerance": [0.005, 0.02]}, **by_tolerance, limits=crossovers["limits"]),
         "shapes": dataset(
             labels,
@@ -425,14 +417,12 @@ def superposition_study():
     rng = np.random.default_rng(0)
     error = np.array([0.01, 0.1]) * rng.uniform(0.8, 1.2, (8, 2, 1))
     rows = np.array([0.1, 0.05, 0.02]) * rng.uniform(0.9, 1.1, (8, 2, 2, 1))
-    ends = over("realization", linear_until=np.linspace(0.35, 0.4, 8), nonlinear_from=np.linspace(0.4, 0.45, 8))
     return {
         "errors": dataset(
             {"force": [0.2, 1.0], "distance": [2.0, 8.0], "gap": [1.0, 3.0, 5.0]},
             **over("realization distance force", floor_error_largest=error, contact_error_largest=error),
             row_error=("realization distance force gap", rows),
         ),
-        "linear_range": dataset(**ends),
     }
 
 
@@ -644,7 +634,6 @@ def everything():
         "preparation": preparation_study(),
         "slab_comparison": comparison_study(),
         "stiffness_ratio_crossover": ratio_study(),
-        "theory": theory.simulate(theory.Parameters(**yaml.safe_load((ROOT / "params.yaml").read_text())["theory"])),
         "friction_fields": fields_study(),
         "pile_dip": pile_study(),
         "torque": torque_study(),

@@ -14,19 +14,6 @@ from granular_response_extensions.preparation.parameters import Parameters
 PARAMETERS = reduced.parameters("preparation")
 
 
-def test_every_slab_carries_every_force(datasets):
-    response = datasets["response"]
-    assert response["way"].values.tolist() == [
-        "at once", "at once", "slow", "without friction", "soft dashpots", "without friction"
-    ]  # fmt: skip
-    np.testing.assert_array_equal(response["wall_friction"], [0.0, 0.0, 0.0, 0.0, 0.0, 0.2])
-    known = np.isfinite(response["response_at_centre"].values)
-    np.testing.assert_array_equal(known.sum(axis=1), [5, 6, 6, 6, 6, 6])
-    total = response["floor_response"].sum("floor_disk").values
-    np.testing.assert_allclose(total[:5][known[:5]], 1.0, atol=1e-8)
-    assert (total[5] < 1.0 - 1e-4).all()  # rough side walls carry a part
-
-
 def test_an_event_is_between_the_forces_that_show_it(datasets):
     forces = np.array(PARAMETERS["forces"])
     found, response = datasets["events"], datasets["response"]

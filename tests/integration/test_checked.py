@@ -138,8 +138,7 @@ def test_a_sealed_file_that_is_no_result(solution, tmp_path, damage):
     with pytest.raises(ResultError, match=r"^[^\n]*bad\.nc: is not a whole result: [^\n]*$") as caught:
         read_result(tmp_path / "bad.nc")
     assert said in str(caught.value)
-    with pytest.raises(ResultError):
-        gr.open_result(tmp_path / "bad.nc")
+    refuses(ResultError, None, gr.open_result, tmp_path / "bad.nc")
 
 
 @pytest.mark.parametrize("layout", [2, 4])

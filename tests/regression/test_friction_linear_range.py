@@ -1,24 +1,6 @@
 """Figs. 6 to 9, 12 and 16 on a slab of 7 layers of 25 disks: what the study finds there, and that it is drawn."""
 
-import numpy as np
-
 from granular_response.state import SLIDING
-
-
-def test_every_state_is_an_equilibrium_that_carries_the_load(datasets):
-    response = datasets["response"].stack(state=("friction", "force")).dropna("state", subset=["peak_count"])
-    assert response.sizes["state"] == 7 + 8 + 6
-    np.testing.assert_allclose(response["floor_response"].sum("floor_disk"), 1.0, atol=1e-9)
-    assert float(response["asymmetry"].max()) < 1e-6
-
-
-def test_brackets_hold_the_event_that_the_axis_of_forces_shows(datasets):
-    response = datasets["response"].sel(friction=0.2).dropna("force", subset=["peak_count"])
-    table = datasets["events"]
-    (row,) = np.flatnonzero((table["name"].values == "reaches_floor") & (table["friction"].values == 0.2))
-    low, high = float(table["low"][row]), float(table["high"][row])
-    reached = response["reaches_floor"].values == 1.0
-    assert response["force"].values[~reached].max() <= low < high <= response["force"].values[reached].min()
 
 
 def test_path_and_dynamics_agree(datasets):

@@ -1,7 +1,5 @@
 """Small forces on small slabs beside the elastic slab, from parameters through a file to the figure."""
 
-import numpy as np
-
 
 def test_deeper_slabs_are_nearer_to_the_elastic_one(datasets) -> None:
     slabs = datasets["slabs"]
@@ -10,11 +8,3 @@ def test_deeper_slabs_are_nearer_to_the_elastic_one(datasets) -> None:
         assert distance[last] < 0.5 * distance[first] < 0.03
     # the right floor is told from the wrong one
     assert (distance < 0.4 * slabs["distance_other_floor"].values).all()
-
-
-def test_the_force_is_small(datasets) -> None:
-    slabs = datasets["slabs"]
-    assert float(slabs["nonlinearity"].max()) < 1e-5
-    assert not slabs["opened"].any() and not slabs["sliding"].any()
-    smooth = slabs["floor"].values == "smooth"
-    np.testing.assert_allclose(slabs["response_sum"].values[smooth], 1.0, atol=1e-8)

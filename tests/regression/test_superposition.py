@@ -10,12 +10,6 @@ from granular_response_paper.groups.superposition.simulate import loads as study
 PARAMETERS = reduced.parameters("superposition")
 
 
-def test_smooth_walls_leave_every_load_to_the_floor(datasets) -> None:
-    total = datasets["responses"]["floor_response"].sum("floor_disk")
-    for part, loads in (("left", 1.0), ("right", 1.0), ("both", 2.0)):
-        np.testing.assert_allclose(total.sel(part=part), loads, atol=1e-8)
-
-
 def test_stored_errors_are_those_of_the_stored_responses(datasets) -> None:
     responses = datasets["responses"]["floor_response"].isel(realization=1, distance=0, force=2)
     left, right, both = (responses.sel(part=part).values for part in study.PARTS)

@@ -1,7 +1,5 @@
 """Banded factorisations and the lowest real eigenvalue, against dense matrices."""
 
-import sys
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -213,19 +211,3 @@ def test_another_thread_may_order_another_network_between_comparison_and_answer(
     monkeypatch.setattr(ordering.np, "array_equal", interrupted)
     found = ordering.elimination(*mine, 2).order
     assert len(compared) > 3 and np.array_equal(found, expected)
-
-
-def test_threads_that_order_different_networks_get_their_own():
-    networks = chains(20, 31)
-    expected = [ordering.elimination(*network, 2).order for network in networks]
-
-    def ordered(k):
-        return np.array_equal(ordering.elimination(*networks[k % 2], 2).order, expected[k % 2])
-
-    before = sys.getswitchinterval()
-    sys.setswitchinterval(1e-6)
-    try:
-        with ThreadPoolExecutor(4) as pool:
-            assert all(pool.map(ordered, range(400)))
-    finally:
-        sys.setswitchinterval(before)

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 
 from granular_response.sweeps.resources import using
-from granular_response_paper.records import axes, column, columns, labels, record, table
+from granular_response_paper.records import column, record, table
 from granular_response_paper.tasks import computed
 
 
@@ -20,16 +20,6 @@ class Outcome:
 
 def outcome(lines):
     return Outcome(lines, lines, "x" * lines, np.arange(float(lines)), object())
-
-
-def test_fields_that_are_declared_become_variables():
-    found = table([outcome(1), outcome(3)], "case")
-    assert list(found.variables) == ["height", "count", "name", "profile"] == list(columns(Outcome))
-    assert found["profile"].dims == ("case", "line")
-    assert found["profile"].attrs == {"long_name": "stress per force", "units": "1"}
-    assert found["height"].dtype == float and found["count"].dtype == int
-    assert found["name"].values.tolist() == ["x", "xxx"]
-    np.testing.assert_array_equal(found["profile"], [[0.0, np.nan, np.nan], [0.0, 1.0, 2.0]])
 
 
 def test_places_without_a_record_are_nan():
@@ -50,14 +40,6 @@ def test_one_record_and_none_are_tables_too():
 
     found = table([], "event", kind=Event)
     assert found.sizes == {"event": 0} and found["low"].dtype == float and found["name"].dtype.kind == "U"
-
-
-def test_coordinates_of_cases_and_of_axes():
-    found = labels("case", [outcome(1), outcome(2)], height="height", name="name")
-    assert found["height"].dims == ("case",) and found["name"].values.tolist() == ["x", "xx"]
-    of = axes(line=(("low", "high"), "ends"), t=(np.arange(2.0), "distance"))
-    assert {name: one.dims for name, one in of.items()} == {"line": ("line",), "t": ("t",)}
-    assert of["line"].attrs["long_name"] == "ends"
 
 
 def test_tasks_give_what_they_compute_by_their_places():

@@ -128,9 +128,7 @@ def test_stored_and_solved_results_look_the_same(result, tmp_path):
 
 
 def test_a_page_has_what_was_asked_for(result):
-    figure = gr.plot.page(result)
-    titles = [axes.get_title(loc="left") for axes in figure.axes if axes.get_title(loc="left")]
-    assert [title[:5] for title in titles] == ["(a) n", "(b) i", "(c) c", "(d) s"]
+    assert [title[:5] for title in titles(gr.plot.page(result))] == ["(a) n", "(b) i", "(c) c", "(d) s"]
     with pytest.raises(pictures.PictureError, match="what = 'chains': must be among response, floor, forces"):
         gr.plot.page(result, ["chains"])
 

@@ -50,18 +50,6 @@ def test_sizes_are_as_asked():
     assert (radius < 1.5 * small).mean() == pytest.approx(0.75, abs=0.03)
 
 
-@pytest.mark.parametrize("sides", ["walls", "periodic"])
-def test_it_comes_to_rest_and_bears_a_load(sides):
-    scene = gr.Scene(
-        packing=gr.Poured(disks=60, width=14.0, sides=sides),
-        wall=gr.Wall(friction=0.3),
-        loads=[gr.Load(disk="top-centre", force=(0.0, -1.0))],
-    )
-    result = gr.solve(scene)
-    assert all(one.stable and one.force_residual < 1e-9 for one in result.certificates)
-    assert gr.Scene.from_text(scene.to_yaml()) == scene
-
-
 test_what_cannot_be_poured_is_refused = refusals(
     gr.SceneError,
     (lambda: gr.Poured(disks=0), "disks = 0: must be a whole number from 1 to 20000"),

@@ -1,6 +1,5 @@
 """A scene's defaults, derived values, updates and way to YAML and back."""
 
-import math
 import pickle
 
 import pytest
@@ -30,16 +29,6 @@ def test_defaults_are_the_papers():
     assert protocol.time_step is None and PAPERS_TIME_STEP == 5e-4
     assert scene.preparation.gravity == "at-once"
     assert Scene.from_text("{}") == scene
-
-
-def test_dashpots_are_half_critical():
-    contact = Contact()
-    assert contact.tangential_stiffness == pytest.approx(2400.0)
-    assert contact.normal_damping == pytest.approx(math.sqrt(3000.0))
-    assert contact.tangential_damping == pytest.approx(math.sqrt(2400.0))
-    assert Contact(damping_ratio=0.25).normal_damping == pytest.approx(0.5 * math.sqrt(3000.0))
-    # The same for the walls, with their own stiffness.
-    assert Scene().resolved_wall.normal_damping == pytest.approx(math.sqrt(6000.0))
 
 
 def test_wall_follows_the_contacts_unless_told():

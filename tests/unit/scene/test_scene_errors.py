@@ -6,10 +6,6 @@ from refusals import refusals, refuses
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Contact, Load, Scene, SceneError, SlabPacking
 
-CONTACT_KEYS = (
-    "law, normal_stiffness, stiffness_ratio, friction, damping_ratio, rolling_friction, rolling_stiffness_ratio, "
-    "parameters"
-)
 SCENE_KEYS = "packing, contact, wall, loads, preparation, protocol, motion"
 KINDS = "slab or pile or poured or file or arrays"
 RATIO = "must be a number from 0 to 1e6"

@@ -9,7 +9,6 @@ from small_scenes import at_rest, free_disks, scene, shaken
 
 from granular_response.errors import EquilibriumError
 from granular_response.solvers import increment as module
-from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.energy import minimise
 from granular_response.solvers.equilibrium import certify, external_force, finish, newton
 from granular_response.solvers.increment import Work, solve_increment
@@ -107,13 +106,6 @@ def test_fixed_limits_lead_to_the_same_equilibrium(start, monkeypatch):
     calls.clear()
     monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, tries=0))
     assert solve_increment(system, known, external, known.q, Work()) is None
-
-
-def test_minimum_is_where_dynamics_ends():
-    problem = Problem.from_scene(scene(contact__friction=0.0))
-    found = minimise(problem, problem.bare_state())
-    settled = finish(problem, relax(Dynamics(problem, problem.bare_state()), Stop(1e-14)))
-    assert found.position == pytest.approx(settled.position, abs=1e-11)
 
 
 def rough() -> Problem:

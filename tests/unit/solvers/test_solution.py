@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from refusals import refuses
 from small_scenes import pushed, scene
 
 from granular_response.errors import EquilibriumError
@@ -105,8 +106,7 @@ def test_a_path_whose_every_increment_fails_gives_up_after_a_few(monkeypatch, st
     monkeypatch.setattr(points, "solve_increment", fails)
     monkeypatch.setattr(path, "landed", fails)
     monkeypatch.setattr(losses, "by_motion", moves)
-    with pytest.raises(Moves):
-        path.follow(problem.with_loads(rest.position), rest, [steps * path.OPTIONS.beyond])
+    refuses(Moves, None, path.follow, problem.with_loads(rest.position), rest, [steps * path.OPTIONS.beyond])
     assert len(tried) > 1
 
 
@@ -144,8 +144,7 @@ def test_disks_that_pass_through_each_other_are_refused():
 def test_steps_that_run_out_without_friction_are_what_is_said():
     smooth = {"preparation__gravity": "frictionless", "packing__polydispersity": 0.1, "loads": []}
     moving = scene(contact__friction=0.3, protocol__maximum_steps=333, protocol__static_finish=False, **smooth)
-    with pytest.raises(NotSettled, match=r"under gravity without friction within protocol.maximum_steps = 333 "):
-        solve_scene(moving)
+    refuses(NotSettled, r"under gravity without friction within protocol.maximum_steps = 333 ", solve_scene, moving)
 
 
 @pytest.mark.parametrize("law", ["literal", "unloading"])

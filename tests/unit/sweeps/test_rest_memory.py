@@ -110,18 +110,6 @@ def test_what_changes_the_rest_state_changes_its_name_and_nothing_else_does(scen
     assert (names[0] != names[1]) is other
 
 
-def test_a_damaged_state_is_computed_again(folder, computed):
-    first = settled.rest_state(Problem.from_scene(SCENE))
-    (kept,) = files(folder)
-    data = bytearray(kept.read_bytes())
-    data[len(data) // 2] ^= 1
-    kept.write_bytes(data)
-    with pytest.warns(MemoryWarning, match="kept: damaged results are computed again"):
-        again = settled.rest_state(Problem.from_scene(SCENE))
-    assert len(computed) == 2
-    np.testing.assert_array_equal(again.position, first.position)
-
-
 def test_a_state_under_the_name_of_another_is_not_taken(folder, computed):
     settled.rest_state(Problem.from_scene(SCENE))
     (kept,) = files(folder)
