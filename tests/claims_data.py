@@ -269,7 +269,6 @@ def numerics_study():
             {"friction": [0.0, 0.2], "stop_kinetic_energy": [1e-9, 1e-11, 1e-13]},
             **over("friction stop_kinetic_energy", rest_error=error, loaded_error=error, response_error=error),
         ),
-        "restart": dataset(sizes={"load": 2, "reading": 3}, kinetic_energy=("load reading", 1e-28)),
         "at_rest": dataset(network_fixed_steps=6000.0, sliding_contacts=0.0, loose_disks=0.0),
         "swing": dataset(
             {"stop_rule": ["instantaneous", "envelope"]}, {"reading": 3}, mean_acceleration=("stop_rule reading", 1e-6)

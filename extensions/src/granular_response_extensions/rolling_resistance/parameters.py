@@ -7,12 +7,11 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from granular_response.scene import PilePacking, Scene
-from granular_response.scene.base import Count, NonNegative, Positive
+from granular_response.scene.base import NonNegative, Positive
 from granular_response_paper.parameters import (
     UNIT_LOAD,
     Checks,
     Coefficients,
-    Loading,
     Rows,
     SceneGroup,
     over,
@@ -37,15 +36,14 @@ class Parameters(SceneGroup):
     tolerance: Positive = Field(description="Width of the bracket of the least friction that holds a pile.")
     moved: Positive = Field(description="A pile holds if no disk moves farther on its way to rest, in radii.")
     scene: Annotated[Scene, over(UNIT_LOAD, "contact.friction", "loads", *_ROLLING)] = Field(description="The slab.")
-    slabs: Annotated[tuple[Loading, ...], AfterValidator(some)] = Field(description="One for each friction.")
+    slab_frictions: Coefficients = Field(description="Between disks of slabs.")
     slab_rolling_frictions: Coefficients = Field(description="Of disks in slabs.")
-    shown_forces: tuple[Positive, Positive] = Field(description="Whose stresses are stored: a small and a large one.")
+    slab_forces: tuple[Positive, Positive] = Field(description="A small and a large one.")
     torques: tuple[Positive, Positive] = Field(
         description="On the loaded disk, counter-clockwise, in mean disk weights times the mean radius: a small and a "
         "large one."
     )
     stress_width: Positive = Field(description="w of the Gaussian, in radii.")
-    heights: Count = Field(description="Number of heights at which stresses are taken.")
 
     def checks(self) -> Checks:
         least = self.least_friction

@@ -4,18 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, NonNegative, Positive, Ratio, allowed
-from granular_response_paper.parameters import Checked, Checks, Coefficients, Integrators, Positives, over, some
-
-
-class Restart(Description):
-    """Statically finished states put back into the dynamics."""
-
-    forces: Annotated[tuple[NonNegative, ...], AfterValidator(some)] = Field(description="0 for gravity alone.")
-    steps: Count
+from granular_response.scene.base import Count, Description, Positive, Ratio, allowed
+from granular_response_paper.parameters import Checked, Checks, Coefficients, Integrators, Positives, over
 
 
 class Damping(Description):
@@ -53,7 +46,6 @@ class Parameters(Description):
     force: Positive = Field(description="In mean disk weights.")
     frictions: Coefficients = Field(description="Of stop_energies.")
     stop_energies: Positives = Field(description="Kinetic energies per disk at which the dynamics stops.")
-    restart: Restart
     friction: Ratio = Field(description="Of what follows.")
     time_steps: Annotated[
         tuple[Positive, ...], Field(min_length=2), allowed("must be at least two numbers above 0, to compare")

@@ -57,7 +57,6 @@ class Parameters(EnsembleGroup):
     widths: Positives = Field(description="w of the smoothing Gaussian, in radii.")
     reach: Positive = Field(description="Of the x axis of averages, in radii.")
     spacing: Positive = Field(description="Of the x axis of averages, in radii.")
-    few: Count = Field(description="Configurations of the paper's averages.")
     individual: Individual
     linear_range: LinearRange
     forces_picture: ForcesPicture

@@ -29,7 +29,7 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     force = float(response["force"])
     shown = among(response["stiffness_ratio"], DRAWN)
     looks = {ratio: look | {"linewidth": 1.2} for ratio, look in family(shown, of="other", marked=False, dashed=True)}
-    profile = elastic["profile"].sel(rotations="free", body="smooth floor")
+    profile = elastic["profile"].sel(body="smooth floor")
     for ratio in shown:
         curve = response["floor_response"].sel(stiffness_ratio=ratio)
         simulated.plot(response["x"], curve, **looks[ratio])
@@ -86,7 +86,7 @@ def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr
     """The depth of the dip near the crossover, where the differences are small."""
     ratio, fine = response["stiffness_ratio"].values, elastic["stiffness_ratio"].values
     low, high = float(events["low"].min()), float(events["high"].max())
-    dip = elastic["central_dip"].sel(rotations="free")
+    dip = elastic["central_dip"]
     zero(axes)
     if np.isfinite(high):
         axes.axvspan(low, high, color=style.FAINT, linewidth=0.0, zorder=0)

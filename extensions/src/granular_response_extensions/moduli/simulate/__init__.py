@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from functools import partial
 
-import numpy as np
 import xarray as xr
 
 from granular_response.scene.lattice import TOUCHING_LARGEST
@@ -71,16 +70,10 @@ def _packings(parameters: Parameters) -> xr.Dataset:
     outcomes = measured(parameters, "packings", packings, task, PackingModuli, work=lambda p: cases[p[0]].layers[p[1]])
     found = table(outcomes, "case", "size", "realization").rename(matrices="stiffness")
     layers = stacked({(c,): case.layers for c, case in enumerate(cases)}, float)
-    surveyed = np.nan_to_num(stacked({(c,): case.further for c, case in enumerate(cases)}, float))
-    matrices = found["stiffness"].values
-    prestress = symmetric(matrices[..., -1, :, :] - found["springs_alone"].values)
     mirrored = "moduli over k_N, what a solid that mirrors itself has of them"
-    added = "what the forces that contacts bear at rest add to the moduli over k_N, rotations free"
     derived = variables(
         layers=("case size", layers, "number of rows"),
-        surveyed=("case size", surveyed, "realizations that are the survey's"),
-        moduli=("case size realization following modulus", symmetric(matrices), mirrored),
-        prestress=("case size realization modulus", prestress, added),
+        moduli=("case size realization following modulus", symmetric(found["stiffness"].values), mirrored),
     )
     components = ["xx", "zz", "xz"]
     coordinates = axes(
@@ -93,4 +86,4 @@ def _packings(parameters: Parameters) -> xr.Dataset:
         place=(PLACES, "distance from the load over the height of the slab"),
     )
     named = labels("case", cases, polydispersity="polydispersity", friction=FRICTION)
-    return found.drop_vars("springs_alone").assign(derived).assign_coords(named | coordinates)
+    return found.assign(derived).assign_coords(named | coordinates)

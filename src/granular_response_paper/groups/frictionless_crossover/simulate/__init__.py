@@ -8,7 +8,7 @@ the disks (``stiffness``). Each slab is settled once and all its forces are reac
 What sets the size of a slab apart from the stiffness of its disks is the overlap that gravity makes at its
 floor, so deep slabs are compared for the paper's stiffness and for much stiffer disks. Wide, deep or soft slabs
 have no symmetric rest state: the symmetric equilibrium is a saddle, and the slab leans by thousandths to tenths
-of a radius to one side or, as likely, to the other (``rest_asymmetry``). Gravity pushes very soft disks out of
+of a radius to one side or, as likely, to the other. Gravity pushes very soft disks out of
 their rows (``new_neighbours``); the rest state then depends on the fall and is found by dynamics.
 """
 

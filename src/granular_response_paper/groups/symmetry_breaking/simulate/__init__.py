@@ -122,14 +122,8 @@ def held(asked: Parameters, rest: State) -> xr.Dataset:
         dynamics = Dynamics(problem, start, problem.scene.protocol.integrator, resolve_time_step(problem))
         after = relax(dynamics, HELD_STOP, load=(state.load_factor, state.load_factor, 0.0))
         settled.append(replace(after, reached=after.reached.after(state.reached)))
-    moved = [np.abs(after.position - before.position).max() for before, after in zip(states, settled, strict=True)]
-    branch = [measures.asymmetry(state) for state in states]
-    further = variables(
-        branch_asymmetry=("force", branch, "asymmetry of the floor response before the displacement"),
-        moved=("force", moved, f"largest distance from the place before {RADII}"),
-        displacement=("", given.displacement, f"largest random displacement {RADII}"),
-    )
-    found = slab.measured_along("force", [slab.measured(measures, settled)]).assign(further)
+    found = slab.measured_along("force", [slab.measured(measures, settled)])
+    found["displacement"] = variable((), given.displacement, f"largest random displacement {RADII}")
     return found.assign_coords(axes(force=(given.forces, APPLIED)))
 
 
