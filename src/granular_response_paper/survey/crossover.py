@@ -265,7 +265,7 @@ def quantiles(draws: FloatArray) -> FloatArray:
 
 
 def cross(ensemble: Ensemble, *, number: int, draws: int, seed: int, others: Sequence[float] = ()) -> Crossing:
-    """The crossover of an ensemble of symmetric responses, by its tolerance and by others, and in samples of a number."""
+    """The crossover of an ensemble of symmetric responses, by its tolerance, by others, and in samples of a number."""
     shapes = ensemble.shape(ensemble.mean())
     drawn = ensemble.shape(ensemble.means(weights(len(ensemble.response), draws, seed)))
     fits = grown(drawn)

@@ -4,19 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from granular_response.scene import PilePacking, Scene
 from granular_response.scene.base import NonNegative, Positive
-from granular_response_paper.parameters import (
-    UNIT_LOAD,
-    Checks,
-    Coefficients,
-    Rows,
-    SceneGroup,
-    over,
-    some,
-)
+from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Rows, SceneGroup, Some, over
 
 _ROLLING = ("contact.rolling_friction", "wall.rolling_friction")
 _PILE = Scene(packing=PilePacking(), loads=())
@@ -26,11 +18,9 @@ class Parameters(SceneGroup):
     pile: Annotated[Scene, over(_PILE, "packing", "loads", "preparation", *_ROLLING)] = Field(
         description="The pile with support."
     )
-    layers: Annotated[tuple[Rows, ...], AfterValidator(some)] = Field(description="Of the piles.")
+    layers: Some[Rows] = Field(description="Of the piles.")
     rolling_frictions: Coefficients = Field(description="Of piles; at the floor the same.")
-    ramps: tuple[NonNegative, ...] = Field(
-        min_length=1, description="Times over which gravity grows, in sqrt(R/g); 0: at once."
-    )
+    ramps: Some[NonNegative] = Field(description="Times over which gravity grows, in sqrt(R/g); 0: at once.")
     least_friction: Positive = Field(description="From which on piles are tried, floor and disks alike.")
     most_friction: Positive = Field(description="Up to which they are.")
     tolerance: Positive = Field(description="Width of the bracket of the least friction that holds a pile.")
@@ -44,7 +34,3 @@ class Parameters(SceneGroup):
         "large one."
     )
     stress_width: Positive = Field(description="w of the Gaussian, in radii.")
-
-    def checks(self) -> Checks:
-        least = self.least_friction
-        yield "most_friction", self.most_friction > least, f"must be above least_friction = {least:g}"

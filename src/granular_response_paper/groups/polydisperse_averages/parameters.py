@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio
 from granular_response.scene.lattice import LatticeConstant
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
-from granular_response_paper.parameters import Checks, Coefficients, Growing, Positives, some
+from granular_response_paper.parameters import Coefficients, Growing, Positives, Some
 
 
 class Cases(Description):
@@ -53,7 +51,7 @@ class ForcesPicture(Description):
 
 class Parameters(EnsembleGroup):
     realizations: Count = Field(description="Of a disordered case; a lattice needs one.")
-    cases: Annotated[tuple[Cases, ...], AfterValidator(some)]
+    cases: Some[Cases]
     widths: Positives = Field(description="w of the smoothing Gaussian, in radii.")
     reach: Positive = Field(description="Of the x axis of averages, in radii.")
     spacing: Positive = Field(description="Of the x axis of averages, in radii.")
@@ -92,11 +90,3 @@ class Parameters(EnsembleGroup):
             and picture.realization < case.realizations
             and picture.force in case.forces
         ]
-
-    def checks(self) -> Checks:
-        cases, shown = self.columns, self.individual
-        yield "cases", any(case.polydispersity for case in cases), "must have a polydispersity above 0"
-        yield "forces_picture", bool(self.pictured), "must be a realization and a force of one of the cases"
-        alike = [case for case in cases if case.polydispersity == shown.polydispersity and shown.force in case.forces]
-        there = any(case.friction in shown.frictions for case in alike)
-        yield "individual", there, "must be a polydispersity, frictions and a force of the cases"

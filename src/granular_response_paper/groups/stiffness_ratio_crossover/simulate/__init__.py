@@ -123,26 +123,17 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
     nan at a ratio of zero, where the lattice resists some strain not at all.
     """
     node, weight = np.polynomial.legendre.leggauss(8)
-    found = {}
+    found: dict[tuple[int, int], Elastic] = {}
     for k in np.flatnonzero(ratios).tolist():
         moduli = lattice.moduli(Springs(0.0, 1.0, 0.0, ratios[k]), "free")
         plane = half_plane.pressure(x[:, None] + node, np.sqrt(3.0) * layers, moduli) @ weight
         slab = response_of_layers(x, layers=layers, moduli=moduli, floor="smooth", width=width)
         found |= {(b, k): Elastic(profile, central_dip(x, profile)) for b, profile in enumerate((plane, slab))}
     roots = [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS]
-    coordinates = axes(
+    places = variables(x=("floor_disk", x, f"position of the floor disk from the load {RADII}")) | axes(
         stiffness_ratio=(ratios, RATIO),
         body=(BODIES, "elastic body that carries the force"),
         rotations=(ROTATIONS, "whether the disks turn"),
     )
-    return (
-        table(found, "body", "stiffness_ratio")
-        .assign_coords(coordinates)
-        .assign(
-            variables(
-                root=("rotations", roots, "k_2t/k_2n at which r of Sec. V.C is 0"),
-                x=("floor_disk", x, f"position of the floor disk from the load {RADII}"),
-            )
-        )
-        .set_coords("x")
-    )
+    data = table(found, "body", "stiffness_ratio").assign_coords(places)
+    return data.assign(variables(root=("rotations", roots, "k_2t/k_2n at which r of Sec. V.C is 0")))
