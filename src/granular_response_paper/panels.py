@@ -16,7 +16,6 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
 from granular_response.plot import network, style
-from granular_response.plot.photoelastic import photoelastic
 from granular_response.state import WALL_NORMAL, FloatArray, foot_points
 
 from .captions import letters
@@ -191,15 +190,3 @@ def banded(
     """A curve with a pale band of its colour between the two ``ends``."""
     axes.fill_between(x, *ends, color=look["color"], alpha=alpha, linewidth=0.0)
     axes.plot(x, middle, label=label, **look)
-
-
-#: Of packings between crossed polarisers: mean radii to each side of the load, and the principal stress difference of
-#: one fringe, per applied force, in 1/mean radius.
-NEAR, FRINGE = 18.0, 0.32
-
-
-def polarised(axes: Axes, packing: xr.Dataset, force: float, *, pixels: int) -> float:
-    """Draw a packing between crossed polarisers; returns how far to each side of the load it is shown."""
-    half = min(NEAR, 0.5 * float(packing.attrs["width"]))
-    photoelastic(packing, ax=axes, half_width=half, pixels=pixels, fringe=FRINGE * force)
-    return half

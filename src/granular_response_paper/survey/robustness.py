@@ -132,13 +132,8 @@ def along_path(friction: float, variant: Variant) -> list[Found]:
     states, measures = path.through(forces), studies.Measures(path)
     asked = studies.happenings(measures, states[0], ASYMMETRY)
     asked["first_opening_anywhere"] = studies.first_opening(measures, anywhere=True)
-    return [_found(event, variant, "path") for event in slab.locate(path, forces, asked)]
-
-
-def _found(event: slab.Event, variant: Variant, loading: str, ramp: float = float("nan")) -> Found:
-    return Found(
-        event.name, event.friction, event.low, event.high, event.definition, variant.kind, variant.name, loading, ramp
-    )
+    own = {"kind": variant.kind, "variant": variant.name, "loading": "path", "ramp_time": float("nan")}
+    return [Found(**vars(event) | own) for event in slab.locate(path, forces, asked)]
 
 
 def from_rest(friction: float, variant: Variant, ramp: float, sought: Mapping[str, tuple[float, float]]) -> list[Found]:
@@ -150,26 +145,14 @@ def from_rest(friction: float, variant: Variant, ramp: float, sought: Mapping[st
     found = []
     for name, (low, high) in sought.items():
         what, width = asked[name], 1.0 if name.startswith("loss") else WIDTH
-        ends = _bracket(partial(_happened, path, what), low, high, width)
-        event = slab.Event(name, friction, *ends, f"{what.definition}, from rest to each force")
-        found.append(_found(event, variant, "dynamics", ramp))
+        ends = slab.between(partial(_happened, path, what), low, high, width)
+        text = f"{what.definition}, from rest to each force"
+        found.append(Found(name, friction, *ends, text, variant.kind, variant.name, "dynamics", ramp))
     return found
 
 
 def _happened(path: studies.LoadPath, what: studies.Happening, force: float) -> bool:
     return bool(what.happened(path.at(force)))
-
-
-def _bracket(happened: Callable[[float], bool], low: float, high: float, width: float) -> tuple[float, float]:
-    """Between two forces; (0, low) if it has happened at the lower one, (high, nan) if not at the upper one."""
-    if happened(low):
-        return 0.0, low
-    if not happened(high):
-        return high, float("nan")
-    while high - low > width:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if happened(middle) else (middle, high)
-    return low, high
 
 
 def copy_under(friction: float, force: float, seed: int, size: float = DISPLACEMENT) -> xr.Dataset:

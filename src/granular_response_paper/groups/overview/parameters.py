@@ -7,17 +7,8 @@ from typing import Annotated
 from pydantic import Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Description, Fraction, Positive, Ratio
-from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Curve, SceneGroup, Some, over
-
-
-class Experiment(Description):
-    """Packings of photoelastic disks (Sec. II.B); floor and walls rub as the disks."""
-
-    polydispersities: Some[Fraction] = Field(description="One packing each.")
-    friction: Ratio
-    force: Positive = Field(description="In mean disk weights.")
-    stop_kinetic_energy: Positive = Field(description="Of the fall of a disordered packing.")
+from granular_response.scene.base import Positive
+from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Curve, SceneGroup, over
 
 
 class Parameters(SceneGroup):
@@ -28,4 +19,3 @@ class Parameters(SceneGroup):
     forces: Curve[Positive] = Field(
         description="In mean disk weights: frames; the first and the last are in the picture."
     )
-    experiment: Experiment

@@ -27,8 +27,6 @@ _PLACES = ("smoothing", "place")
 
 @record
 class PackingModuli:
-    coordination: float = column("contacts per disk that bears something")  #: floor included
-    matrices: FloatArray = column("stress per strain over k_N, as measured", "following", "stress", "strain")
     response: FloatArray = column("mean floor pressure times height per force", *_PLACES)
     predicted: FloatArray = column(
         "floor pressure times height per force of the elastic slab with these moduli", "solid", *_PLACES
@@ -100,12 +98,12 @@ def compute(scene: Scene, margin: float, width: float, wide: float) -> PackingMo
     """
     problem = Problem.from_scene(scene)
     rest = rest_state(problem)
-    count, period, stiffness = rest.contact_count(), problem.packing.width, problem.stiffness
-    matrices = np.stack([strained(problem, rest, how, margin=margin).moduli for how in FOLLOWING]) / stiffness
+    period = problem.packing.width
+    matrices = np.stack([strained(problem, rest, how, margin=margin).moduli for how in FOLLOWING]) / problem.stiffness
     height = slab_height(rest, problem.packing)
     widths = np.array([width, wide * height])
     floor: Floor = "rough" if problem.wall_friction else "smooth"
     mean, solids = responses(problem, rest, height, widths).mean(axis=0), symmetric(matrices)
     solids = np.stack([*solids, nearest_isotropic(solids[-1])])
     predicted = np.stack([prediction(solid, height, period, floor, widths) for solid in solids])
-    return PackingModuli(float(count[count >= 2].mean()), matrices, mean, predicted, apart(mean, predicted))
+    return PackingModuli(mean, predicted, apart(mean, predicted))
