@@ -69,6 +69,7 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         return at_forces(response.sel(friction=LARGE_FRICTION), wanted)["force"].values.tolist()
 
     axis = among(datasets["friction_axis"]["friction"], AXIS_FRICTIONS)
+    stops = (f" µ = {end.friction:g} is computed up to {end.force:g} {WEIGHT} only." for end in parameters.ends)
     beyond, left = _dynamic_forces(dynamic), drawn(LARGE_FORCES)
     return of_group(
         "friction_linear_range",
