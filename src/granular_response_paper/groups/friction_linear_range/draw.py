@@ -86,9 +86,7 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         symmetric=PAPER_SYMMETRIC,
         left=left,
         beyond=beyond,
-        stops="".join(
-            f" µ = {one.friction:g} is computed up to {one.force:g} {WEIGHT} only." for one in parameters.ends
-        ),
+        stops="".join(stops),
     )
 
 
