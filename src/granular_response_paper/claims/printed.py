@@ -12,7 +12,7 @@ import numpy as np
 
 from .bootstrap import over_brackets
 from .claim import Data, Verdict
-from .numbers import NotMeasured, Quantity, text
+from .numbers import NotMeasured, Quantity, rounded, text
 
 
 class Printed(NamedTuple):
@@ -82,5 +82,4 @@ def _entry(printed: Printed, own: Quantity, others: list[dict[str, Any]]) -> dic
 
 def _point(found: Quantity) -> dict[str, Any]:
     """A number with the ends of its interval; null for an open end, and for the value of a lower bound."""
-    ends = [float(f"{end:.6g}") if np.isfinite(end) else None for end in (found.low, found.high)]
-    return {"value": None if found.value is None else float(f"{found.value:.6g}"), "interval": ends}
+    return {"value": rounded(found.value), "interval": [rounded(found.low), rounded(found.high)]}

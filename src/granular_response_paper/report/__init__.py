@@ -132,9 +132,8 @@ def files(root: Path, collection: Collection = PAPER) -> dict[str, bytes]:
     claims, folder = table.read(root / table.OUTPUT), root / FIGURES
     shown = pictures.collect(folder)
     own, checkout = collection == PAPER, root / os.path.relpath(".", collection.folder)
-    paths = {group: root / "data" / f"{group}.nc" for group in EXPLORED if own}
-    data = {group: store.read(path) for group, path in paths.items() if path.exists()}
-    states = explorer.payload(*(data.get(group, {}) for group in EXPLORED)) if EXPLORED[0] in data else None
+    paths = [root / "data" / f"{group}.nc" for group in EXPLORED]
+    states = explorer.payload(*map(store.read, paths)) if own and all(path.exists() for path in paths) else None
     rows = claims["table"]
     by_id = {row["id"]: row for row in rows}
     statements = [row for row in rows if own and row["row"] == "statement"]

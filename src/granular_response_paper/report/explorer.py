@@ -21,6 +21,7 @@ from granular_response.state import OPEN, FloatArray, contact_force
 from granular_response.studies.measures import MARGINS
 
 from ..captions import Datasets
+from ..claims.claim import at
 from ..claims.numbers import Quantity, text
 from ..survey.datasets import usual
 from .typeset import typeset
@@ -71,14 +72,12 @@ class ExploredSlab:
     motion: float | None = None  #: smallest force whose state dynamics from rest reached; below it lies the load path
 
 
-def payload(friction: Datasets, phase: Datasets | None = None) -> dict[str, Any] | None:
-    """What the page embeds, and ``packed``, the contacts of all slabs; None without the states of any friction.
+def payload(friction: Datasets, phase: Datasets) -> dict[str, Any]:
+    """What the page embeds, and ``packed``, the contacts of all slabs.
 
     The datasets are those of ``friction_linear_range`` and ``phase_diagram``.
     """
     slabs = list(_slabs(friction))
-    if not slabs:
-        return None
     contacts = [_Contacts.of(slab) for slab in slabs]
     strongest = max(float(one.strength.max()) for one in contacts)
     return {
@@ -88,7 +87,7 @@ def payload(friction: Datasets, phase: Datasets | None = None) -> dict[str, Any]
         "strongest": round(strongest, 6),
         "slabs": [_described(slab, one, friction) for slab, one in zip(slabs, contacts, strict=True)],
         "range": _range(friction),
-        "crossovers": _crossovers(phase) if phase else [],
+        "crossovers": _crossovers(phase),
         "packed": base64.b64encode(zlib.compress(b"".join(one.bytes(strongest) for one in contacts), 9)).decode(),
     }
 
@@ -133,22 +132,15 @@ def _about(slab: ExploredSlab) -> str:
 
 
 def _here(datasets: Datasets, friction: float, names: Sequence[str]) -> str:
-    """At which forces the stored events happen here, in words; empty where none is stored."""
-    stored = datasets.get("events")
-    if stored is None or not names:
-        return ""
-    own = stored.isel(event=stored["friction"].values == friction)
-    found = [np.flatnonzero(own["name"].values == name)[:1] for name in names]
-    events = [(float(own["low"][k]), float(own["high"][k])) for rows in found for k in rows]
-    return ", ".join(text(Quantity.bracket(*ends), "mg") for ends in events)
+    """At which forces the stored events happen here, in words."""
+    events = (at(datasets["events"], name=name, friction=friction) for name in names)
+    return ", ".join(text(Quantity.bracket(float(one["low"]), float(one["high"])), "mg") for one in events)
 
 
 def _slabs(datasets: Datasets) -> Iterator[ExploredSlab]:
     """The slabs of Figs. 6 to 9 and 16: the load path, then dynamics from rest from its first force on."""
     for friction in FRICTIONS:
         name = f"states_mu_{friction:g}"
-        if name not in datasets:
-            continue
         along = datasets["response"]
         along = along.isel(friction=int(np.abs(along["friction"].values - friction).argmin()))
         sources = [(datasets[name], along)]

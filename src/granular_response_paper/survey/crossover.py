@@ -38,6 +38,7 @@ from numpy.typing import NDArray
 
 from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS, flags
+from granular_response_paper.ensembles import at_rest
 from granular_response_paper.records import column, record
 
 #: What a crossover is known to be.
@@ -82,10 +83,6 @@ class Ensemble:
     def mean(self) -> FloatArray:
         """(k, x) mean over all realizations."""
         return self.means(np.ones((1, len(self.response))))[0]
-
-    def at_rest(self, step: int) -> FloatArray:
-        """(r, x) responses of the realizations that are at rest at one step."""
-        return self.response[np.isfinite(self.response[:, step, 0]), step]
 
     def shape(self, response: FloatArray) -> FloatArray:
         """The :func:`shape` of symmetric responses (..., x)."""
@@ -197,7 +194,7 @@ def _samples(realizations: int, number: int, seed: int, draws: int, samples: int
 
 def shapes_of_samples(ensemble: Ensemble, step: int, number: int, *, seed: int) -> FloatArray:
     """(200, 400) shapes of means of ``number`` of symmetric responses at a step, each row from a draw of these."""
-    responses = ensemble.at_rest(step)
+    responses = at_rest(ensemble.response, step)
     picked = _samples(len(responses), number, seed, draws=200, samples=400)
     return np.stack([ensemble.shape(responses[one].mean(axis=1)) for one in picked])
 

@@ -19,7 +19,6 @@ from .parameters import LATTICE, Parameters
 #: Images of packings: pixels from side to side, mean radii to each side of the load, and the principal stress
 #: difference of one fringe, per applied force, in 1/mean radius.
 PIXELS, NEAR, FRINGE = 560, 18.0, 0.32
-TITLES = "vertical force", "oblique force", "widths"
 DOTS = GUIDE | {"linestyle": DOTTED}
 
 
@@ -34,7 +33,7 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     for angle in np.unique(means["angle_applied"].values[oblique]):
         turned.axvline(angle, color=style.FAINT, linewidth=3.0, zorder=0.4)
     _widths(widths, means, [case for case in known if case in largest])
-    titles((straight, turned, widths), TITLES)
+    titles((straight, turned, widths), ("vertical force", "oblique force", "widths"))
     return {"experiments": figure, "experiments_images": _images(datasets)}
 
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.state import OPEN, SLIDING
+from granular_response.studies import linear_end
 from granular_response_paper.captions import RADIUS, WEIGHT, Caption, Datasets, Value, of_group, of_scene
 from granular_response_paper.panels import among, contact_networks, family, grey_limit, label_ends, note, titles, zero
 
@@ -23,11 +24,8 @@ LARGE_FRICTION = 0.2
 CONTACT_FORCES = (5.0, 12.0, 20.0)
 CONTACTS = ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1"))
 LARGE_FORCES = (20.0, 30.0, 40.0, 60.0, 80.0)
-#: Dynamic runs of Fig. 16: from the last symmetric one on, those that lean to either side, and the largest force.
-DYNAMIC_FORCES = (93.0, 150.0, 500.0)
 #: Responses that differ by less than this part of the peak lie on each other in print.
 COINCIDE = 0.04
-_ENDS = ("contact_disk", "contact_partner")
 #: Frictions of Fig. 12.
 AXIS_FRICTIONS = (0.0, 0.1, 0.15, 0.2, 0.5, 1.0)
 
@@ -95,8 +93,9 @@ def _findings(datasets: Datasets) -> dict[str, str]:
     response, axis, large = (datasets[name] for name in ("response", "friction_axis", "large_forces"))
     longest = []
     for part in (LINEAR, 0.05):
-        ends = {mu: _linear_until(response.sel(friction=mu), part) for mu in response["friction"].values.tolist()}
-        best = max(ends, key=lambda mu: ends[mu])
+        curves = response["response_at_centre"].values
+        ends = [linear_end(response["force"], curve, part).low for curve in curves]
+        best = float(response["friction"][int(np.argmax(ends))])
         longest.append(f"µ = {best:g} for {100.0 * part:g} %")
     two = axis["friction"].values[axis["peak_count"].values >= 2]
     found = {
@@ -134,13 +133,6 @@ def _findings(datasets: Datasets) -> dict[str, str]:
     return found
 
 
-def _linear_until(one: xr.Dataset, part: float) -> float:
-    """The last force up to which the response at x = 0 differs by less than a ``part`` from that to the smallest."""
-    curve = one["response_at_centre"].dropna("force")
-    off = np.abs(curve.values / curve.values[0] - 1.0) > part
-    return float(curve["force"][max(int(np.argmax(off)) - 1, 0)]) if off.any() else float(curve["force"][-1])
-
-
 def _symmetric(dynamic: xr.Dataset) -> tuple[list[float], list[float]]:
     """The forces before symmetry is lost, and those from then on at which the response is not symmetric."""
     force, leans = dynamic["force"].values, dynamic["asymmetry"].values > ASYMMETRIC
@@ -153,10 +145,9 @@ def _on_the_floor_alone(states: xr.Dataset, forces: Sequence[float]) -> str:
     alone: dict[float, int] = {}
     for state in np.flatnonzero(np.isin(states["force"].values, forces)):
         one = states.isel(state=state)
-        pairs = np.bincount(
-            np.concatenate([one[name].values[one["contact_status"].values != OPEN] for name in _ENDS]),
-            minlength=one.sizes["disk"],
-        )
+        touching = one["contact_status"].values != OPEN
+        ends = [one[name].values[touching] for name in ("contact_disk", "contact_partner")]
+        pairs = np.bincount(np.concatenate(ends), minlength=one.sizes["disk"])
         held = one["wall_disk"].values[one["wall_status"].values != OPEN]
         middle = float(one["position"].values[int(one["loaded_disk"]), 0])
         for disk in held[pairs[held] == 0]:
@@ -258,11 +249,9 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
 def _dynamic_forces(dynamic: xr.Dataset) -> list[float]:
     """The last symmetric force, the first asymmetric one, the next that leans to the other side, and the largest."""
     kept, lost = _symmetric(dynamic)
-    if not lost:
-        return among(dynamic["force"].values, DYNAMIC_FORCES)
     sign = dict(zip(dynamic["force"].values.tolist(), dynamic["asymmetry_sign"].values.tolist(), strict=True))
     other = [force for force in lost if sign[force] == -sign[lost[0]]]
-    return sorted({*kept[-1:], lost[0], *other[:1], lost[-1]})
+    return sorted({*kept[-1:], *lost[:1], *other[:1], *lost[-1:]})
 
 
 def contact_forces(states: xr.Dataset) -> list[float]:

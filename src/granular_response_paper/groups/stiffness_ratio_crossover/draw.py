@@ -37,17 +37,9 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
         bodies.plot(elastic["x"], solid, **looks[ratio])
         for axes, one in ((simulated, curve), (bodies, solid)):
             middle = float(one.values[np.argmin(np.abs(one["x"].values))])
-            note(
-                axes,
-                f"{ratio:g}",
-                (0.0, middle),
-                (0.0, 2.5),
-                ha="center",
-                fontsize=8,
-                color=looks[ratio]["color"],
-                path_effects=[withStroke(linewidth=2.0, foreground="white")],
-                zorder=5,
-            )
+            rim, colour = [withStroke(linewidth=2.0, foreground="white")], looks[ratio]["color"]
+            text = {"ha": "center", "fontsize": 8, "color": colour, "path_effects": rim, "zorder": 5}
+            note(axes, f"{ratio:g}", (0.0, middle), (0.0, 2.5), **text)
     _draw_dips(dips, response, elastic, events)
     load = f"simulation, {style.equals(style.F_EXT, force, style.WEIGHT)}"
     titles((simulated, bodies, dips), (load, "elastic slab", "depth of the dip"))
