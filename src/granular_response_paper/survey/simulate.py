@@ -130,7 +130,15 @@ def run(block: Block, folder: Path, *, workers: int | None = None, progress: Pro
             what=f"tasks of {block.name}",
         )
     datasets = block.datasets(dict(zip(block.tasks, found, strict=True)))
-    store.write(output, labelled(datasets, block.scene), provenance(block))
+    versions = {name: metadata.version(name) for name in ("numba", "numpy", "scipy")}
+    attributes = {  # what it was made from, and by what
+        "block": block.name,
+        "parameters": text.write(block.given),
+        "sources": f"{sources(*block.parts)} ({', '.join(block.parts)})",
+        "versions": json.dumps({"python": platform.python_version(), **versions}),
+        "seed": str(block.scene.packing.model_dump()["seed"]),
+    }
+    store.write(output, labelled(datasets, block.scene), attributes)
     return output
 
 
@@ -147,15 +155,3 @@ def block_datasets(cases: list[Case], found: Mapping[Place, Realization]) -> dic
         ensembles[name] = ensembles[name].copy(data=(np.round(values * 2.0**digits) / 2.0**digits).astype(np.float32))
     packings = packings_dataset(cases, found)[list(PACKINGS)].assign_coords(added)
     return {"ensembles": ensembles, "packings": packings.astype(np.float32)}
-
-
-def provenance(block: Block) -> dict[str, str]:
-    """Attributes of the file: what it was made from, and by what."""
-    versions = {name: metadata.version(name) for name in ("numba", "numpy", "scipy")}
-    return {
-        "block": block.name,
-        "parameters": text.write(block.given),
-        "sources": f"{sources(*block.parts)} ({', '.join(block.parts)})",
-        "versions": json.dumps({"python": platform.python_version(), **versions}),
-        "seed": str(block.scene.packing.model_dump()["seed"]),
-    }

@@ -78,15 +78,3 @@ class Parameters(EnsembleGroup):
         """The initial lattice of its first case, which the figures show; that of the scene without a case."""
         same = (case.lattice_constant for case in self.columns if case.polydispersity == polydispersity)
         return next(same, self.lattice_constant)
-
-    @property
-    def pictured(self) -> list[int]:
-        """The cases that have the realization and the force of Fig. 2."""
-        picture = self.forces_picture
-        return [
-            c
-            for c, case in enumerate(self.columns)
-            if (case.polydispersity, case.friction) == (picture.polydispersity, picture.friction)
-            and picture.realization < case.realizations
-            and picture.force in case.forces
-        ]

@@ -86,7 +86,7 @@ def _copies(panel: Axes, copies: xr.Dataset) -> None:
         panel.plot(copies["x"], copies["floor_response"].isel(copy=k), label=name, **look)
     zero(panel)
     panel.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(-REACH, REACH))
-    panel.legend(loc="upper right")
+    panel.legend(loc="lower right")
 
 
 def _finding(datasets: Datasets) -> str:

@@ -42,9 +42,6 @@ DIPS = (0.0, 0.005, 0.01, 0.02)
 #: What was found, by slab.
 Found = Mapping[OrderedSlab, SlabResponse]
 
-#: What is kept of the open region at close forces.
-REGION = ("teardrop_depth", "teardrop_width", "reaches_floor", "layers", "normal_stiffness")
-
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``response``, ``rest``, ``states``, ``events``, ``sizes``, ``regions``, ``widths`` and ``stiffness``."""
@@ -63,7 +60,9 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "states": first.pictures["states"].sel(force=list(forces)),
         "events": events_dataset(first.events[: len(EVENTS)]),
         "sizes": along("slab", outcomes, *asked["sizes"]),
-        "regions": along("slab", outcomes, *asked["regions"])[list(REGION)],
+        "regions": along("slab", outcomes, *asked["regions"])[
+            ["teardrop_depth", "teardrop_width", "reaches_floor", "layers", "normal_stiffness"]
+        ],
         "widths": along("slab", outcomes, *asked["widths"]),
         "stiffness": stiffnesses(outcomes, *asked["stiffness"]),
     }
