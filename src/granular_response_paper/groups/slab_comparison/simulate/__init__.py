@@ -51,7 +51,7 @@ def compute(base: Scene, case: DepthSeries, layers: int, force: float) -> tuple[
     ``base`` has one load of unit force. Raises what the solvers raise.
     """
     path = LoadPath.of(_scene(case, layers, base))
-    full, measures = path.at(force), Measures(path)
+    (_, full), measures = path.through([0.5 * force, force]), Measures(path)
     response, x = measures.response(full), measures.x
     ratio = base.contact.stiffness_ratio
     solid = lattice.moduli(Springs.uniform(1.0, ratio if case.friction > 0.0 else 0.0), "free")
