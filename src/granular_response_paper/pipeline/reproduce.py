@@ -21,9 +21,6 @@ from granular_response_paper.registry import Collection
 _BEGINS = re.compile(r"^Running stage '(?:.*:)?([\w@]+)':")
 _SKIPPED = re.compile(r"^Stage '(?:.*:)?([\w@]+)' (?:didn't change, skipping|is cached)")
 
-#: Lines of a stage that are shown if it fails.
-_KEPT = 40
-
 
 def stage_names(collection: Collection, root: Path) -> list[str]:
     """Every stage of a collection, as its pipeline names them."""
@@ -42,7 +39,7 @@ def reproduce(
     """
     checkout.check(collection, root / collection.folder)
     names, start, begun, current = stage_names(collection, root), time.monotonic(), 0.0, ""
-    seen, ran, last = set[str](), set[str](), deque[str](maxlen=_KEPT)
+    seen, ran, last = set[str](), set[str](), deque[str](maxlen=40)
 
     def ended() -> None:
         nonlocal current

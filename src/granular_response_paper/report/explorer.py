@@ -38,12 +38,6 @@ REACH = 30.0
 #: compression is lost; OPENED is a contact that touched at rest and does not under load.
 FULL, OPENED = 120, 127
 
-#: Largest force of Fig. 6.
-LARGEST_OF_FIG_6 = 50.0
-
-#: Width of the Gaussian of the Fig. 22 that is shown.
-WIDTH = 6.0
-
 #: From this asymmetry on the response counts as having lost its symmetry (as ``loss_of_symmetry``).
 ASYMMETRY = 0.2
 
@@ -209,9 +203,9 @@ class _Contacts:
 
 
 def _range(datasets: Datasets) -> list[dict[str, Any]]:
-    """The curves of Fig. 6."""
+    """The curves of Fig. 6, which end at 50 mg."""
     response = datasets["response"]
-    response = response.isel(force=response["force"].values <= LARGEST_OF_FIG_6)
+    response = response.isel(force=response["force"].values <= 50.0)
     found = []
     for friction, row in zip(response["friction"].values, response["response_at_centre"].values, strict=True):
         known = np.isfinite(row)
@@ -221,12 +215,12 @@ def _range(datasets: Datasets) -> list[dict[str, Any]]:
 
 
 def _crossovers(datasets: Datasets) -> list[dict[str, Any]]:
-    """The curves of Fig. 22 that start with the largest disks in touch, smoothed with ``WIDTH``.
+    """The curves of Fig. 22 that start with the largest disks in touch, smoothed with w = 6.
 
     ``kind`` 1 and 2 are bounds: two peaks at the smallest force already, or not yet at the largest.
     """
     data = usual(datasets["crossovers"])
-    data = data.isel(width=int(np.abs(data["width"].values - WIDTH).argmin()))
+    data = data.isel(width=int(np.abs(data["width"].values - 6.0).argmin()))
     found = []
     for delta in np.unique(data["polydispersity"].values):
         one = data.isel(case=data["polydispersity"].values == delta).sortby("friction")
