@@ -9,9 +9,6 @@ from granular_response.errors import GranularError
 
 from .registry import PAPER, Collection
 
-#: Of the files beside modules: what is compiled, and what only builds a package.
-_NO_SOURCES = (".pyc", ".nbi", ".nbc", ".toml")
-
 
 class CheckoutError(GranularError):
     """Other sources run than those that the pipeline records. The message is one line."""
@@ -49,8 +46,9 @@ def _difference(own: Path, imported: Path) -> str:
 
 
 def _files(folder: Path) -> dict[str, bytes]:
-    """Contents of the sources in a folder, by path."""
-    found = {path.relative_to(folder): path for path in folder.rglob("*") if path.suffix not in _NO_SOURCES}
+    """Contents of the sources in a folder, by path: neither what is compiled nor what only builds a package."""
+    no_source = (".pyc", ".nbi", ".nbc", ".toml")
+    found = {path.relative_to(folder): path for path in folder.rglob("*") if path.suffix not in no_source}
     return {
         name.as_posix(): path.read_bytes()
         for name, path in found.items()

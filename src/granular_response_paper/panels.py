@@ -16,7 +16,6 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
 from granular_response.plot import network, style
-from granular_response.plot.photoelastic import photoelastic
 from granular_response.state import WALL_NORMAL, FloatArray, foot_points
 
 from .captions import letters
@@ -123,11 +122,9 @@ def forces(
     """Forces as lines along them, as long and as wide as they are large, as in Figs. 2, 13 and 17 of the paper.
 
     ``vector`` (m, 2) is in units of choice; ``largest`` has the full width, and the length ``longest`` in mean radii.
-    Of the contacts those ``shown`` (m,) are drawn, none where ``largest`` is 0. Lines are dark where the force presses
+    Of the contacts those ``shown`` (m,) are drawn. Lines are dark where the force presses
     together, pale where it takes compression away.
     """
-    if not largest > 0.0:
-        return
     here = slice(None) if shown is None else shown
     scale = {"length_per_force": longest / largest, "width_per_force": WIDEST / largest, "smallest": LEAST * largest}
     network.draw_forces(axes, contacts.point[here], vector[here], contacts.normal[here], **scale)
@@ -137,8 +134,6 @@ def force_key(
     axes: Axes, at: tuple[float, float], size: float, largest: float, unit: str, *, longest: float = LONGEST
 ) -> None:
     """A line that stands for a force of ``size`` in :func:`forces`, its middle at ``at`` (data), and its value."""
-    if not largest > 0.0:
-        return
     along = np.array([[1.0, 0.0]])
     forces(axes, ContactLines(np.array([at]), along), size * along, largest, longest=longest)
     end = at[0] + 0.5 * longest * size / largest, at[1]
@@ -191,15 +186,3 @@ def banded(
     """A curve with a pale band of its colour between the two ``ends``."""
     axes.fill_between(x, *ends, color=look["color"], alpha=alpha, linewidth=0.0)
     axes.plot(x, middle, label=label, **look)
-
-
-#: Of packings between crossed polarisers: mean radii to each side of the load, and the principal stress difference of
-#: one fringe, per applied force, in 1/mean radius.
-NEAR, FRINGE = 18.0, 0.32
-
-
-def polarised(axes: Axes, packing: xr.Dataset, force: float, *, pixels: int) -> float:
-    """Draw a packing between crossed polarisers; returns how far to each side of the load it is shown."""
-    half = min(NEAR, 0.5 * float(packing.attrs["width"]))
-    photoelastic(packing, ax=axes, half_width=half, pixels=pixels, fringe=FRINGE * force)
-    return half

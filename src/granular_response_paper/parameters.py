@@ -8,104 +8,44 @@ name is that of the group's own base, so one key of it can be tried alone
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import reduce
 from itertools import pairwise
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, TypeVar
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from granular_response.scene import Scene, SceneError
 from granular_response.scene.base import Count, Description, Positive, Ratio, allowed
-from granular_response.scene.errors import NotAllowed
-from granular_response.scene.protocol import Integrator, Method
+from granular_response.scene.errors import NotAllowed, must
+from granular_response.scene.protocol import Method
+
+Entry = TypeVar("Entry")
 
 
-def _different(values: tuple) -> tuple:
-    if len(set(values)) < len(values):
-        raise NotAllowed("")
+def _different(values: tuple[Entry, ...]) -> tuple[Entry, ...]:
+    must(len(set(values)) == len(values), "must have each entry once")
     return values
 
 
-def growing(values: tuple[float, ...]) -> tuple[float, ...]:
-    """For ``AfterValidator``: each one greater than the one before."""
-    if any(after <= before for before, after in pairwise(values)):
-        raise NotAllowed("")
+def _growing(values: tuple[float, ...]) -> tuple[float, ...]:
+    must(all(before < after for before, after in pairwise(values)), "must be growing numbers")
     return values
 
 
-def some(values: tuple) -> tuple:
-    """For ``AfterValidator``: not empty. What is wrong with an entry keeps the entry's own message."""
-    if not values:
-        raise NotAllowed("must have at least one entry")
-    return values
-
-
-_SOME = Field(min_length=1)
-Growing = Annotated[
-    tuple[Positive, ...], _SOME, AfterValidator(growing), allowed("must be a list of growing numbers above 0")
-]
-#: A curve needs two.
-Several = Annotated[
-    tuple[Positive, ...],
-    Field(min_length=2),
-    AfterValidator(growing),
-    allowed("must be two or more growing numbers above 0"),
-]
-Numbers = Annotated[tuple[float, ...], _SOME, allowed("must be a list of numbers")]
-Positives = Annotated[
-    tuple[Positive, ...], _SOME, AfterValidator(_different), allowed("must be a list of different numbers above 0")
-]
-#: Coefficients of friction, ratios: no one twice.
-Coefficients = Annotated[
-    tuple[Ratio, ...], _SOME, AfterValidator(_different), allowed("must be a list of different numbers from 0 to 1e6")
-]
-Counts = Annotated[
-    tuple[Count, ...], _SOME, AfterValidator(_different), allowed("must be a list of different whole numbers from 1 on")
-]
+#: Lists with an entry or more, with different ones, with growing numbers, and with two of these, as a curve needs.
+Some = Annotated[tuple[Entry, ...], Field(min_length=1)]
+Different = Annotated[Some[Entry], AfterValidator(_different)]
+Growing = Annotated[Some[Positive], AfterValidator(_growing)]
+Curve = Annotated[tuple[Entry, ...], Field(min_length=2), AfterValidator(_growing)]
+Positives = Different[Positive]
+#: Coefficients of friction, ratios.
+Coefficients = Different[Ratio]
+Counts = Different[Count]
 #: Of rows, or of disks over rows.
 Rows = Annotated[int, Field(strict=True, ge=2), allowed("must be a whole number from 2 on")]
-Integrators = Annotated[
-    tuple[Integrator, ...],
-    Field(min_length=2),
-    allowed("must be at least two of beeman, verlet, leapfrog, gear, to compare"),
-]
-
-
 Path = Annotated[str, Field(strict=True, min_length=1), allowed("must be the path of a file")]
 
 
-#: Of parameters that must agree: the dotted key that a message names, whether all is well, else what is allowed.
-Checks = Iterator[tuple[str, bool, str]]
-
-
-class Checked(Description):
-    """A description whose parameters must agree."""
-
-    def checks(self) -> Checks:
-        """In turn; the first that fails is the mistake."""
-        yield from ()
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        for key, holds, rule in self.checks():
-            if not holds:
-                path = [int(part) if part.isdigit() else part for part in key.split(".")]
-                raise NotAllowed(rule, key=path, value=_shown(reduce(_part, path, self)))
-        return self
-
-
-def _part(of: Any, name: str | int) -> Any:
-    return of[name] if isinstance(name, int) else getattr(of, name)
-
-
-def _shown(value: Any) -> Any:
-    """A parameter as its file has it."""
-    if isinstance(value, tuple):
-        return [_shown(one) for one in value]
-    return value.model_dump() if isinstance(value, Description) else value
-
-
-class Common(Checked):
+class Common(Description):
     """What ``common`` holds for every group that solves scenes; a group's own section may have it too."""
 
     method: Method = Field(description="protocol.method of the scenes.")
@@ -163,16 +103,12 @@ def over(base: Scene, *decided: str) -> BeforeValidator:
     def complete(given: Any) -> Any:
         if isinstance(given, Scene):
             return given
-        if not isinstance(given, Mapping):
-            raise NotAllowed("must be a mapping with keys of a scene")
+        must(isinstance(given, Mapping), "must be a mapping with keys of a scene")
         for path, value in _leaves(given):
             name = ".".join(path)
-            if name == "packing.kind" and value != kind:
-                raise NotAllowed(f"must be {kind} in this group", key=path, value=value)
-            if name.startswith(tuple(f"{key}." for key in refused)) or name in refused:
-                raise NotAllowed(
-                    "is decided by the group, by keys of its own; must not be given", key=path, value=value
-                )
+            must(name != "packing.kind" or value == kind, f"must be {kind} in this group", key=path, value=value)
+            own = any(f"{name}.".startswith(f"{key}.") for key in refused)
+            must(not own, "is decided by the group, by keys of its own; must not be given", key=path, value=value)
         try:
             return base.merged(given)
         except SceneError as error:

@@ -5,7 +5,7 @@ The paths, what is measured on them and how events are found: :mod:`granular_res
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -16,12 +16,12 @@ import xarray as xr
 from granular_response.observe import network, peaks
 from granular_response.observe.widths import half_maximum_width
 from granular_response.scene import Packing
-from granular_response.scene.lattice import TOUCHING_LARGEST, SlabPacking
+from granular_response.scene.lattice import SlabPacking
 from granular_response.solvers.problem import Problem
 from granular_response.state import State
 from granular_response.store.result import certificates_dataset, common_candidates, states_dataset
 from granular_response.store.variables import RADII, WEIGHTS, variable
-from granular_response.studies import Happening, LoadPath, Measures
+from granular_response.studies import EventNotBracketed, Happening, LoadPath, Measures, bisect_event
 from granular_response.studies.measures import MARGINS
 from granular_response.studies.path import NARROW
 from granular_response_paper.records import column, record, table, variables
@@ -104,6 +104,14 @@ def locate(
     return [Event(name, friction, *path.first(forces, what, width), what.definition) for name, what in asked.items()]
 
 
+def between(happened: Callable[[float], bool], low: float, high: float, width: float) -> tuple[float, float]:
+    """Where something happens first: (0, low) if it has at the lower value, (high, nan) if not at the upper one."""
+    try:
+        return bisect_event(happened, low, high, width).ends
+    except EventNotBracketed:
+        return (0.0, low) if happened(low) else (high, float("nan"))
+
+
 def events_dataset(found: Sequence[Event]) -> xr.Dataset:
     """Events as a table along ``event``."""
     return table(found, "event", kind=Event)
@@ -175,13 +183,3 @@ def equal_rows(layers: int, disks: int) -> Packing:
     """
     packing = SlabPacking(layers=layers, disks_per_row=disks, sides="periodic").build()
     return replace(packing, width=packing.width + 1.0, periodic=False)
-
-
-def disordered(stop_kinetic_energy: float) -> dict[str, float | str]:
-    """Changes to a scene whose disks differ in size: the largest ones touch at first, and how their fall is solved."""
-    return {
-        "packing.lattice_constant": TOUCHING_LARGEST,
-        "protocol.integrator": "leapfrog",
-        "protocol.time_step": "auto",
-        "protocol.stop_kinetic_energy": stop_kinetic_energy,
-    }

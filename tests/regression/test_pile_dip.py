@@ -10,8 +10,8 @@ def test_the_frictionless_pile_has_two_minima(datasets) -> None:
     middle = floor.shape[1] // 2
     found = [floor[0, middle], floor[0, :middle].max(), floor[0, middle + 1 :].max()]
     np.testing.assert_allclose(found, [8.34, 9.15, 9.08], atol=0.005)
-    assert float(piles["image_difference"]) < 1e-8
-    assert float(piles["floor_asymmetry"][2]) < 1e-9
+    for one, other, near in ((0, 1, 1e-8), (2, 2, 1e-9)):  # the minima are mirror images, with friction it is its own
+        np.testing.assert_allclose(floor[one], floor[other][::-1], atol=near)
 
 
 def test_the_dip_goes_with_contacts_that_cannot_open(datasets) -> None:

@@ -5,10 +5,7 @@ import pytest
 import reduced
 
 #: k_T/k_N at which the pressure right below the force turns from a maximum into a minimum.
-TURNS = {
-    "suppressed": {"half plane": 0.2915, "smooth floor": 0.306},
-    "free": {"half plane": 0.2727, "smooth floor": 0.285},
-}
+TURNS = {"half plane": 0.2727, "smooth floor": 0.285}
 PARAMETERS = reduced.parameters("stiffness_ratio_crossover")
 
 
@@ -26,12 +23,10 @@ def test_elastic_bodies_turn_where_theory_says(datasets) -> None:
     """Sampled at the floor disks the dip of the slab changes its sign near the curvature's own zero."""
     elastic = datasets["elastic"]
     ratio = elastic["stiffness_ratio"].values
-    for rotations, bodies in TURNS.items():
-        for body, turns in bodies.items():
-            dip = elastic["central_dip"].sel(rotations=rotations, body=body).values
-            turned = ratio[np.flatnonzero(dip < 0.0)[0]]
-            assert turned == pytest.approx(turns, abs=0.04)
+    for body, turns in TURNS.items():
+        dip = elastic["central_dip"].sel(body=body).values
+        turned = ratio[np.flatnonzero(dip < 0.0)[0]]
+        assert turned == pytest.approx(turns, abs=0.04)
     assert np.isnan(elastic["profile"].sel(stiffness_ratio=0.0)).all()
-    assert float(elastic["moduli_error"].max()) < 1e-13
     shares = elastic["profile"].sel(body="smooth floor").isel(stiffness_ratio=slice(1, None)).sum("floor_disk")
     np.testing.assert_allclose(shares, 1.0, atol=1e-4)  # disks at rest are not quite 2 apart

@@ -96,7 +96,7 @@ def test_simulate_and_draw(group, tmp_path):
     assert sorted(map(str, paths)) == [f"figures/squares/{name}" for name in ("captions.json", "fig99_squares.png")]
     assert json.loads(Path("figures/squares/captions.json").read_text()) == {
         "fig99_squares": {
-            "figure": None,
+            "figure": 99,
             "title": "",
             "question": "How do squares grow?",
             "panels": [],

@@ -205,6 +205,10 @@ class Data:
             group, labels["variant"] = ROBUSTNESS, "as in the paper" if copy else self.variant
         elif self.prepared and friction > 0.0:
             group, labels = PREPARATION, {**labels, **self.prepared}
+        return self.bracket(group, table, **labels)
+
+    def bracket(self, group: str, table: str, /, **labels: Any) -> Quantity:
+        """That of the event at the given labels in a dataset."""
         found = at(self.get(group, table), **labels)
         return Quantity.bracket(float(found["low"]), float(found["high"]))
 
@@ -277,15 +281,6 @@ def rise(values: Iterable[Quantity]) -> Quantity:
     known = [step.value for step in steps if step.value is not None]
     low, high = (min(getattr(step, name) for step in steps) for name in ("low", "high"))
     return Quantity(min(known) if known else None, low, high, steps[0].kind)
-
-
-def steps(values: xr.DataArray, along: str, least: float, most: float, falls: bool = False) -> Quantity:
-    """:func:`rise` of numbers along a dimension whose labels lie between two values, or with ``falls`` of their
-    fall.
-    """
-    part = values.sortby(along, ascending=not falls)
-    part = part.isel({along: (part[along].values >= least) & (part[along].values <= most)})
-    return rise(Quantity.exact(value) for value in part.values.tolist())
 
 
 def materials(study: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
@@ -376,12 +371,9 @@ class Verdict:
     @property
     def cases(self) -> str:
         """For which other cases the sentence holds, fails or is open, in words."""
-        return _listed(self.others(), "For", "Not for", "Open for")
-
-
-def _listed(found: Mapping[str, Outcome], *titles: str) -> str:
-    names = [[name for name, one in found.items() if one == outcome] for outcome in ("yes", "no", "cannot tell")]
-    return " ".join(f"{title}: {'; '.join(some)}." for title, some in zip(titles, names, strict=True) if some)
+        found, titles = self.others(), {"yes": "For", "no": "Not for", "cannot tell": "Open for"}
+        named = {title: [name for name, one in found.items() if one == outcome] for outcome, title in titles.items()}
+        return " ".join(f"{title}: {'; '.join(some)}." for title, some in named.items() if some)
 
 
 def _checked(claim: Claim, data: Data) -> None:
@@ -406,7 +398,9 @@ def tests(claim: Claim, data: Data) -> list[Test]:
     _checked(claim, data)
     limits = [ask.bound.limits(data.words) for ask in claim.asks]
     found = []
-    for one in _yielded(claim, data):
+    with np.errstate(divide="ignore", invalid="ignore"):  # divisions by 0 give no number, which no quantity can be
+        yielded = list(claim.measure(data))
+    for one in yielded:
         case, *numbers = one if isinstance(one, tuple) else ("", one)
         if not isinstance(case, (str, Case)):
             case, numbers = "", [case, *numbers]
@@ -420,12 +414,6 @@ def tests(claim: Claim, data: Data) -> list[Test]:
                 found.append(Test(ask, quantity, limit_here, case))
     needs(any(test.case == Case(claim.primary) for test in found), f"the primary case {claim.primary} is not stored")
     return found
-
-
-def _yielded(claim: Claim, data: Data) -> list[Any]:
-    """What its function yields. Divisions by 0 give no number, which no quantity can be."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return list(claim.measure(data))
 
 
 def judge(claim: Claim, data: Data) -> Verdict:

@@ -96,6 +96,11 @@ def digits(value: float, number: int) -> str:
     return text.replace("-", "−", 1) if value < 0.0 else text
 
 
+def rounded(value: float | None) -> float | None:
+    """To six digits, so that the last ones of a machine do not show; None for an open end and no value."""
+    return float(f"{value:.6g}") if value is not None and math.isfinite(value) else None
+
+
 def shown(value: float, unit: str = "", number: int = 2) -> str:
     """A number with its unit. Of the units, ``%`` is a ratio in per cent, ``part`` one of a whole, of which 0 and 1 are
     the words none and all, and ``count`` a whole number, in words up to six and two digits beyond a thousand.

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Fraction, Part, Positive
-from granular_response_paper.parameters import MATERIAL, UNIT_LOAD, SceneGroup, over, some
+from granular_response_paper.parameters import MATERIAL, UNIT_LOAD, SceneGroup, Some, over
 
-Spreads = Annotated[tuple[Fraction, ...], AfterValidator(some)]
+Spreads = Some[Fraction]
 
 
 @dataclass(frozen=True)

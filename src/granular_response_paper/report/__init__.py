@@ -12,6 +12,7 @@ import json
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -37,9 +38,8 @@ FIGURES = table.OUTPUT.parent
 #: The page, and that of the claims beside it.
 PAGE, CLAIMS = "report.html", "claims.html"
 
-#: Figure groups whose datasets the explorer and the fragments read.
+#: Figure groups whose datasets the explorer reads.
 EXPLORED = ("friction_linear_range", "phase_diagram")
-SENSITIVITY = "sensitivity"
 
 #: The document whose first table has the questions of the extensions with their answers, and whose sections show the
 #: picture of each.
@@ -63,13 +63,6 @@ def _resource(name: str) -> str:
 SAID: Mapping[str, Any] = yaml.read(_resource("page.yaml"))
 
 
-def datasets_read(collection: Collection) -> tuple[str, ...]:
-    """The figure groups whose datasets the page of a collection or its fragments read."""
-    if collection == PAPER:
-        return tuple(sorted({*EXPLORED, SENSITIVITY, *(row.group for row in against.ROWS)}))
-    return tuple(group for group in collection.groups if group_member(group, "tables", "markdown", optional=True))
-
-
 def write(root: Path = Path(), *, collection: Collection = PAPER) -> Path:
     """Write the page of a collection below its folder ``root``, and what stands beside it; returns its path.
 
@@ -86,14 +79,16 @@ def fragments(root: Path, collection: Collection = PAPER) -> dict[str, Callable[
     data = root / "data"
     if collection == PAPER:
         return {
-            "readings.md": lambda: readings.markdown(store.read(data / f"{SENSITIVITY}.nc")),
+            "readings.md": partial(_made, readings.markdown, data / "sensitivity.nc"),
             "figures.md": lambda: against.markdown(data),
             "results.md": lambda: results(table.read(root / table.OUTPUT)),
         }
-    return {
-        f"{group}.md": lambda group=group: group_member(group, "tables", "markdown")(store.read(data / f"{group}.nc"))  # type: ignore[misc]
-        for group in datasets_read(collection)
-    }
+    made = {group: group_member(group, "tables", "markdown", optional=True) for group in collection.groups}
+    return {f"{name}.md": partial(_made, table, data / f"{name}.nc") for name, table in made.items() if table}
+
+
+def _made(table: Callable[[dict[str, Any]], str], path: Path) -> str:
+    return table(store.read(path))
 
 
 def results(claims: Mapping[str, Any]) -> str:
@@ -132,9 +127,8 @@ def files(root: Path, collection: Collection = PAPER) -> dict[str, bytes]:
     claims, folder = table.read(root / table.OUTPUT), root / FIGURES
     shown = pictures.collect(folder)
     own, checkout = collection == PAPER, root / os.path.relpath(".", collection.folder)
-    paths = {group: root / "data" / f"{group}.nc" for group in EXPLORED if own}
-    data = {group: store.read(path) for group, path in paths.items() if path.exists()}
-    states = explorer.payload(*(data.get(group, {}) for group in EXPLORED)) if EXPLORED[0] in data else None
+    paths = [root / "data" / f"{group}.nc" for group in EXPLORED]
+    states = explorer.payload(*map(store.read, paths)) if own and all(path.exists() for path in paths) else None
     rows = claims["table"]
     by_id = {row["id"]: row for row in rows}
     statements = [row for row in rows if own and row["row"] == "statement"]
@@ -202,16 +196,13 @@ def answers(document: Path) -> Answers:
     Its first table has questions, each a link to a section, and answers; the first picture of the section is shown.
     """
     text = document.read_text(encoding="utf-8") if document.exists() else ""
-    sections = {_slug(part.partition("\n")[0]): part for part in text.split("\n## ")}
+    headed = {part.partition("\n")[0].strip().lower(): part for part in text.split("\n## ")}
+    sections = {re.sub(r"[^\w\- ]", "", heading).replace(" ", "-"): part for heading, part in headed.items()}
     found = []
     for question, anchor, answer in re.findall(r"^\| \[(.+?)\]\(#([\w-]+)\) \| (.+?) \|$", text, re.MULTILINE):
         picture = re.search(r"!\[[^]]*\]\([^)]*?([\w-]+)\.png\)", sections.get(anchor, ""))
         found.append((question, answer, picture[1] if picture else ""))
     return found
-
-
-def _slug(heading: str) -> str:
-    return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
 
 
 def _asked(known: Answers, shown: Sequence[pictures.Picture], rows: Rows) -> list[dict[str, Any]]:

@@ -23,9 +23,6 @@ from granular_response.store import files as store
 
 from .markdown import table
 
-#: Largest relative difference of two numbers that count as the same.
-_SAME = 1e-9
-
 
 @dataclass(frozen=True)
 class Row:
@@ -105,7 +102,7 @@ def markdown(folder: Path) -> str:
 def _judged(row: Row, stored: NDArray[np.float64]) -> str:
     if not row.paper:
         return row.remark
-    if all(np.isclose(stored, value, rtol=_SAME, atol=0.0).any() for value in row.paper):
+    if all(np.isclose(stored, value, rtol=1e-9, atol=0.0).any() for value in row.paper):
         return f"yes; {row.remark}" if row.remark else "yes"
     if not row.remark:
         raise ValueError(f"figure {row.figure}, {row.parameter}: {_values(stored.tolist())} where the paper has "

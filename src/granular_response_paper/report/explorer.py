@@ -21,6 +21,7 @@ from granular_response.state import OPEN, FloatArray, contact_force
 from granular_response.studies.measures import MARGINS
 
 from ..captions import Datasets
+from ..claims.claim import at
 from ..claims.numbers import Quantity, text
 from ..survey.datasets import usual
 from .typeset import typeset
@@ -36,12 +37,6 @@ REACH = 30.0
 #: A contact's byte is the square root of its added force per applied force, FULL at the largest of all, negative where
 #: compression is lost; OPENED is a contact that touched at rest and does not under load.
 FULL, OPENED = 120, 127
-
-#: Largest force of Fig. 6.
-LARGEST_OF_FIG_6 = 50.0
-
-#: Width of the Gaussian of the Fig. 22 that is shown.
-WIDTH = 6.0
 
 #: From this asymmetry on the response counts as having lost its symmetry (as ``loss_of_symmetry``).
 ASYMMETRY = 0.2
@@ -71,14 +66,12 @@ class ExploredSlab:
     motion: float | None = None  #: smallest force whose state dynamics from rest reached; below it lies the load path
 
 
-def payload(friction: Datasets, phase: Datasets | None = None) -> dict[str, Any] | None:
-    """What the page embeds, and ``packed``, the contacts of all slabs; None without the states of any friction.
+def payload(friction: Datasets, phase: Datasets) -> dict[str, Any]:
+    """What the page embeds, and ``packed``, the contacts of all slabs.
 
     The datasets are those of ``friction_linear_range`` and ``phase_diagram``.
     """
     slabs = list(_slabs(friction))
-    if not slabs:
-        return None
     contacts = [_Contacts.of(slab) for slab in slabs]
     strongest = max(float(one.strength.max()) for one in contacts)
     return {
@@ -88,7 +81,7 @@ def payload(friction: Datasets, phase: Datasets | None = None) -> dict[str, Any]
         "strongest": round(strongest, 6),
         "slabs": [_described(slab, one, friction) for slab, one in zip(slabs, contacts, strict=True)],
         "range": _range(friction),
-        "crossovers": _crossovers(phase) if phase else [],
+        "crossovers": _crossovers(phase),
         "packed": base64.b64encode(zlib.compress(b"".join(one.bytes(strongest) for one in contacts), 9)).decode(),
     }
 
@@ -133,22 +126,15 @@ def _about(slab: ExploredSlab) -> str:
 
 
 def _here(datasets: Datasets, friction: float, names: Sequence[str]) -> str:
-    """At which forces the stored events happen here, in words; empty where none is stored."""
-    stored = datasets.get("events")
-    if stored is None or not names:
-        return ""
-    own = stored.isel(event=stored["friction"].values == friction)
-    found = [np.flatnonzero(own["name"].values == name)[:1] for name in names]
-    events = [(float(own["low"][k]), float(own["high"][k])) for rows in found for k in rows]
-    return ", ".join(text(Quantity.bracket(*ends), "mg") for ends in events)
+    """At which forces the stored events happen here, in words."""
+    events = (at(datasets["events"], name=name, friction=friction) for name in names)
+    return ", ".join(text(Quantity.bracket(float(one["low"]), float(one["high"])), "mg") for one in events)
 
 
 def _slabs(datasets: Datasets) -> Iterator[ExploredSlab]:
     """The slabs of Figs. 6 to 9 and 16: the load path, then dynamics from rest from its first force on."""
     for friction in FRICTIONS:
         name = f"states_mu_{friction:g}"
-        if name not in datasets:
-            continue
         along = datasets["response"]
         along = along.isel(friction=int(np.abs(along["friction"].values - friction).argmin()))
         sources = [(datasets[name], along)]
@@ -217,9 +203,9 @@ class _Contacts:
 
 
 def _range(datasets: Datasets) -> list[dict[str, Any]]:
-    """The curves of Fig. 6."""
+    """The curves of Fig. 6, which end at 50 mg."""
     response = datasets["response"]
-    response = response.isel(force=response["force"].values <= LARGEST_OF_FIG_6)
+    response = response.isel(force=response["force"].values <= 50.0)
     found = []
     for friction, row in zip(response["friction"].values, response["response_at_centre"].values, strict=True):
         known = np.isfinite(row)
@@ -229,12 +215,12 @@ def _range(datasets: Datasets) -> list[dict[str, Any]]:
 
 
 def _crossovers(datasets: Datasets) -> list[dict[str, Any]]:
-    """The curves of Fig. 22 that start with the largest disks in touch, smoothed with ``WIDTH``.
+    """The curves of Fig. 22 that start with the largest disks in touch, smoothed with w = 6.
 
     ``kind`` 1 and 2 are bounds: two peaks at the smallest force already, or not yet at the largest.
     """
     data = usual(datasets["crossovers"])
-    data = data.isel(width=int(np.abs(data["width"].values - WIDTH).argmin()))
+    data = data.isel(width=int(np.abs(data["width"].values - 6.0).argmin()))
     found = []
     for delta in np.unique(data["polydispersity"].values):
         one = data.isel(case=data["polydispersity"].values == delta).sortby("friction")

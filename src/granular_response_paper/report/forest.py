@@ -22,9 +22,6 @@ Quantities = Sequence[Mapping[str, Any]]
 #: Inches: width of a picture, which a telephone shows at a third of its pixels; height of a row; around the rows.
 WIDTH, ROW, AROUND = 4.9, 0.25, 0.62
 
-#: Letters of a name in one line.
-LETTERS = 31
-
 #: Ratios of our numbers to the paper's that the axis names, and its ends, at which points beyond stand as arrows.
 RATIOS = (0.01, 0.1, 0.5, 1.0, 2.0)
 ENDS = (0.006, 4.5)
@@ -75,7 +72,7 @@ def _columns(axes: Axes, quantities: Quantities) -> None:
 
 
 def _name(what: str) -> str:
-    return textwrap.fill(what.replace("friction ", "µ\u00a0=\u00a0"), LETTERS).replace("k_N", "$k_N$")
+    return textwrap.fill(what.replace("friction ", "µ\u00a0=\u00a0"), width=31).replace("k_N", "$k_N$")
 
 
 def _point(axes: Axes, row: int, found: Mapping[str, Any], paper: float, colour: str, size: float) -> None:

@@ -38,6 +38,7 @@ from numpy.typing import NDArray
 
 from granular_response.state import FloatArray
 from granular_response.store.variables import WEIGHTS, flags
+from granular_response_paper.ensembles import at_rest
 from granular_response_paper.records import column, record
 
 #: What a crossover is known to be.
@@ -82,10 +83,6 @@ class Ensemble:
     def mean(self) -> FloatArray:
         """(k, x) mean over all realizations."""
         return self.means(np.ones((1, len(self.response))))[0]
-
-    def at_rest(self, step: int) -> FloatArray:
-        """(r, x) responses of the realizations that are at rest at one step."""
-        return self.response[np.isfinite(self.response[:, step, 0]), step]
 
     def shape(self, response: FloatArray) -> FloatArray:
         """The :func:`shape` of symmetric responses (..., x)."""
@@ -187,21 +184,6 @@ def counted(picked: NDArray[np.int64], realizations: int) -> FloatArray:
     return np.bincount(places.ravel(), minlength=len(picked) * realizations).reshape(-1, realizations).astype(float)
 
 
-def two_peaked_means(ensemble: Ensemble, number: int, *, draws: int, seed: int) -> FloatArray:
-    """(k,) part of the ``draws`` of ``number`` different realizations whose mean has two peaks.
-
-    nan where fewer than ``number`` realizations are at rest.
-    """
-    rng = np.random.default_rng(seed)
-    result = np.full(len(ensemble.force), np.nan)
-    for k in range(len(ensemble.force)):
-        rows = ensemble.at_rest(k)
-        if len(rows) >= max(number, ensemble.least):
-            picked = rng.permuted(np.tile(np.arange(len(rows)), (draws, 1)), axis=1)[:, :number]
-            result[k] = np.mean(ensemble.shape(rows[picked].mean(axis=1)) > ensemble.tolerance)
-    return result
-
-
 def _samples(realizations: int, number: int, seed: int, draws: int, samples: int) -> Iterator[NDArray[np.int64]]:
     """For each draw of the realizations with replacement: (samples, number) which of them are in means of so many."""
     rng = np.random.default_rng(seed)
@@ -212,7 +194,7 @@ def _samples(realizations: int, number: int, seed: int, draws: int, samples: int
 
 def shapes_of_samples(ensemble: Ensemble, step: int, number: int, *, seed: int) -> FloatArray:
     """(200, 400) shapes of means of ``number`` of symmetric responses at a step, each row from a draw of these."""
-    responses = ensemble.at_rest(step)
+    responses = at_rest(ensemble.response, step)
     picked = _samples(len(responses), number, seed, draws=200, samples=400)
     return np.stack([ensemble.shape(responses[one].mean(axis=1)) for one in picked])
 
@@ -248,7 +230,6 @@ def censored_medians(values: FloatArray, censored: NDArray[np.bool_], weights: F
 
 
 _DRAWN = f"bootstrapped crossover forces {WEIGHTS}, alike in cases of as many realizations; infinite beyond bounds"
-_KIND = "whether the crossover was found or is a bound"
 
 
 @record
@@ -256,7 +237,7 @@ class Crossover:
     """Where the mean of one case has two peaks from on, by one tolerance."""
 
     force: float = column(f"crossover force of the mean response, or its bound {WEIGHTS}")
-    kind: np.int8 = column(_KIND, attributes=flags(KINDS))
+    kind: np.int8 = column("whether the crossover was found or is a bound", attributes=flags(KINDS))
     interval: FloatArray = column(
         f"quantiles of the bootstrapped crossover force {WEIGHTS}; infinite beyond bounds", "level"
     )
@@ -270,10 +251,7 @@ class Crossing(Crossover):
     limits: tuple[float, float] = column(f"smallest and largest force with a mean {WEIGHTS}", "end")
     shape: FloatArray = column("shape of the mean response: positive with two peaks", "step")
     shape_interval: FloatArray = column("quantiles of the bootstrapped shape", "step", "level")
-    two_peaked_means: FloatArray = column(
-        "part of the means of so many realizations, drawn at random, that have two peaks", "step", "number"
-    )
-    seen: float = column("part of the samples of the least such number, drawn at random, whose mean has a crossover")
+    seen: float = column("part of the samples of some realizations, drawn at random, whose mean has a crossover")
     seen_interval: FloatArray = column("quantiles of that part over draws of the realizations", "level")
     others: tuple[Crossover, ...]  #: by other tolerances
 
@@ -283,10 +261,8 @@ def quantiles(draws: FloatArray) -> FloatArray:
     return np.asarray(np.quantile(draws, LEVELS, axis=0, method="inverted_cdf"))
 
 
-def cross(
-    ensemble: Ensemble, *, numbers: Sequence[int], draws: int, seed: int, others: Sequence[float] = ()
-) -> Crossing:
-    """The crossover of an ensemble of symmetric responses, by its tolerance and by others."""
+def cross(ensemble: Ensemble, *, number: int, draws: int, seed: int, others: Sequence[float] = ()) -> Crossing:
+    """The crossover of an ensemble of symmetric responses, by its tolerance, by others, and in samples of a number."""
     shapes = ensemble.shape(ensemble.mean())
     drawn = ensemble.shape(ensemble.means(weights(len(ensemble.response), draws, seed)))
     fits = grown(drawn)
@@ -298,14 +274,12 @@ def cross(
         return Crossover(force, np.int8(kind), quantiles(found), found)
 
     used = ensemble.force[np.isfinite(shapes)]
-    parts = [two_peaked_means(ensemble, number, draws=draws, seed=seed) for number in numbers]
-    seen = seen_in_samples(ensemble, min(numbers), seed=seed)
+    seen = seen_in_samples(ensemble, number, seed=seed)
     return Crossing(
         **vars(at(ensemble.tolerance)),
         limits=(float(used[0]), float(used[-1])) if used.size else (float("nan"), float("nan")),
         shape=shapes,
         shape_interval=np.quantile(drawn, LEVELS, axis=0).T,  # nan where a draw has none
-        two_peaked_means=np.stack(parts, axis=-1),
         seen=float(seen.mean()),
         seen_interval=np.quantile(seen, LEVELS),
         others=tuple(at(limit) for limit in others),
@@ -331,21 +305,16 @@ class Singles:
     difference: FloatArray = column(
         "root mean square difference from the mean response, per root mean square of the mean", "realization", "step"
     )
-    crossover: FloatArray = column(f"crossover force, or its bound {WEIGHTS}", "realization")
-    kind: NDArray[np.int8] = column(
-        f"{_KIND}; -1 where there is no realization", "realization", attributes=flags(KINDS)
-    )
     median: float = column(
         f"median crossover force of the realizations {WEIGHTS}, what lies beyond a path or a collapse censored"
     )
-    median_interval: FloatArray = column("quantiles of the bootstrapped median", "level")
     median_draws: FloatArray  #: (draws,) infinite beyond bounds
 
     def middle(self, smallest: float, largest: float) -> Crossover:
         """The crossover of the median realization on a path between these forces."""
         kind = {-np.inf: BELOW, np.inf: ABOVE}.get(self.median, FOUND)
         force = float(np.clip(self.median, smallest, largest))
-        return Crossover(force, np.int8(kind), self.median_interval, self.median_draws)
+        return Crossover(force, np.int8(kind), quantiles(self.median_draws), self.median_draws)
 
 
 def singles(ensemble: Ensemble, *, draws: int, seed: int) -> Singles:
@@ -371,10 +340,7 @@ def singles(ensemble: Ensemble, *, draws: int, seed: int) -> Singles:
         shape=shapes,
         asymmetry=lean(ensemble.response),
         difference=off,
-        crossover=force,
-        kind=kind,
         median=float(censored_medians(value, censored, np.ones((1, len(value))))[0]),
-        median_interval=quantiles(medians),
         median_draws=medians,
     )
 

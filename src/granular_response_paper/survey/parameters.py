@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import product
-from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from granular_response.scene.base import Count, Description, Positive, Ratio
 from granular_response.scene.lattice import LatticeConstant
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
-from granular_response_paper.parameters import Coefficients, Growing, some
+from granular_response_paper.parameters import Coefficients, Growing, Some
 
 
 class Cases(Description):
@@ -20,11 +19,11 @@ class Cases(Description):
     polydispersities: Spreads
     frictions: Coefficients
     forces: Growing = Field(description="In mean disk weights.")
-    lattice_constants: Annotated[tuple[LatticeConstant, ...], AfterValidator(some)] | None = Field(
+    lattice_constants: Some[LatticeConstant] | None = Field(
         default=None, description="Of the starts; null: that of the scene."
     )
     wall_friction: Ratio | None = Field(default=None, description="null: the same as between disks.")
-    gravity_ramps: Annotated[tuple[Positive, ...], AfterValidator(some)] | None = Field(
+    gravity_ramps: Some[Positive] | None = Field(
         default=None, description="Over which gravity grows, in sqrt(R/g); null: it acts at once."
     )
     realizations: Count | None = Field(default=None, description="null: those of the survey.")

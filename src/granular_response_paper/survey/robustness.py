@@ -13,9 +13,10 @@ mean radius, mean mass, g.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,7 @@ from granular_response.scene import Scene
 from granular_response.scene.lattice import SlabPacking
 from granular_response.state import FloatArray
 from granular_response.store import files as store
-from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response.store.variables import RADII, WEIGHTS
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.parameters import UNIT_LOAD
@@ -99,10 +100,9 @@ def variants() -> Iterator[Variant]:
         yield Variant("protocol", f"displaced copy {seed}", {}, seed)
     for disks in (121, 241):
         yield Variant("width", f"{disks} disks a row", {"packing.disks_per_row": disks})
-    for stiffness in (1e4,):
-        step = 5e-4 * np.sqrt(3000.0 / stiffness)  # as far below its stability limit as the paper's
-        name = f"k_N = {stiffness:g} mg/R"
-        yield Variant("stiffness", name, {"contact.normal_stiffness": stiffness, "protocol.time_step": float(step)})
+    step = 5e-4 * float(np.sqrt(3000.0 / 1e4))  # as far below its stability limit as the paper's
+    stiff = {"contact.normal_stiffness": 1e4, "protocol.time_step": step}
+    yield Variant("stiffness", "k_N = 10000 mg/R", stiff)
 
 
 @record
@@ -131,13 +131,8 @@ def along_path(friction: float, variant: Variant) -> list[Found]:
     states, measures = path.through(forces), studies.Measures(path)
     asked = studies.happenings(measures, states[0], ASYMMETRY)
     asked["first_opening_anywhere"] = studies.first_opening(measures, anywhere=True)
-    return [_found(event, variant, "path") for event in slab.locate(path, forces, asked)]
-
-
-def _found(event: slab.Event, variant: Variant, loading: str, ramp: float = float("nan")) -> Found:
-    return Found(
-        event.name, event.friction, event.low, event.high, event.definition, variant.kind, variant.name, loading, ramp
-    )
+    own = {"kind": variant.kind, "variant": variant.name, "loading": "path", "ramp_time": float("nan")}
+    return [Found(**vars(event) | own) for event in slab.locate(path, forces, asked)]
 
 
 def from_rest(friction: float, variant: Variant, ramp: float, sought: Mapping[str, tuple[float, float]]) -> list[Found]:
@@ -149,26 +144,15 @@ def from_rest(friction: float, variant: Variant, ramp: float, sought: Mapping[st
     found = []
     for name, (low, high) in sought.items():
         what, width = asked[name], 1.0 if name.startswith("loss") else WIDTH
-        ends = _bracket(partial(_happened, path, what), low, high, width)
-        event = slab.Event(name, friction, *ends, f"{what.definition}, from rest to each force")
-        found.append(_found(event, variant, "dynamics", ramp))
+        ends = slab.between(partial(_happened, path, what), low, high, width)
+        text = f"{what.definition}, from rest to each force"
+        of = name.removesuffix("_path"), friction, *ends, text
+        found.append(Found(*of, variant.kind, variant.name, "dynamics", ramp))
     return found
 
 
 def _happened(path: studies.LoadPath, what: studies.Happening, force: float) -> bool:
     return bool(what.happened(path.at(force)))
-
-
-def _bracket(happened: Callable[[float], bool], low: float, high: float, width: float) -> tuple[float, float]:
-    """Between two forces; (0, low) if it has happened at the lower one, (high, nan) if not at the upper one."""
-    if happened(low):
-        return 0.0, low
-    if not happened(high):
-        return high, float("nan")
-    while high - low > width:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if happened(middle) else (middle, high)
-    return low, high
 
 
 def copy_under(friction: float, force: float, seed: int, size: float = DISPLACEMENT) -> xr.Dataset:
@@ -178,19 +162,23 @@ def copy_under(friction: float, force: float, seed: int, size: float = DISPLACEM
     return slab.measured(studies.Measures(path), [path.at(force)])
 
 
-def _stacked(done: Mapping[tuple[float, float, int], xr.Dataset]) -> xr.Dataset:
-    """Copies along ``run`` with what they are."""
-    columns = zip(*done, strict=True)
-    names = ("coefficient of friction", f"applied force {WEIGHTS}", "seed of the displacement; -1 for none")
-    given = {
-        name: variable("run", list(values), text)
-        for name, values, text in zip(("friction", "force", "seed"), columns, names, strict=True)
-    }
-    return slab.measured_along("run", list(done.values())).assign(given)
+def copies_under(
+    what: str, frictions: Sequence[float], forces: Sequence[float], seeds: Sequence[int], size: float
+) -> xr.Dataset:
+    """Displaced copies along ``run``, with what they are."""
+    tasks = {place: partial(copy_under, *place, size) for place in product(frictions, forces, seeds)}
+    friction, force, seed = zip(*tasks, strict=True)
+    return slab.measured_along("run", list(computed(tasks, what).values())).assign(
+        variables(
+            friction=("run", friction, "coefficient of friction"),
+            force=("run", force, f"applied force {WEIGHTS}"),
+            seed=("run", seed, "seed of the displacement; -1 for none"),
+        )
+    )
 
 
-def paths() -> dict[str, xr.Dataset]:
-    """Dataset ``events`` (event): all variants along load paths."""
+def paths() -> xr.Dataset:
+    """Events (event) of all variants along load paths."""
     tasks = {
         (mu, k): partial(along_path, mu, one)
         for mu in FRICTIONS
@@ -199,11 +187,11 @@ def paths() -> dict[str, xr.Dataset]:
         if not (mu == 0.0 and one.seed > 0) and not (mu in (0.05, 0.1, 0.5) and "241" in one.name)
     }
     done = computed(tasks, "load paths", work=lambda place: place[1])
-    return {"events": table([event for one in done.values() for event in one], "event", kind=Found)}
+    return table([event for one in done.values() for event in one], "event", kind=Found)
 
 
-def dynamics() -> dict[str, xr.Dataset]:
-    """Dataset ``events_from_rest`` (event): ramps of the load, and the loss of symmetry with every variant."""
+def dynamics() -> xr.Dataset:
+    """Events (event) from rest: ramps of the load, and the loss of symmetry with every variant."""
     tasks: dict[Any, Any] = {}
     for ramp in RAMPS:
         variant = Variant("protocol", f"load ramp of {ramp:g} sqrt(R/g)", {})
@@ -213,42 +201,22 @@ def dynamics() -> dict[str, xr.Dataset]:
         if variant.kind == "protocol" or variant.name == "121 disks a row":
             tasks["loss", -k] = partial(from_rest, 1.0, variant, 20.0, {"loss_of_symmetry_path": BETWEEN})
     done = computed(tasks, "events from rest")
-    found = table([event for one in done.values() for event in one], "event", kind=Found)
-    found["name"] = found["name"].copy(data=np.char.replace(found["name"].values.astype(str), "_path", ""))
-    return {"events_from_rest": found}
-
-
-def copies() -> dict[str, xr.Dataset]:
-    """Datasets ``copies`` (run) beyond the loss of symmetry at friction 1, and ``control`` (run) at frictions 1
-    and 10.
-    """
-    done = computed(
-        {
-            (1.0, force, seed): partial(copy_under, 1.0, force, seed)
-            for force in BEYOND
-            for seed in range(1, COPIES + 1)
-        },
-        "displaced copies",
-    )
-    control = computed(
-        {
-            (mu, force, seed): partial(copy_under, mu, force, seed, KICK)
-            for mu in (1.0, 10.0)
-            for force in CONTROL
-            for seed in (-1, 1, 2, 3)
-        },
-        "control without sliding",
-    )
-    kick = variables(kick=("", KICK, f"largest displacement of the packing before it falls {RADII}"))
-    shift = variables(displacement=("", DISPLACEMENT, f"largest displacement of the packing before it falls {RADII}"))
-    return {"copies": _stacked(done).assign(shift), "control": _stacked(control).assign(kick)}
+    return table([event for one in done.values() for event in one], "event", kind=Found)
 
 
 def main(output: Path = OUTPUT) -> None:
-    """Make the study anew."""
-    made = labelled(paths() | dynamics() | copies(), BASE)
+    """Make ``events``, ``events_from_rest``, ``copies`` beyond the loss of symmetry, and ``control``."""
+    copies = copies_under("displaced copies", (1.0,), BEYOND, range(1, COPIES + 1), DISPLACEMENT)
+    control = copies_under("control without sliding", (1.0, 10.0), CONTROL, (-1, 1, 2, 3), KICK)
+    size = f"largest displacement of the packing before it falls {RADII}"
+    datasets = {
+        "events": paths(),
+        "events_from_rest": dynamics(),
+        "copies": copies.assign(variables(displacement=("", DISPLACEMENT, size))),
+        "control": control.assign(variables(kick=("", KICK, size))),
+    }
     attributes = {"group": "robustness", "package_version": __version__, "parameters": BASE.to_yaml()}
-    store.write(output, made, attributes | made_by(MECHANICS))
+    store.write(output, labelled(datasets, BASE), attributes | made_by(MECHANICS))
 
 
 if __name__ == "__main__":

@@ -130,8 +130,19 @@ def run(block: Block, folder: Path, *, workers: int | None = None, progress: Pro
             what=f"tasks of {block.name}",
         )
     datasets = block.datasets(dict(zip(block.tasks, found, strict=True)))
-    store.write(output, labelled(datasets, block.scene), provenance(block))
+    seed = str(block.scene.packing.model_dump()["seed"])
+    attributes = {"block": block.name, "parameters": text.write(block.given), **made_by(block.parts), "seed": seed}
+    store.write(output, labelled(datasets, block.scene), attributes)
     return output
+
+
+def made_by(parts: Sequence[str]) -> dict[str, str]:
+    """Attributes of a file: the sources of these parts, and versions of what computes."""
+    versions = {name: metadata.version(name) for name in ("numba", "numpy", "scipy")}
+    return {
+        "sources": f"{sources(*parts)} ({', '.join(parts)})",
+        "versions": json.dumps({"python": platform.python_version(), **versions}),
+    }
 
 
 def block_datasets(cases: list[Case], found: Mapping[Place, Realization]) -> dict[str, xr.Dataset]:
@@ -147,18 +158,3 @@ def block_datasets(cases: list[Case], found: Mapping[Place, Realization]) -> dic
         ensembles[name] = ensembles[name].copy(data=(np.round(values * 2.0**digits) / 2.0**digits).astype(np.float32))
     packings = packings_dataset(cases, found)[list(PACKINGS)].assign_coords(added)
     return {"ensembles": ensembles, "packings": packings.astype(np.float32)}
-
-
-def made_by(parts: Sequence[str]) -> dict[str, str]:
-    """Attributes of a file: the sources of these parts, and versions of what computes."""
-    versions = {name: metadata.version(name) for name in ("numba", "numpy", "scipy")}
-    return {
-        "sources": f"{sources(*parts)} ({', '.join(parts)})",
-        "versions": json.dumps({"python": platform.python_version(), **versions}),
-    }
-
-
-def provenance(block: Block) -> dict[str, str]:
-    """Attributes of the file of a block: what it was made from, and by what."""
-    seed = str(block.scene.packing.model_dump()["seed"])
-    return {"block": block.name, "parameters": text.write(block.given), **made_by(block.parts), "seed": seed}

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import xarray as xr
-from refusals import refusals
 
 from granular_response.scene import Scene
 from granular_response.store import files as store
@@ -22,16 +21,6 @@ def test_parameters_end_the_caption_in_the_papers_symbols():
         "Response. F_ext = 4, 10 and 20 m̄g, µ = 0.2, µ_wall = 0, k_T/k_N = 0.8, k_N = 3000 m̄g/R̄, δ = 0.01, "
         "15 realizations, w = 6 R̄, 15 layers of alternately 61 and 60 disks."
     )
-
-
-test_what_a_caption_lacks_is_named = refusals(
-    ValueError,
-    (lambda: Caption("", "", parameters={"frction": 0.2}), "parameters: unknown frction, must be among force"),
-    (
-        lambda: captions.document({"fig06_one": Caption("a", "b")}, {"fig06_one": [], "other": []}),
-        "no caption for other",
-    ),
-)
 
 
 def test_fields_of_a_template_are_filled_in_and_lists_put_in_words():

@@ -56,7 +56,10 @@ def friction_study():
         floor_response=("friction force floor_disk", 1.0 / 7.0),
         **over("friction force", peak_count=2.0, response_at_centre=1.0 / 7.0),
     )
-    found = {"response": response, **{f"states_mu_{mu:g}": states(mu) for mu in (0.0, 0.2, 1.0)}}
+    comes = [(name, mu, 3.0, 3.5) for mu, *_, names in explorer.PAPER for name in names]
+    events = dataset(by_row("event", "name friction low high", comes))
+    states_of = {f"states_mu_{mu:g}": states(mu) for mu in (0.0, 0.2, 1.0)}
+    found = {"response": response, "events": events, **states_of}
     for one in found.values():
         one.attrs["scene"] = "contact: {stiffness_ratio: 0.8}\nwall: {friction: 0.0}\n"
     return found
@@ -333,7 +336,7 @@ def unpacked(data):
 
 
 def test_explorer_data_are_those_of_the_states():
-    data = explorer.payload(friction_study())
+    data = explorer.payload(friction_study(), {"crossovers": crossovers()})
     assert [slab["friction"] for slab in data["slabs"]] == [0.0, 0.2, 1.0]
     assert all(slab["forces"] == [1.0, 4.0, 90.0] for slab in data["slabs"])  # at rest nothing is added
     smooth, _, rough = unpacked(data)

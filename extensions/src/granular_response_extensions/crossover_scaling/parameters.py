@@ -9,10 +9,11 @@ import xarray as xr
 from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Positive, Ratio, Sides, allowed
+from granular_response.scene.base import Description, Positive, Ratio, Sides
+from granular_response.scene.errors import must
 from granular_response.state import FloatArray
 from granular_response_extensions.parameters import SurveyedGroup
-from granular_response_paper.parameters import SIZE, UNIT_LOAD, Checked, Checks, Growing, growing, over, some
+from granular_response_paper.parameters import SIZE, UNIT_LOAD, Growing, Some, over
 
 #: Rest without friction is found by statics at every size, and is the same preparation for all.
 _SLAB = UNIT_LOAD.updated({"preparation.gravity": "frictionless", "contact.stiffness_ratio": 0.8})
@@ -24,24 +25,23 @@ _DECIDED = (
 #: What may differ along a series.
 VARIED = ("layers", "disks_per_layer", "stiffness_per_layer", "confinement")
 
-Layers = Annotated[
-    tuple[Annotated[int, Field(strict=True, ge=5)], ...],
-    Field(min_length=1),
-    AfterValidator(growing),
-    allowed("must be a list of growing odd whole numbers from 5 on"),
-]
+
+def _odd(layers: int) -> int:
+    must(layers % 2, "must be odd")
+    return layers
 
 
-class Series(Checked):
+Layers = Annotated[int, Field(strict=True, ge=5), AfterValidator(_odd)]
+
+
+class Series(Description):
     """Slabs that differ in one quantity: the list that has several entries."""
 
-    name: Annotated[str, Field(strict=True, min_length=1), allowed("must be a name")]
+    name: str
     friction: Ratio = Field(description="Between disks; floor and walls are smooth.")
     sides: Sides = "periodic"
-    layers: Layers = Field(description="Odd, so that a disk of the floor is below the loaded one.")
-    surveyed: tuple[Annotated[int, Field(strict=True, ge=5)], ...] = Field(
-        (), description="Further numbers of layers, growing on, that the survey simulates."
-    )
+    layers: Some[Layers] = Field(description="Odd, so that a disk of the floor is below the loaded one.")
+    surveyed: tuple[Layers, ...] = Field((), description="Further ones, growing on, that the survey simulates.")
     disks_per_layer: Growing = Field(
         (3.0,), description="Disks in a row over layers; rows have the next odd number, for a disk in the middle."
     )
@@ -53,13 +53,6 @@ class Series(Checked):
     confined: Literal["constant", "as weight"] = Field(
         "constant", description="as weight: this force is that of 15 layers, and in proportion to layers."
     )
-
-    def checks(self) -> Checks:
-        yield "layers", all(layers % 2 for layers in self.layers), "must be odd"
-        yield "surveyed", all(layers % 2 for layers in self.surveyed), "must be odd"
-        yield "surveyed", self.heights == tuple(sorted({*self.heights})), "must be growing numbers"
-        several = sum(map(self._several, VARIED))
-        yield "name", several == 1, f"must have several entries in one of {', '.join(VARIED)}"
 
     @property
     def varied(self) -> str:
@@ -86,22 +79,10 @@ class Parameters(SurveyedGroup):
     scene: Annotated[Scene, over(_SLAB, *SIZE, *_DECIDED)] = Field(
         _SLAB, description="Base scene; walls are twice as stiff as the disks."
     )
-    series: Annotated[tuple[Series, ...], AfterValidator(some)] = Field(description="Slabs that are compared.")
+    series: Some[Series] = Field(description="Slabs that are compared.")
     visible: Positive = Field(description="Dip of the floor response at x = 0, per largest value, that is two peaks.")
     first_force: Positive = Field(description="Least force, over the force of horizontal contacts at rest.")
-    factor: Annotated[float, Field(strict=True, gt=1, le=2), allowed("must be a number above 1, at most 2")] = Field(
-        description="Each force over the one before."
-    )
-    most_forces: Annotated[int, Field(strict=True, ge=5), allowed("must be a whole number from 5 on")] = Field(
-        description="Forces after which a slab is given up."
-    )
+    factor: float = Field(gt=1, le=2, description="Each force over the one before.")
+    most_forces: int = Field(ge=5, description="Forces after which a slab is given up.")
     tolerance: Positive = Field(description="Width of brackets without friction, per force.")
     extrapolated: Positive = Field(description="Layers to which crossovers are extrapolated.")
-
-    @property
-    def surveyed(self) -> bool:
-        return any(one.surveyed for one in self.series)
-
-    def checks(self) -> Checks:
-        yield from super().checks()
-        yield "series", len({one.name for one in self.series}) == len(self.series), "must have different names"

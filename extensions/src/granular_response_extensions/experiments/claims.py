@@ -4,6 +4,8 @@ V.D).
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from itertools import product
 
 import xarray as xr
@@ -80,10 +82,7 @@ def vertical(data: Data) -> Numbers:
 
 def _excess(data: Data, packing: str, force: float) -> Quantity:
     found = _mean(data, "contrast", packing, force)
-    needs(found.value is not None, "means holds no contrast")
-    return Quantity(
-        float(found.value or 0.0) - 1.0, found.low - 1.0, found.high - 1.0, "confidence", found.method, found.samples
-    )
+    return replace(found, value=(found.value or math.nan) - 1.0, low=found.low - 1.0, high=found.high - 1.0)
 
 
 @claim(

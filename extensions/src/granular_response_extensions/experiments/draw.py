@@ -9,15 +9,16 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.field import draw_field, root_norm
+from granular_response.plot.photoelastic import photoelastic
 from granular_response_extensions.panels import GUIDE
 from granular_response_paper.captions import Caption, Datasets, of_group, of_scene, values
-from granular_response_paper.panels import DOTTED, banded, note, polarised, titles
+from granular_response_paper.panels import DOTTED, banded, note, titles
 
 from .parameters import LATTICE, Parameters
 
-#: Pixels of images from side to side.
-PIXELS = 560
-TITLES = "vertical force", "oblique force", "widths"
+#: Images of packings: pixels from side to side, mean radii to each side of the load, and the principal stress
+#: difference of one fringe, per applied force, in 1/mean radius.
+PIXELS, NEAR, FRINGE = 560, 18.0, 0.32
 DOTS = GUIDE | {"linestyle": DOTTED}
 
 
@@ -32,7 +33,7 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     for angle in np.unique(means["angle_applied"].values[oblique]):
         turned.axvline(angle, color=style.FAINT, linewidth=3.0, zorder=0.4)
     _widths(widths, means, [case for case in known if case in largest])
-    titles((straight, turned, widths), TITLES)
+    titles((straight, turned, widths), ("vertical force", "oblique force", "widths"))
     return {"experiments": figure, "experiments_images": _images(datasets)}
 
 
@@ -109,7 +110,8 @@ def _images(datasets: Datasets) -> Figure:
     means, number = datasets["means"], max(1, len(pictures))
     figure, panels = style.figure(2, number, height=4.3)
     for (case, one), (above, below) in zip(pictures.items(), panels.T, strict=False):
-        half = polarised(above, one, float(one["total_force"].max()), pixels=PIXELS)
+        half = min(NEAR, 0.5 * float(one.attrs["width"]))
+        photoelastic(one, ax=above, half_width=half, pixels=PIXELS, fringe=FRINGE * float(one["total_force"].max()))
         field = means["force"].isel(case=case).sel(estimate="mean", x=slice(-half, half)).dropna("depth", how="all")
         if field.size:
             largest = float(field.sel(depth=slice(2.0, None)).max()) or 1.0

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from granular_response.scene import Load, PouredPacking, Scene, SlabPacking
 from granular_response.scene.base import Count, Description, Index, Positive
 from granular_response.state import FloatArray
-from granular_response_paper.parameters import UNIT_LOAD, Checks, SceneGroup, over, some
+from granular_response_paper.parameters import UNIT_LOAD, SceneGroup, Some, over
 
 AnyPacking = Annotated[SlabPacking | PouredPacking, Field(discriminator="kind")]
 Ends = tuple[Positive, Positive]
@@ -36,7 +36,7 @@ class LoadedPacking(Description):
 class Parameters(SceneGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, "packing", "loads")] = Field(description="Material and preparation.")
     packings: dict[str, AnyPacking]
-    cases: Annotated[tuple[LoadedPacking, ...], AfterValidator(some)]
+    cases: Some[LoadedPacking]
     largest_move: Positive = Field(description="Of the loaded disk, beyond which a packing does not hold the force.")
     depths: Count = Field(description="Lines below the load, a mean radius apart.")
     reach: Count = Field(description="Of profiles, to both sides of the load, in radii.")
@@ -46,13 +46,6 @@ class Parameters(SceneGroup):
     draws: Count = Field(description="Of the bootstrap.")
     seed: Index = Field(description="Of the draws.")
     pictures: tuple[Index, ...] = Field(description="Cases of which the first packing that holds is drawn.")
-
-    def checks(self) -> Checks:
-        for k, case in enumerate(self.cases):
-            known = case.packing in self.packings
-            yield f"cases.{k}.packing", known, f"must be one of packings ({', '.join(self.packings)})"
-        below = max(self.pictures, default=0) < len(self.cases)
-        yield "pictures", below, f"must be below {len(self.cases)}"
 
     @property
     def x(self) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Shear moduli of packings against their coordination, measured and predicted responses, and maps of r under load."""
+"""Measured and predicted responses of packings, and maps of r under load."""
 
 from __future__ import annotations
 
@@ -11,18 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from granular_response.plot import network, style
-from granular_response.theory.moduli import bulk_and_shear
 from granular_response_extensions.panels import materials
 from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
-from granular_response_paper.panels import banded, label_ends, outer, titles, zero
+from granular_response_paper.panels import banded, outer, titles, zero
 
 from .parameters import Parameters
 
-#: Names in keys of how disks follow a strain.
-FOLLOWING = {"affine": "affine", "free": "relaxed"}
 #: Part of a loaded slab that is shown, to both sides of the load (radii).
 REACH = 20.0
 #: Ends of the colours of r: -1/3 is the least, without horizontal contacts and friction; 1 is isotropic.
@@ -30,29 +26,22 @@ RANGE = -0.5, 1.0
 
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
-    packings = datasets["packings"]
-    return {
-        "moduli_packings": _moduli(packings),
-        "moduli_response": _responses(packings),
-        "moduli_loaded": _maps(datasets["slabs"]),
-    }
+    return {"moduli_response": _responses(datasets["packings"]), "moduli_loaded": _maps(datasets["slabs"])}
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     packing = f"slabs with periodic sides, {parameters.disks_per_layer} disks in a row for each layer"
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None, packing=packing)
     loaded = of_scene(parameters.lattice, friction=[slab.friction for slab in parameters.loaded.slabs])
-    most, surveyed = 0, Counter[int]()
+    surveyed = Counter[int]()
     for case in parameters.cases:
         surveyed.update(dict(zip(case.layers, case.further, strict=True)))
-        most = max(most, *map(sum, zip(case.realizations, case.further, strict=True)))
     stored = [f"{count} packings of {layers} layers" for layers, count in sorted(surveyed.items()) if count]
     return of_group(
         "moduli",
-        {"moduli_packings": said, "moduli_response": said, "moduli_loaded": loaded},
-        {"moduli_packings": _finding(datasets["packings"]), **_more_findings(datasets)},
+        {"moduli_response": said, "moduli_loaded": loaded},
+        _findings(datasets),
         p=parameters,
-        most=most,
         survey=f" Of these, {' and '.join(stored)} come from the survey." if stored else "",
     )
 
@@ -63,48 +52,7 @@ def _mean_and_spread(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
     return values.mean("realization").values, values.std("realization", ddof=1).where(count > 1, 0.0).values
 
 
-def _moduli(data: xr.Dataset) -> Figure:
-    """The shear modulus of the largest packings of each material against coordination, affine joined to relaxed."""
-    figure, ((axes,),) = style.figure(height=3.2)
-    ends = []
-    for case, (name, look) in enumerate(materials(data["polydispersity"], data["friction"])):
-        shear, z = _shear(data, case)
-        colour = style.line(case)["color"]
-        affine, relaxed = (_mean_and_spread(shear.sel(following=following)) for following in FOLLOWING)
-        across, beside = _mean_and_spread(z)
-        axes.plot([across] * 2, [affine[0], relaxed[0]], color=colour, linewidth=1.0, linestyle="-", zorder=1)
-        for (mean, spread), face in ((affine, "white"), (relaxed, colour)):
-            axes.errorbar(across, mean, spread, beside, marker=look["marker"], color=colour, markerfacecolor=face,
-                          markersize=5.5, markeredgewidth=0.9, capsize=2, linewidth=0.8)  # fmt: skip
-        ends.append((name, float(across), float(relaxed[0]), colour))
-    axes.set(xlabel="coordination number $z$", ylabel=r"shear modulus$\,/\,k_N$", ylim=(0.0, None))
-    left, right = axes.get_xlim()
-    axes.set(xlim=(left, right + 0.25 * (right - left)), ylim=(0.0, 1.2 * axes.get_ylim()[1]))
-    label_ends(axes, ends)
-    plain: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": style.BLACK, "markersize": 5.5}
-    keys = [Line2D([], [], markerfacecolor="white", **plain), Line2D([], [], **plain)]
-    axes.legend(keys, list(FOLLOWING.values()), loc="upper left")
-    return figure
-
-
-def _shear(data: xr.Dataset, case: int) -> tuple[xr.DataArray, xr.DataArray]:
-    """Shear modulus of the nearest isotropic solid over k_N, and coordination, of the largest packings of a case."""
-    one = data.isel(case=case, size=int(np.nanargmax(data["layers"].values[case])))
-    return bulk_and_shear(*(one["moduli"].sel(modulus=name) for name in "abcd"))[1], one["coordination"]
-
-
-def _finding(data: xr.Dataset) -> str:
-    """By how much packings are softer in shear than the affine assumption says, at least and at most."""
-    parts = []
-    for case in range(data.sizes["case"]):
-        shear, _ = _shear(data, case)
-        relaxed, affine = (float(shear.sel(following=name).mean("realization")) for name in ("free", "affine"))
-        parts.append(100.0 * (1.0 - relaxed / affine))
-    ends = f"{min(parts):.0f} to {max(parts):.0f} %"
-    return f"Relaxed packings are softer in shear than the affine assumption says, by {ends}."
-
-
-def _more_findings(datasets: Datasets) -> dict[str, str]:
+def _findings(datasets: Datasets) -> dict[str, str]:
     """How far the response is off the slab with the measured moduli, and whether r is negative below the load."""
     data, slabs, off = datasets["packings"], datasets["slabs"], []
     for case in range(data.sizes["case"]):

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Index, Part, Positive, allowed
+from granular_response.scene.base import Count, Description, Index, Part, Positive
 from granular_response_extensions.parameters import Material, SurveyedGroup
-from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Checked, Checks, Growing, Loading, over, some
-
-Rows = Annotated[int, Field(strict=True, ge=5), allowed("must be a whole number from 5 on")]
-Margin = Annotated[float, Field(strict=True, ge=0, lt=0.4), allowed("must be from 0 to below 0.4")]
+from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Growing, Loading, Rows, Some, over
 
 #: The elastic solid of a loaded slab has the triangles of a lattice, smooth walls and no rotations.
 _OF_A_LATTICE = (
@@ -23,20 +20,14 @@ _OF_A_LATTICE = (
 class SizedMaterial(Material):
     """Packings of several sizes; the floor rubs as the disks."""
 
-    layers: Annotated[tuple[Rows, ...], AfterValidator(some)] = Field(description="Sizes.")
-    realizations: Annotated[tuple[Index, ...], AfterValidator(some)] = Field(description="As many for each size.")
+    layers: Some[Rows] = Field(description="Sizes.")
+    realizations: Some[Index] = Field(description="As many for each size.")
     surveyed: tuple[Index, ...] = Field((), description="Further ones for each size, that the survey simulates.")
 
     @property
     def further(self) -> tuple[int, ...]:
         """Realizations of the survey for each size."""
         return self.surveyed or (0,) * len(self.layers)
-
-    def checks(self) -> Checks:
-        for key, counts in (("realizations", self.realizations), ("surveyed", self.further)):
-            yield key, len(counts) == len(self.layers), "must have a number for each of the layers"
-        each = all(map(sum, zip(self.realizations, self.further, strict=True)))
-        yield "realizations", each, "must be 1 or more for each of the layers, with those of the survey"
 
 
 class LoadedSlab(Loading):
@@ -45,19 +36,15 @@ class LoadedSlab(Loading):
     shown: Positive = Field(description="The force whose map is drawn, or the next one above it.")
 
 
-class LoadedSlabs(Checked):
+class LoadedSlabs(Description):
     """Incremental moduli of lattices under load."""
 
     scene: Annotated[Scene, over(UNIT_LOAD, *_OF_A_LATTICE)] = Field(default=UNIT_LOAD, description="A lattice.")
-    slabs: Annotated[tuple[LoadedSlab, ...], AfterValidator(some)] = Field(description="One for each friction.")
+    slabs: Some[LoadedSlab] = Field(description="One for each friction.")
     widths: Growing = Field(description="w of the Gaussian over which fields are averaged, in radii.")
     smoothing: Positive = Field(description="w of the Gaussian under which floor responses are compared, in radii.")
     horizontal_waves: Count = Field(description="Highest half waves of body forces along x.")
     vertical_waves: Count = Field(description="Highest half waves of body forces along z.")
-
-    def checks(self) -> Checks:
-        layers = self.scene.packing.model_dump()["layers"]
-        yield "scene.packing.layers", layers >= 2, "must be 2 or more: one row has no triangles"
 
 
 class Parameters(SurveyedGroup):
@@ -65,15 +52,13 @@ class Parameters(SurveyedGroup):
         Field(description="Base scene of the packings.")
     )
     disks_per_layer: Count = Field(description="Disks of a row over number of rows.")
-    margin: Margin = Field(description="Part of the rows at either end over which no modulus is averaged.")
+    margin: float = Field(
+        ge=0.0, lt=0.4, description="Part of the rows at either end over which no modulus is averaged."
+    )
     width: Positive = Field(description="w of the Gaussian over the response, in radii.")
     wide: Part = Field(description="w of a second one, as a part of the height.")
-    cases: Annotated[tuple[SizedMaterial, ...], AfterValidator(some)] = Field(description="Disordered packings.")
+    cases: Some[SizedMaterial] = Field(description="Disordered packings.")
     loaded: LoadedSlabs = Field(description="Lattices under load.")
-
-    @property
-    def surveyed(self) -> bool:
-        return any(any(case.surveyed) for case in self.cases)
 
     @property
     def lattice(self) -> Scene:

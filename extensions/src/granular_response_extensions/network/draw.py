@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
@@ -28,7 +24,8 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     ends = []
     for value, look in family(data["polydispersity"].values, of="polydispersity"):
         by = rest.sel(polydispersity=value)
-        _density(forces, by.sel(friction=mu).mean("realization"), label=packing(value), **look)
+        density = by["force_density"].sel(friction=mu).mean("realization")
+        forces.plot(by["force"], density.where(density > 0.0), label=packing(value), **look | {"markersize": 2.5})
         number = by["coordination_number"]
         mean = number.mean("realization")
         bars = np.abs(np.stack([number.min("realization") - mean, number.max("realization") - mean]))
@@ -52,11 +49,6 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     label_ends(contacts, ends)
     titles((forces, contacts), (f"normal forces, {style.equals(style.FRICTION, mu)}", ""))
     return {"network_statistics": figure}
-
-
-def _density(axes: Axes, by: xr.Dataset, **look: Any) -> None:
-    shown = by["force_density"].where(by["force_density"] > 0.0)
-    axes.plot(by["force"], shown, **look | {"markersize": 2.5})
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:

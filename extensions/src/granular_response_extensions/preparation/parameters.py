@@ -7,31 +7,24 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from granular_response.scene import Scene, SceneError
+from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Positive, Ratio
-from granular_response.scene.errors import NotAllowed
-from granular_response_paper.parameters import UNIT_LOAD, Checked, Checks, Growing, SceneGroup, over
-
-#: Keys of a scene that say how it came to rest.
-PREPARES = ("preparation.gravity", "preparation.ramp_time", "contact.damping_ratio")
+from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, Some, over
 
 
-class Way(Checked):
+class Way(Description):
     """A way to prepare the slab."""
 
-    name: Annotated[str, Field(strict=True, min_length=1)]
+    name: str
     changes: dict[str, Any] = Field(description="To the base scene, by dotted key.")
-
-    def checks(self) -> Checks:
-        yield "changes", set(self.changes) <= set(PREPARES), f"must have keys among {', '.join(PREPARES)}"
 
 
 class TapSeries(Description):
     """Taps of a slab at rest: the box moves by one period of a triangular wave of vertical acceleration, up first."""
 
     number: Count
-    amplitudes: tuple[Positive, ...] = Field(min_length=1, description="Largest accelerations, in g.")
-    durations: tuple[Positive, ...] = Field(min_length=1, description="Of the period, in sqrt(R/g).")
+    amplitudes: Some[Positive] = Field(description="Largest accelerations, in g.")
+    durations: Some[Positive] = Field(description="Of the period, in sqrt(R/g).")
 
 
 class SlabFamily(Description):
@@ -57,22 +50,7 @@ class Parameters(SceneGroup):
     scene: Annotated[
         Scene, over(UNIT_LOAD, "packing.polydispersity", "contact.friction", "wall.friction", "preparation", "loads")
     ] = UNIT_LOAD
-    ways: tuple[Way, ...] = Field(min_length=1, description="The first one is what the others are compared with.")
+    ways: Some[Way] = Field(description="The first one is what the others are compared with.")
     forces: Growing = Field(description="In mean disk weights.")
-    parts: tuple[SlabFamily, ...] = Field(min_length=1, description="The first one is ordered and untapped.")
+    parts: Some[SlabFamily] = Field(description="The first one is ordered and untapped.")
     asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
-
-    def checks(self) -> Checks:
-        names = [way.name for way in self.ways]
-        yield "ways", len(set(names)) == len(names), "must have different names"
-        for k, way in enumerate(self.ways):
-            try:
-                self.scene.updated(way.changes)
-            except SceneError as error:
-                raise NotAllowed(str(error), key=("ways", k)) from None
-        yield "parts.0.polydispersity", not self.parts[0].polydispersity, "must be 0"
-        yield "parts.0.taps", self.parts[0].taps is None, "must be left out"
-        for k, part in enumerate(self.parts):
-            known = set(part.ways) <= set(names)
-            yield f"parts.{k}.ways", known, f"must be among the names in ways ({', '.join(names)})"
-            yield f"parts.{k}.to", part.to >= self.forces[0], "must not be below the first of forces"

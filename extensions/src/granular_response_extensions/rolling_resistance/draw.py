@@ -25,8 +25,22 @@ WAYS: dict[str, dict[str, Any]] = {
 
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
-    figure, ((panel,),) = style.figure(height=3.0)
-    _least(panel, datasets["thresholds"])
+    thresholds = datasets["thresholds"]
+    figure, ((axes,),) = style.figure(height=3.0)
+    places = _places(axes, thresholds["rolling_friction"].values)
+    looks = list(family(thresholds["layers"].values, of="length"))
+    for size, look in looks:
+        one = thresholds.sel(layers=size)
+        middle = 0.5 * (one["low"] + one["high"])
+        for ramp, way in zip(one["ramp"].values, WAYS, strict=False):
+            axes.plot(places, middle.sel(ramp=ramp), **look | {"markersize": 4.5} | WAYS[way])
+        axes.plot(places, one["balance"], color=look["color"], linestyle=":", linewidth=1.2)
+    axes.set(ylabel=f"friction ${style.FRICTION}$ that holds the pile", ylim=(0.0, None))
+    plain: dict[str, Any] = {"color": style.BLACK, "marker": "o", "markersize": 4.5, "linewidth": 0.9}
+    handles = [Line2D([], [], **look, label=f"{size} layers") for size, look in looks]
+    handles += [Line2D([], [], **plain | look, label=way) for way, look in WAYS.items()]
+    handles.append(Line2D([], [], color=style.BLACK, linestyle=":", linewidth=1.2, label="balance of forces"))
+    axes.legend(handles=handles, loc="upper right", ncols=2)
     return {"rolling_resistance": figure}
 
 
@@ -53,20 +67,3 @@ def _places(axes: Axes, values: np.ndarray) -> np.ndarray:
     places = np.arange(len(values), dtype=float)
     axes.set(xlabel=f"rolling friction ${ROLLING}$", xticks=places, xticklabels=[f"{value:g}" for value in values])
     return places
-
-
-def _least(axes: Axes, thresholds: xr.Dataset) -> None:
-    places = _places(axes, thresholds["rolling_friction"].values)
-    looks = list(family(thresholds["layers"].values, of="length"))
-    for size, look in looks:
-        one = thresholds.sel(layers=size)
-        middle = 0.5 * (one["low"] + one["high"])
-        for ramp, way in zip(one["ramp"].values, WAYS, strict=False):
-            axes.plot(places, middle.sel(ramp=ramp), **look | {"markersize": 4.5} | WAYS[way])
-        axes.plot(places, one["balance"], color=look["color"], linestyle=":", linewidth=1.2)
-    axes.set(ylabel=f"friction ${style.FRICTION}$ that holds the pile", ylim=(0.0, None))
-    plain: dict[str, Any] = {"color": style.BLACK, "marker": "o", "markersize": 4.5, "linewidth": 0.9}
-    handles = [Line2D([], [], **look, label=f"{size} layers") for size, look in looks]
-    handles += [Line2D([], [], **plain | look, label=way) for way, look in WAYS.items()]
-    handles.append(Line2D([], [], color=style.BLACK, linestyle=":", linewidth=1.2, label="balance of forces"))
-    axes.legend(handles=handles, loc="upper right", ncols=2)

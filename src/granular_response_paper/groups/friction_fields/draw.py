@@ -12,7 +12,7 @@ from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box, FloatArray
 from granular_response_paper.captions import RADIUS, Caption, Datasets, lettered, of_group, of_scene, values
-from granular_response_paper.panels import ContactLines, added_forces, family, force_key, forces, note, titles
+from granular_response_paper.panels import ContactLines, added_forces, family, force_key, forces, note, outer, titles
 
 from .parameters import Parameters
 
@@ -156,10 +156,7 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
     for axes in drawn:
         network.draw_load(axes, (0.0, float(z.max())), length=3.0)
         axes.set(xlim=(-half, half), ylim=(0.0, z.max()))
-    for axes in panels[-1]:
-        axes.set_xlabel(style.POSITION)
-    for axes in panels[:, 0]:
-        axes.set_ylabel(style.HEIGHT)
+    outer(panels, style.POSITION, style.HEIGHT)
     empty = panels[0, 1]
     empty.set_axis_off()
     steps, both = (0.0, 0.005, 0.02, 0.05, 0.1, 0.15), (-0.02, -0.005, 0.0, 0.005, 0.02)

@@ -563,9 +563,8 @@ def rough_walls(data: Data) -> Numbers:
     shorten it.
     Remark: One friction and one tolerance. The part of the force that the walls support is not looked at. The ends are
     those of the search; beside rough walls other protocols were not tried"""
-    events = data.get("preparation", "events")
-    rough = at(events, name="linear_range", friction=1.0, wall_friction=1.0, gravity="at-once")
-    yield Quantity.bracket(float(rough["low"]), float(rough["high"])).per(data.event("linear_range", 1.0))
+    rough = {"name": "linear_range", "friction": 1.0, "wall_friction": 1.0, "gravity": "at-once"}
+    yield data.bracket("preparation", "events", **rough).per(data.event("linear_range", 1.0))
 
 
 @claim(
@@ -579,5 +578,4 @@ def friction_crossover(data: Data) -> Numbers:
     Here: Under 15 mg two peaks turn into one at friction {0}.
     Remark: At friction 0.2 the paper has one peak at 15 mg, since its crossover is at 20 mg. The ends are those of the
     search; other protocols were not tried"""
-    found = at(data.get(GROUP, "events"), name="friction_crossover")
-    yield Quantity.bracket(float(found["low"]), float(found["high"]))
+    yield data.bracket(GROUP, "events", name="friction_crossover")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import xarray as xr
@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.state import OPEN, SLIDING
+from granular_response.studies import linear_end
 from granular_response_paper.captions import RADIUS, WEIGHT, Caption, Datasets, Value, of_group, of_scene
 from granular_response_paper.panels import among, contact_networks, family, grey_limit, label_ends, note, titles, zero
 
@@ -23,11 +24,8 @@ LARGE_FRICTION = 0.2
 CONTACT_FORCES = (5.0, 12.0, 20.0)
 CONTACTS = ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1"))
 LARGE_FORCES = (20.0, 30.0, 40.0, 60.0, 80.0)
-#: Dynamic runs of Fig. 16: from the last symmetric one on, those that lean to either side, and the largest force.
-DYNAMIC_FORCES = (93.0, 150.0, 500.0)
 #: Responses that differ by less than this part of the peak lie on each other in print.
 COINCIDE = 0.04
-_ENDS = ("contact_disk", "contact_partner")
 #: Frictions of Fig. 12.
 AXIS_FRICTIONS = (0.0, 0.1, 0.15, 0.2, 0.5, 1.0)
 
@@ -50,91 +48,80 @@ PAPER_CROSSOVER, PAPER_THIRD_PEAK, PAPER_SYMMETRIC = 20.0, 40.0, 91.0
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
     response = datasets["response"]
-    figures = {
+    return {
         "fig06_linear_range": _linear_range(response),
+        "fig07_friction_response": _profiles(response),
+        **{stem: _contacts(datasets[f"states_mu_{friction:g}"], friction) for friction, stem in CONTACTS},
         "fig12_friction_crossover": _friction_axis(datasets["friction_axis"], response),
+        "fig16_large_forces": _large_forces(response, datasets["large_forces"]),
     }
-    stored = response["friction"].values
-    if np.isin(PROFILE_FRICTIONS, stored).all():
-        figures["fig07_friction_response"] = _profiles(response)
-    for friction, stem in CONTACTS:
-        states = datasets.get(f"states_mu_{friction:g}")
-        if states is not None:
-            figures[stem] = _contacts(states, friction)
-    if LARGE_FRICTION in stored:
-        figures["fig16_large_forces"] = _large_forces(response, datasets["large_forces"])
-    return figures
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
-    response = datasets["response"]
-    frictions = response["friction"].values.tolist()
+    response, dynamic = datasets["response"], datasets["large_forces"]
 
     def said(force: Value, friction: Value) -> dict[str, Value]:
         return of_scene(parameters.scene, force=force, friction=friction)
 
-    def drawn(curves: xr.Dataset, wanted: Sequence[float]) -> list[float]:
-        return at_forces(curves, wanted)["force"].values.tolist()
+    def drawn(wanted: Sequence[float]) -> list[float]:
+        return at_forces(response.sel(friction=LARGE_FRICTION), wanted)["force"].values.tolist()
 
     axis = among(datasets["friction_axis"]["friction"], AXIS_FRICTIONS)
-    given = {
-        "fig06_linear_range": said(response["force"].values.tolist(), frictions),
-        "fig12_friction_crossover": said(parameters.friction_axis.force, axis),
-    }
-    fields: dict[str, Any] = {"crossover": PAPER_CROSSOVER, "third": PAPER_THIRD_PEAK, "symmetric": PAPER_SYMMETRIC}
-    fields["stops"] = "".join(
-        f" µ = {end.friction:g} is computed up to {end.force:g} {WEIGHT} only." for end in parameters.ends
+    stops = (f" µ = {end.friction:g} is computed up to {end.force:g} {WEIGHT} only." for end in parameters.ends)
+    beyond, left = _dynamic_forces(dynamic), drawn(LARGE_FORCES)
+    return of_group(
+        "friction_linear_range",
+        {
+            "fig06_linear_range": said(response["force"].values.tolist(), response["friction"].values.tolist()),
+            "fig07_friction_response": said(drawn(PROFILE_FORCES), PROFILE_FRICTIONS),
+            **{stem: said(contact_forces(datasets[f"states_mu_{mu:g}"]), mu) for mu, stem in CONTACTS},
+            "fig12_friction_crossover": said(parameters.friction_axis.force, axis),
+            "fig16_large_forces": said(sorted({*left, *beyond}), [LARGE_FRICTION, float(dynamic["friction"])]),
+        },
+        _findings(datasets),
+        crossover=PAPER_CROSSOVER,
+        third=PAPER_THIRD_PEAK,
+        symmetric=PAPER_SYMMETRIC,
+        left=left,
+        beyond=beyond,
+        stops="".join(stops),
     )
-    if np.isin(PROFILE_FRICTIONS, frictions).all():
-        given["fig07_friction_response"] = said(drawn(response.sel(friction=0.2), PROFILE_FORCES), PROFILE_FRICTIONS)
-    if LARGE_FRICTION in frictions:
-        dynamic = datasets["large_forces"]
-        beyond, left = _dynamic_forces(dynamic), drawn(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
-        given["fig16_large_forces"] = said(sorted({*left, *beyond}), [0.2, float(dynamic["friction"])])
-        fields |= {"left": left, "beyond": beyond}
-    for friction, stem in CONTACTS:
-        if f"states_mu_{friction:g}" in datasets:
-            given[stem] = said(contact_forces(datasets[f"states_mu_{friction:g}"]), friction)
-    return of_group("friction_linear_range", given, _findings(datasets), **fields)
 
 
 def _findings(datasets: Datasets) -> dict[str, str]:
-    """What the data show, a sentence for each picture that is drawn."""
+    """What the data show, a sentence for each picture."""
     response, axis, large = (datasets[name] for name in ("response", "friction_axis", "large_forces"))
     longest = []
     for part in (LINEAR, 0.05):
-        ends = {mu: _linear_until(response.sel(friction=mu), part) for mu in response["friction"].values.tolist()}
-        best = max(ends, key=lambda mu: ends[mu])
+        curves = response["response_at_centre"].values
+        ends = [linear_end(response["force"], curve, part).low for curve in curves]
+        best = float(response["friction"][int(np.argmax(ends))])
         longest.append(f"µ = {best:g} for {100.0 * part:g} %")
-    two = [mu for mu in axis["friction"].values.tolist() if int(axis["peak_count"].sel(friction=mu)) >= 2]
+    two = axis["friction"].values[axis["peak_count"].values >= 2]
     found = {
         "fig06_linear_range": f"The response at x = 0 stays linear longest at {' and at '.join(longest)}.",
         "fig12_friction_crossover": (
-            f"Two peaks or more up to µ = {max(two):g}, one peak at larger friction." if two
+            f"Two peaks or more up to µ = {two.max():g}, one peak at larger friction." if two.size
             else "One peak at every friction."
         ),
     }  # fmt: skip
     counts: list[str] = []
     for friction in PROFILE_FRICTIONS:
-        if friction in response["friction"].values:
-            one = response.sel(friction=friction).dropna("force", subset=["peak_count"])
-            split = one["force"].values[one["peak_count"].values >= 2]
-            last = float(one["force"][-1])
-            peaks = f"two peaks or more from {split[0]:g}" if split.size else f"one peak up to {last:g}"
-            counts.append(f"{'at' if counts else 'At'} µ = {friction:g} {peaks} {WEIGHT}")
+        one = response.sel(friction=friction).dropna("force", subset=["peak_count"])
+        split = one["force"].values[one["peak_count"].values >= 2]
+        peaks = f"two peaks or more from {split[0]:g}" if split.size else f"one peak up to {float(one['force'][-1]):g}"
+        counts.append(f"{'at' if counts else 'At'} µ = {friction:g} {peaks} {WEIGHT}")
     found["fig07_friction_response"] = f"{', '.join(counts)}."
     for friction, stem in CONTACTS:
-        states = datasets.get(f"states_mu_{friction:g}")
-        if states is not None:
-            force = max(contact_forces(states))
-            one = states.isel(state=int(np.flatnonzero(states["force"].values == force)[0]))
-            touched = states["contact_status"].values[0] != OPEN
-            opened = int((touched & (one["contact_status"].values == OPEN)).sum())
-            slide = int((touched & (one["contact_status"].values == SLIDING)).sum())
-            found[stem] = f"At µ = {friction:g} and {force:g} {WEIGHT} {opened} contacts have opened and {slide} slide."
+        states = datasets[f"states_mu_{friction:g}"]
+        force = max(contact_forces(states))
+        status = states["contact_status"].values
+        touched, one = status[0] != OPEN, status[states["force"].values.tolist().index(force)]
+        opened, slide = (int((touched & (one == kind)).sum()) for kind in (OPEN, SLIDING))
+        found[stem] = f"At µ = {friction:g} and {force:g} {WEIGHT} {opened} contacts have opened and {slide} slide."
     kept, lost = _symmetric(large)
-    left = response.sel(friction=LARGE_FRICTION) if LARGE_FRICTION in response["friction"].values else None
-    third = [] if left is None else left["force"].values[left["peak_count"].values >= 3].tolist()
+    left = response.sel(friction=LARGE_FRICTION)
+    third = left["force"].values[left["peak_count"].values >= 3].tolist()
     found["fig16_large_forces"] = " ".join(
         [
             f"At µ = {LARGE_FRICTION:g} the response has three peaks from {third[0]:g} {WEIGHT}." if third else "",
@@ -144,13 +131,6 @@ def _findings(datasets: Datasets) -> dict[str, str]:
         ]
     ).strip()  # fmt: skip
     return found
-
-
-def _linear_until(one: xr.Dataset, part: float) -> float:
-    """The last force up to which the response at x = 0 differs by less than a ``part`` from that to the smallest."""
-    curve = one["response_at_centre"].dropna("force")
-    off = np.abs(curve.values / curve.values[0] - 1.0) > part
-    return float(curve["force"][max(int(np.argmax(off)) - 1, 0)]) if off.any() else float(curve["force"][-1])
 
 
 def _symmetric(dynamic: xr.Dataset) -> tuple[list[float], list[float]]:
@@ -165,10 +145,9 @@ def _on_the_floor_alone(states: xr.Dataset, forces: Sequence[float]) -> str:
     alone: dict[float, int] = {}
     for state in np.flatnonzero(np.isin(states["force"].values, forces)):
         one = states.isel(state=state)
-        pairs = np.bincount(
-            np.concatenate([one[name].values[one["contact_status"].values != OPEN] for name in _ENDS]),
-            minlength=one.sizes["disk"],
-        )
+        touching = one["contact_status"].values != OPEN
+        ends = [one[name].values[touching] for name in ("contact_disk", "contact_partner")]
+        pairs = np.bincount(np.concatenate(ends), minlength=one.sizes["disk"])
         held = one["wall_disk"].values[one["wall_status"].values != OPEN]
         middle = float(one["position"].values[int(one["loaded_disk"]), 0])
         for disk in held[pairs[held] == 0]:
@@ -270,11 +249,9 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
 def _dynamic_forces(dynamic: xr.Dataset) -> list[float]:
     """The last symmetric force, the first asymmetric one, the next that leans to the other side, and the largest."""
     kept, lost = _symmetric(dynamic)
-    if not lost:
-        return among(dynamic["force"].values, DYNAMIC_FORCES)
     sign = dict(zip(dynamic["force"].values.tolist(), dynamic["asymmetry_sign"].values.tolist(), strict=True))
     other = [force for force in lost if sign[force] == -sign[lost[0]]]
-    return sorted({*kept[-1:], lost[0], *other[:1], lost[-1]})
+    return sorted({*kept[-1:], *lost[:1], *other[:1], *lost[-1:]})
 
 
 def contact_forces(states: xr.Dataset) -> list[float]:
@@ -303,8 +280,8 @@ def _plot_profiles(panel: Axes, curves: xr.Dataset, along: Literal["force", "fri
 
 def _contacts(states: xr.Dataset, friction: float) -> Figure:
     """Figs. 8 and 9: the central third, one panel for each force."""
-    stored, shown = states["force"].values, contact_forces(states)
-    loaded = [states.isel(state=int(np.flatnonzero(stored == force)[0])) for force in shown]
+    stored, shown = states["force"].values.tolist(), contact_forces(states)
+    loaded = [states.isel(state=stored.index(force)) for force in shown]
     mu = style.equals(style.FRICTION, friction)
     names = [f"{mu}, {style.equals(style.F_EXT, force, style.WEIGHT)}" for force in shown]
     return contact_networks(states.isel(state=0), loaded, names, height=2.1, columnspacing=1.2)

@@ -28,11 +28,6 @@ claim = Claims(GROUP, {"scene.packing.layers": 15, "scene.contact.normal_stiffne
 ROW, DISK = float(np.sqrt(3.0)), 2.0
 
 
-def _event(data: Data, name: str) -> Quantity:
-    found = at(data.get(GROUP, "events"), name=name)
-    return Quantity.bracket(float(found["low"]), float(found["high"]))
-
-
 @claim(
     "F4a", "IV.A, Fig. 3", Ask("force at which two peaks appear", about(3.0), "mg", 3.0),
     primary="rows of 61 and 60", figures=[3, 4]
@@ -65,16 +60,12 @@ def near_the_floor(data: Data) -> Numbers:
     Short: The crossover comes as the open region nears the floor
     Here: Without friction two peaks appear at {0} of the force at which the open region reaches the floor.
     Remark: The ends are those of the search; without friction the equilibrium does not depend on the protocol"""
-    ratio = _event(data, "crossover").per(_event(data, "teardrop_reaches_floor"))
+    crossed, reached = (data.bracket(GROUP, "events", name=name) for name in ("crossover", "teardrop_reaches_floor"))
+    ratio = crossed.per(reached)
     yield "rows of 61 and 60", ratio, ratio
     literal = (data.event(name, 0.0, "events_equal_rows") for name in ("crossover", "reaches_floor"))
     ratio = next(literal).per(next(literal))
     yield "rows of 60", ratio, ratio
-
-
-def _before_the_floor(data: Data) -> xr.Dataset:
-    """The states in which the region of opened contacts has not reached the floor."""
-    return data.get(GROUP, "states").isel(force=data.get(GROUP, "response")["reaches_floor"].values == 0)
 
 
 @claim(

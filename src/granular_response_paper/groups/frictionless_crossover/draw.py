@@ -94,7 +94,7 @@ def _findings(datasets: Datasets) -> dict[str, str]:
     deep = {int(n): force for n, force in zip(softest["layers"].values, found, strict=True) if np.isfinite(force)}
     least, most = min(deep, default=0), max(deep, default=0)
     reached = softest["reaches_floor"].values.any(axis=1)
-    depths = " and ".join(filter(None, [values(softest["layers"].values[reached].tolist())])) if reached.any() else "no"
+    depths = values(softest["layers"].values[reached].tolist()) if reached.any() else "no"
     return {
         "fig03_frictionless_response": f"The single peak of the floor response becomes two {at('crossover')}.",
         "fig04_frictionless_contacts": (
@@ -152,14 +152,9 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
             centre.axvline(middle, color=style.MUTED, linewidth=0.6, linestyle=(0, (4, 2)), zorder=0)
             # the last one is close to the one before, so its name goes to the other side
             side, shift = ("left", 2.0) if at == events.sizes["event"] - 1 else ("right", -1.5)
-            upright: dict[str, Any] = {
-                "rotation": 90,
-                "ha": side,
-                "va": "top",
-                "xycoords": centre.get_xaxis_transform(),
-            }
-            text = f"{EVENTS[str(name)]}, {middle:.2f}"
-            note(centre, text, (middle, 1.0), (shift, -4.0), fontsize=7, color=style.MUTED, **upright)
+            upright: dict[str, Any] = {"rotation": 90, "ha": side, "va": "top", "fontsize": 7, "color": style.MUTED}
+            text, upper = f"{EVENTS[str(name)]}, {middle:.2f}", centre.get_xaxis_transform()
+            note(centre, text, (middle, 1.0), (shift, -4.0), xycoords=upper, **upright)
     style.paper_value(centre, PAPER_OPENING, f"paper: opening, {PAPER_OPENING:g}", side="behind")
     centre.set_ylim(0.0, 1.65 * highest)
     centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)

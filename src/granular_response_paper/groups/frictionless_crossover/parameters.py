@@ -7,15 +7,13 @@ from typing import Annotated
 from pydantic import Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Positive, allowed
-from granular_response_paper.parameters import UNIT_LOAD, Checks, Growing, SceneGroup, over
+from granular_response.scene.base import Count, Positive
+from granular_response_paper.parameters import UNIT_LOAD, Growing, Rows, SceneGroup, Some, over
 
 _FRICTIONLESS = UNIT_LOAD.updated({"contact.friction": 0.0})
 
-_Shape = tuple[Annotated[int, Field(strict=True, ge=2)], Annotated[int, Field(strict=True, ge=7)]]
-Shapes = Annotated[
-    tuple[_Shape, ...], Field(min_length=1), allowed("must be a list of [layers, disks_per_row], from 2 and 7 on")
-]
+#: Layers and disks in the lowest row.
+Shapes = Some[tuple[Rows, Rows]]
 
 
 class Parameters(SceneGroup):
@@ -33,7 +31,3 @@ class Parameters(SceneGroup):
     region_forces: Growing = Field(description="On these, at which it is.")
     stiffnesses: Growing = Field(description="Normal stiffnesses of the first slab.")
     stiffness_forces: Growing = Field(description="On it at each of them.")
-
-    def checks(self) -> Checks:
-        least = min(layers for layers, _ in self.sizes)
-        yield "region_layers", self.region_layers >= least, "must be layers of one of sizes"

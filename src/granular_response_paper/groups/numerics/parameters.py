@@ -4,18 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, NonNegative, Positive, Ratio, allowed
-from granular_response_paper.parameters import Checked, Checks, Coefficients, Integrators, Positives, over, some
-
-
-class Restart(Description):
-    """Statically finished states put back into the dynamics."""
-
-    forces: Annotated[tuple[NonNegative, ...], AfterValidator(some)] = Field(description="0 for gravity alone.")
-    steps: Count
+from granular_response.scene.base import Count, Description, Positive, Ratio
+from granular_response.scene.protocol import Integrator
+from granular_response_paper.parameters import Coefficients, Positives, Some, over
 
 
 class Damping(Description):
@@ -26,14 +20,11 @@ class Damping(Description):
     stop_kinetic_energy: Positive
 
 
-class Swing(Checked):
+class Swing(Description):
     """What a run that has stopped would do next, with friction ``friction``."""
 
     steps: Count = Field(description="Time steps of the paper's size after the stop, about one slow oscillation.")
     read_every: Count = Field(description="Time steps between two readings.")
-
-    def checks(self) -> Checks:
-        yield "read_every", self.read_every <= self.steps, f"must be at most steps = {self.steps}"
 
 
 class Disorder(Description):
@@ -53,12 +44,9 @@ class Parameters(Description):
     force: Positive = Field(description="In mean disk weights.")
     frictions: Coefficients = Field(description="Of stop_energies.")
     stop_energies: Positives = Field(description="Kinetic energies per disk at which the dynamics stops.")
-    restart: Restart
     friction: Ratio = Field(description="Of what follows.")
-    time_steps: Annotated[
-        tuple[Positive, ...], Field(min_length=2), allowed("must be at least two numbers above 0, to compare")
-    ] = Field(description="The first one is the paper's.")
-    integrators: Integrators
+    time_steps: Some[Positive] = Field(description="The first one is the paper's.")
+    integrators: Some[Integrator]
     integrator_time_step: Positive
     damping: Damping
     swing: Swing

@@ -1,4 +1,4 @@
-"""The overview, the growing force and the photoelastic packings."""
+"""The overview and the growing force."""
 
 from __future__ import annotations
 
@@ -13,24 +13,17 @@ from granular_response.plot.animation import FULL, Frames, animate
 from granular_response.plot.chains import draw_chains, draw_key, draw_peaks, draw_response
 from granular_response.plot.shown import Shown
 from granular_response_paper.captions import WEIGHT, Caption, Datasets, of_group, of_scene, values
-from granular_response_paper.panels import note, packing, polarised
 
 from .parameters import Parameters
 
 #: Mean radii of slabs to each side of the load.
 HALF_WIDTH = 30.0
-#: Pixels from side to side of a photoelastic packing.
-PIXELS = 680
 
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
     frames = Frames(_slabs(datasets), half_width=HALF_WIDTH, figure=Figure())
     frames.draw(-1)
-    return {
-        "overview": _overview(_slabs(datasets)),
-        "growing_force": frames.figure,
-        "photoelastic": _photoelastic([slab for name, slab in datasets.items() if name.startswith("photoelastic")]),
-    }
+    return {"overview": _overview(_slabs(datasets)), "growing_force": frames.figure}
 
 
 def animations(datasets: Datasets) -> dict[str, FuncAnimation]:
@@ -38,20 +31,9 @@ def animations(datasets: Datasets) -> dict[str, FuncAnimation]:
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
-    forces, experiment = parameters.forces, parameters.experiment
-    given = of_scene(parameters.scene, friction=parameters.frictions)
-    return of_group(
-        "overview",
-        {
-            "overview": {**given, "force": [forces[0], forces[-1]]},
-            "growing_force": {**given, "force": forces},
-            "photoelastic": of_scene(
-                parameters.scene, frictions=experiment.friction, force=experiment.force,
-                polydispersity=experiment.polydispersities,
-            ),
-        },
-        _findings(_slabs(datasets)),
-    )  # fmt: skip
+    forces, given = parameters.forces, of_scene(parameters.scene, friction=parameters.frictions)
+    drawn = {"overview": {**given, "force": [forces[0], forces[-1]]}, "growing_force": {**given, "force": forces}}
+    return of_group("overview", drawn, _findings(_slabs(datasets)))
 
 
 def _findings(slabs: Datasets) -> dict[str, str]:
@@ -78,9 +60,8 @@ def _elastic_first(slab: xr.Dataset) -> bool:
 
 
 def _slabs(datasets: Datasets) -> dict[str, xr.Dataset]:
-    """Those under a growing force, by their titles."""
-    slabs = [slab for name, slab in datasets.items() if name.startswith("slab")]
-    return {style.equals(style.FRICTION, float(slab["friction"])): slab for slab in slabs}
+    """The slabs by their titles."""
+    return {style.equals(style.FRICTION, float(slab["friction"])): slab for slab in datasets.values()}
 
 
 def _overview(slabs: Datasets) -> Figure:
@@ -104,20 +85,4 @@ def _overview(slabs: Datasets) -> Figure:
         panels[0, k].set_title(title, pad=2.0)
         panels[3, k].set_xlabel(style.POSITION)
     draw_key(panels[3, -1], "small load")
-    return figure
-
-
-def _photoelastic(packings: list[xr.Dataset]) -> Figure:
-    """Side by side, of one material."""
-    figure, panels = style.figure(1, len(packings), width=6.2, height=2.85)
-    figure.set_layout_engine("compressed")
-    largest = max(float(slab["total_force"].max()) for slab in packings)
-    for axes, slab in zip(panels[0], packings, strict=True):
-        half = polarised(axes, slab, largest, pixels=PIXELS)
-        load = style.equals(style.F_EXT, float(slab["total_force"].max()), style.WEIGHT)
-        axes.set_title(f"{packing(float(slab['polydispersity']))}, {load}", pad=2.0)
-        left, bar = axes.get_xlim()[0] + 0.05 * half, 5.0
-        top = axes.get_ylim()[1] - 1.5
-        axes.plot([left, left + bar], [top, top], color=style.BLACK, linewidth=2.0, linestyle="-", clip_on=False)
-        note(axes, f"${bar:g}\\,{style.RADIUS}$", (left + bar, top), (4.0, 0.0), va="center", fontsize=8)
     return figure

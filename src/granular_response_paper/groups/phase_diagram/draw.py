@@ -45,11 +45,6 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     }
 
 
-def _disorders(data: xr.Dataset) -> list[float]:
-    """All polydispersities above 0."""
-    return [delta for delta in different(data["polydispersity"]) if delta]
-
-
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     crossovers = usual(datasets["crossovers"])
     frictions, deltas = (different(crossovers[name]) for name in ("friction", "polydispersity"))
@@ -66,7 +61,7 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         {
             "fig22_phase_diagram": given,
             "initial_lattice": {
-                "friction": [0.0, 0.2], "polydispersity": _disorders(crossovers), "width": parameters.widths[0]
+                "friction": [0.0, 0.2], "polydispersity": [d for d in deltas if d], "width": parameters.widths[0]
             },
         },
         _findings(crossovers.isel(width=-1), datasets["starts"]),
@@ -104,8 +99,8 @@ def _findings(crossovers: xr.Dataset, starts: xr.Dataset) -> dict[str, str]:
 def _diagram(crossovers: xr.Dataset) -> Figure:
     """Fig. 22: the crossover force of every polydispersity in one plane, beside the forces of experiments."""
     figure, ((axes,),) = style.figure(height=3.9)
-    axes.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel=f"crossover force {style.FORCE}", **_FRICTION_AXES)
-    axes.set(xlim=(-0.07, 1.16), ylim=FORCES)
+    axes.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel=f"crossover force {style.FORCE}", yscale="log")
+    axes.set(xlim=(-0.07, 1.16), ylim=FORCES, xticks=[0.0, 0.2, 0.5, 1.0], xticklabels=["0", "0.2", "0.5", "1"])
     axes.yaxis.set_major_formatter("{x:g}")
     ends, looks = [], _by_disorder(crossovers)
     for k, (delta, look) in enumerate(looks):
@@ -164,15 +159,6 @@ def _bounds(axes: Axes, crossovers: xr.Dataset, looks: Iterable[tuple[float, dic
             at_edge = {"xycoords": axes.get_xaxis_transform(), "ha": ha, "va": va, "color": look["color"]}
             place = (-14.0 if above else 14.0, inwards)
             note(axes, text, (friction, float(above)), place, fontsize=8, arrowprops=leader, **at_edge)
-
-
-#: Axes of force against friction.
-_FRICTION_AXES: dict[str, Any] = {
-    "yscale": "log",
-    "xlim": (-0.07, 1.07),
-    "xticks": [0.0, 0.2, 0.5, 1.0],
-    "xticklabels": ["0", "0.2", "0.5", "1"],
-}
 
 
 def _of(crossovers: xr.Dataset, delta: float) -> NDArray[np.intp]:

@@ -31,8 +31,7 @@ KEY = 5.0
 
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
-    piles, stress = datasets["piles"], datasets["stress"]
-    return {"fig17_pile": _pile(piles, stress)}
+    return {"fig17_pile": _pile(datasets["piles"], datasets["stress"])}
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:

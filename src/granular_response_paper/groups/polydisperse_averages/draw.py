@@ -130,17 +130,12 @@ def _findings(datasets: Datasets) -> dict[str, str]:
     data = datasets["linear_range"]
     shorter, compared = 0, 0
     for friction in different(data["friction"]):
-        ends = [
-            float(data["linear_until"].values[_case(data, delta, friction)])
-            for delta in different(data["polydispersity"])
-            if _case(data, delta, friction) is not None
-        ]
+        ends = data["linear_until"].values[data["friction"].values == friction]  # the lattice first
         compared += len(ends) > 1
-        shorter += len(ends) > 1 and ends[-1] < ends[0]
+        shorter += bool(ends[-1] < ends[0])
     shown = _shown(packings)
     z = np.nanmean(packings["coordination_number_with_walls"].values[shown], axis=1)
-    load = datasets["forces"]
-    under, rest = _contact_forces(load)[1], _contact_forces(load)[0]
+    rest, under = _contact_forces(datasets["forces"])
     part = float(np.linalg.norm(under - rest, axis=1).max() / np.linalg.norm(rest, axis=1).max())
     return {
         "fig02_polydisperse_forces": f"The largest incremental force is {part:.2g} times the largest under gravity.",
@@ -240,9 +235,6 @@ def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
         for column, friction in enumerate(frictions):
             axes = panels[row, column]
             case = _case(data, float(data["polydispersity"][0]), friction, start)
-            if case is None:
-                axes.set_axis_off()
-                continue
             rows = data["response"].isel(case=case).dropna("realization").values
             mean, error = rows.mean(axis=0), rows.std(axis=0, ddof=1) / np.sqrt(len(rows))
             _elastic(axes, averages, float(data["width"]))
@@ -264,9 +256,8 @@ def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
 def _elastic(axes: Axes, averages: xr.Dataset, width: float) -> None:
     """The response of the lattice with the largest friction to its smallest force, smoothed alike, behind others."""
     lattice = np.flatnonzero(averages["polydispersity"].values == 0.0)
-    if lattice.size and width in averages["width"].values:
-        case = int(lattice[np.argmax(averages["friction"].values[lattice])])
-        grey_limit(axes, averages["x"].values, averages["mean"].sel(width=width).values[case, 0])
+    case = int(lattice[np.argmax(averages["friction"].values[lattice])])
+    grey_limit(axes, averages["x"].values, averages["mean"].sel(width=width).values[case, 0])
 
 
 def _case(data: xr.Dataset, polydispersity: float, friction: float, start: str | None = None) -> int | None:
@@ -301,10 +292,12 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
         label_ends(axes, starts)
         text = f"numbers: ${style.FRICTION}$"
         axes.text(0.97, 0.97, text, transform=axes.transAxes, ha="right", va="top", fontsize=8)
-    if beside := _beside(data, averages):
-        mean, spread = beside
-        bar = {"color": style.MUTED, "marker": "_", "markersize": 8.0, "capsize": 2.5, "elinewidth": 1.0}
-        responses[0].errorbar([0.5 * smallest], [mean], [spread], **bar)
+    # what the packing stands beside without friction, where walls are smooth in both: mean and standard deviation of
+    # the response to the smallest force over the packings of Fig. 21, smoothed as it is
+    beside = averages.isel(case=_case(averages, deltas[0], 0.0), step=0).sel(width=data.attrs["width"], x=0.0)
+    spread = float(beside["standard_error"]) * float(np.sqrt(int(beside["count_at_rest"])))
+    bar = {"color": style.MUTED, "marker": "_", "markersize": 8.0, "capsize": 2.5, "elinewidth": 1.0}
+    responses[0].errorbar([0.5 * smallest], [float(beside["mean"])], [spread], **bar)
     for axes in responses[1:]:
         axes.tick_params(labelleft=False)
     responses[0].set_ylabel(f"{style.FLOOR_STRESS} at $x = 0$")
@@ -314,18 +307,6 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     ends.set(yscale="log", xlabel=f"${style.FRICTION}$", ylabel=f"end of the linear range, {style.FORCE}")
     ends.legend(loc="lower center", bbox_to_anchor=(0.45, 0.0))
     return figure
-
-
-def _beside(data: xr.Dataset, averages: xr.Dataset) -> tuple[float, float] | None:
-    """What the packing of Fig. 20 stands beside without friction, where walls are smooth in both: mean and standard
-    deviation of the response to the smallest force over the packings of Fig. 21, smoothed as it is.
-    """
-    width = float(data.attrs["width"])
-    case = _case(averages, max(different(data["polydispersity"])), 0.0)
-    if case is None or width not in averages["width"].values:
-        return None
-    one = averages.isel(case=case, step=0).sel(width=width, x=0.0)
-    return float(one["mean"]), float(one["standard_error"]) * float(np.sqrt(int(one["count_at_rest"])))
 
 
 def smoothed_by(averages: xr.Dataset) -> int:

@@ -12,11 +12,6 @@ GROUP = "stiffness_ratio_crossover"
 claim = Claims(GROUP, {"force": 15.0, "scene.contact.friction": 10.0})
 
 
-def _two_peaks_end(data: Data) -> Quantity:
-    found = at(data.get(GROUP, "events"), name="two_peaks_end")
-    return Quantity.bracket(float(found["low"]), float(found["high"]))
-
-
 @claim("K1a", "V.B, Fig. 10", Ask("ratio at which two peaks turn into one", about(0.3), paper=0.3))
 def ratio(data: Data) -> Numbers:
     """A crossover from a single peaked to a double peaked response occurs with decreasing k_T/k_N (the crossover occurs
@@ -25,7 +20,7 @@ def ratio(data: Data) -> Numbers:
     Here: At friction 10 two peaks first vanish at k_T/k_N = {0}.
     Remark: Above this ratio a dip of some tenths of a per cent may return, until the response is largest at x = 0. The
     ends are those of the search; other protocols were not tried"""
-    yield _two_peaks_end(data)
+    yield data.bracket(GROUP, "events", name="two_peaks_end")
 
 
 @claim(
@@ -66,9 +61,10 @@ def criterion(data: Data) -> Numbers:
     into one; with disks free to turn, {disks free to turn|0} times.
     Remark: Eq. (5) keeps the disks from turning; the paper's disks turn. The ratio of the slab has the ends of the
     search (K1a)"""
+    slab = data.bracket(GROUP, "events", name="two_peaks_end")
     for case, rotations in (("rotations suppressed", "suppressed"), ("disks free to turn", "free")):
         root = data.value(GROUP, "elastic.root", rotations=rotations)
-        yield case, root if rotations == "suppressed" else None, root.per(_two_peaks_end(data))
+        yield case, root if rotations == "suppressed" else None, root.per(slab)
 
 
 @claim(

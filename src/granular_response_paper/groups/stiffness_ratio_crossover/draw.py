@@ -29,7 +29,7 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     force = float(response["force"])
     shown = among(response["stiffness_ratio"], DRAWN)
     looks = {ratio: look | {"linewidth": 1.2} for ratio, look in family(shown, of="other", marked=False, dashed=True)}
-    profile = elastic["profile"].sel(rotations="free", body="smooth floor")
+    profile = elastic["profile"].sel(body="smooth floor")
     for ratio in shown:
         curve = response["floor_response"].sel(stiffness_ratio=ratio)
         simulated.plot(response["x"], curve, **looks[ratio])
@@ -37,17 +37,9 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
         bodies.plot(elastic["x"], solid, **looks[ratio])
         for axes, one in ((simulated, curve), (bodies, solid)):
             middle = float(one.values[np.argmin(np.abs(one["x"].values))])
-            note(
-                axes,
-                f"{ratio:g}",
-                (0.0, middle),
-                (0.0, 2.5),
-                ha="center",
-                fontsize=8,
-                color=looks[ratio]["color"],
-                path_effects=[withStroke(linewidth=2.0, foreground="white")],
-                zorder=5,
-            )
+            rim, colour = [withStroke(linewidth=2.0, foreground="white")], looks[ratio]["color"]
+            text = {"ha": "center", "fontsize": 8, "color": colour, "path_effects": rim, "zorder": 5}
+            note(axes, f"{ratio:g}", (0.0, middle), (0.0, 2.5), **text)
     _draw_dips(dips, response, elastic, events)
     load = f"simulation, {style.equals(style.F_EXT, force, style.WEIGHT)}"
     titles((simulated, bodies, dips), (load, "elastic slab", "depth of the dip"))
@@ -86,7 +78,7 @@ def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr
     """The depth of the dip near the crossover, where the differences are small."""
     ratio, fine = response["stiffness_ratio"].values, elastic["stiffness_ratio"].values
     low, high = float(events["low"].min()), float(events["high"].max())
-    dip = elastic["central_dip"].sel(rotations="free")
+    dip = elastic["central_dip"]
     zero(axes)
     if np.isfinite(high):
         axes.axvspan(low, high, color=style.FAINT, linewidth=0.0, zorder=0)

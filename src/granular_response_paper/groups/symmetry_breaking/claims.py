@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from granular_response_paper.claims.bounds import between
-from granular_response_paper.claims.claim import ROBUSTNESS, Ask, Claims, Data, Numbers, at
+from granular_response_paper.claims.claim import ROBUSTNESS, Ask, Claims, Data, Numbers
 from granular_response_paper.claims.numbers import Quantity, needs
 
-GROUP = "symmetry_breaking"
+GROUP, LOST = "symmetry_breaking", "loss_of_symmetry"
 claim = Claims(GROUP, {"scene.contact.friction": 1.0, "scene.contact.stiffness_ratio": 0.8, "scene.wall.friction": 0.0})
-
-
-def _lost(data: Data, table: str, **labels: float) -> Quantity:
-    found = at(data.get(GROUP, table), name="loss_of_symmetry", **labels)
-    return Quantity.bracket(float(found["low"]), float(found["high"]))
 
 
 @claim(
@@ -31,17 +26,16 @@ def loss_of_symmetry(data: Data) -> Numbers:
     Remark: The text does not say how long the force grows. The next force that it names is 95 mg, at which symmetry is
     lost. The number 91 speaks for rows of 61 and 60 disks"""
     runs = data.get(ROBUSTNESS, "events_from_rest")
-    there = (runs["name"].values.astype(str) == "loss_of_symmetry") & (runs["kind"].values.astype(str) == "protocol")
+    there = (runs["name"].values.astype(str) == LOST) & (runs["kind"].values.astype(str) == "protocol")
     ends = zip(runs["low"].values[there].tolist(), runs["high"].values[there].tolist(), strict=True)
-    own = _lost(data, "brackets", ramp_time=20.0)
+    own = data.bracket(GROUP, "brackets", name=LOST, ramp_time=20.0)
     found = [own, *(Quantity.bracket(*one) for one in ends)]
     needs(len(found) > 1, "robustness holds no loss of symmetry")
     yield "over the protocol", Quantity.over(found, "protocol", "range over the protocol")
     yield "load ramp of 20 sqrt(R/g)", own
-    yield "load ramp of 100 sqrt(R/g)", _lost(data, "brackets", ramp_time=100.0)
-    yield "rows of 60 disks", _lost(data, "equal_rows")
-    wide = at(runs, name="loss_of_symmetry", variant="121 disks a row")
-    yield "121 disks a row", Quantity.bracket(float(wide["low"]), float(wide["high"]))
+    yield "load ramp of 100 sqrt(R/g)", data.bracket(GROUP, "brackets", name=LOST, ramp_time=100.0)
+    yield "rows of 60 disks", data.bracket(GROUP, "equal_rows", name=LOST)
+    yield "121 disks a row", data.bracket(ROBUSTNESS, "events_from_rest", name=LOST, variant="121 disks a row")
     for case, number in data.elsewhere(lambda one: one.event("loss_of_symmetry_path", 1.0)):
         if case.prepared:
             yield case, number

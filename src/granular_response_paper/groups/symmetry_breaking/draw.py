@@ -29,24 +29,20 @@ PAPER = 91.0
 
 def draw(datasets: Datasets) -> dict[str, Figure]:
     states, copies = datasets["states"], datasets["copies"]
-    with_states = states.sizes["state"] == 3
-    rows = 2 if with_states else 1
-    figure, axes = style.figure(rows, 2, height=2.5 + 2.2 * (rows - 1))
+    figure, axes = style.figure(2, 2, height=4.7)
     _protocols(axes[0, 0], datasets["runs"], datasets["held"], datasets["equal_rows"])
     _copies(axes[0, 1], copies)
     loads = ["symmetric or not", f"a copy and its mirror image, {_load(float(copies['force']))}"]
     handles: dict[str, Any] = {}
-    if with_states:
-        for panel, state in zip(axes[1], (1, 2), strict=True):
-            handles |= _network(panel, states.isel(state=0), states.isel(state=state))
-            loads.append(_load(float(states["force"][state])))
-        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
+    for panel, state in zip(axes[1], (1, 2), strict=True):
+        handles |= _network(panel, states.isel(state=0), states.isel(state=state))
+        loads.append(_load(float(states["force"][state])))
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
     titles(axes.flat, loads, stem=STEM)
     return {STEM: figure}
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
-    contacts = f" (e), (f) Contacts before and after the loss, ramp of {parameters.protocols[0].ramp_time:g}."
     forces = sorted(set(datasets["runs"]["force"].values.tolist()))
     return of_group(
         "symmetry_breaking",
@@ -54,7 +50,6 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         {STEM: _finding(datasets)},
         p=parameters,
         least=100.0 * ASYMMETRIC,
-        contacts=contacts if datasets["states"].sizes["state"] == 3 else "",
     )
 
 
@@ -91,7 +86,7 @@ def _copies(panel: Axes, copies: xr.Dataset) -> None:
         panel.plot(copies["x"], copies["floor_response"].isel(copy=k), label=name, **look)
     zero(panel)
     panel.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(-REACH, REACH))
-    panel.legend(loc="upper right")
+    panel.legend(loc="lower right")
 
 
 def _finding(datasets: Datasets) -> str:

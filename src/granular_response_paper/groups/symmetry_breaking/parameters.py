@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Description, Index, NonNegative, Positive
-from granular_response_paper.parameters import UNIT_LOAD, EqualRows, Growing, SceneGroup, over, some
+from granular_response_paper.parameters import UNIT_LOAD, EqualRows, Growing, SceneGroup, Some, over
 
 
 class LoadRamp(Description):
     """How a force is applied, and the forces between which the response loses its symmetry."""
 
     ramp_time: NonNegative
-    time_steps: Annotated[tuple[Positive, ...], AfterValidator(some)]
+    time_steps: Some[Positive]
     between: tuple[NonNegative, Positive]
 
     def scene(self, base: Scene, time_step: float) -> Scene:
@@ -51,7 +51,7 @@ class Parameters(SceneGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, "loads", "protocol.ramp_time", "protocol.time_step")] = UNIT_LOAD
     asymmetry: Positive = Field(description="Above which symmetry counts as lost.")
     tolerance: Positive = Field(description="Width of the brackets, in mean disk weights.")
-    protocols: Annotated[tuple[LoadRamp, ...], AfterValidator(some)] = Field(description="Ramps and steps to try.")
+    protocols: Some[LoadRamp] = Field(description="Ramps and steps to try.")
     equal_rows: EqualRowsBracket
     copies: Copies
     held: DisplacedEquilibria

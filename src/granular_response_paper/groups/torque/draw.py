@@ -75,9 +75,6 @@ def _chains(data: xr.Dataset) -> Figure:
         if index == 0:
             force_key(axes, (right - 6.0, top + 1.4), KEY, largest, style.WEIGHT)
         axes.set(**limits)
-    titles(panels.flat, map(_torque, torques.tolist()))
+    turning = [rf"torque ${torque:g}\,{style.TORQUE_UNIT}$ clockwise" for torque in torques[1:]]
+    titles(panels.flat, ["no torque", *turning])
     return figure
-
-
-def _torque(value: float) -> str:
-    return "no torque" if value == 0.0 else rf"torque ${value:g}\,{style.TORQUE_UNIT}$ clockwise"

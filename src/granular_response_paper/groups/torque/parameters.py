@@ -7,23 +7,25 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Finite, NonNegative, Positive, allowed
-from granular_response_paper.parameters import UNIT_LOAD, Checks, Numbers, SceneGroup, growing, over
+from granular_response.scene.base import Finite, NonNegative, Positive
+from granular_response.scene.errors import must
+from granular_response_paper.parameters import UNIT_LOAD, Curve, SceneGroup, over
+
+
+def _from_none(torques: tuple[float, ...]) -> tuple[float, ...]:
+    must(torques[:1] == (0.0,), "must begin with 0, from which changes are counted")
+    return torques
 
 
 class Parameters(SceneGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, "loads")] = UNIT_LOAD
     force: Positive = Field(description="In mean disk weights.")
     angle: Finite = Field(description="Of the force below the horizontal, to the right, in degrees.")
-    torques: Numbers = Field(description="Clockwise, in mean disk weights times the mean radius.")
+    torques: Annotated[tuple[Finite, ...], AfterValidator(_from_none)] = Field(
+        description="Clockwise, in mean disk weights times the mean radius."
+    )
     stress_width: Positive = Field(description="w of the Gaussian, in radii.")
     stress_spacing: Positive = Field(description="Of the grid, in radii.")
-    distances: Annotated[
-        tuple[NonNegative, ...],
-        Field(min_length=2),
-        AfterValidator(growing),
-        allowed("must be two or more growing numbers from 0 on"),
-    ] = Field(description="Edges of the rings around the load in which changes are summed, in radii.")
-
-    def checks(self) -> Checks:
-        yield "torques", self.torques[0] == 0.0, "must be a list of numbers that begins with 0"
+    distances: Curve[NonNegative] = Field(
+        description="Edges of the rings around the load in which changes are summed, in radii."
+    )

@@ -25,7 +25,7 @@ import xarray as xr
 from granular_response import studies
 from granular_response.scene import Scene
 from granular_response.state import FloatArray
-from granular_response.store.variables import RADII, WEIGHTS, variable
+from granular_response.store.variables import WEIGHTS, variable
 from granular_response.studies import Happening, LoadPath, Measures, by_motion
 from granular_response.studies.measures import FIRST_OPENING, REACHES_FLOOR, TWO_PEAKS
 from granular_response.studies.path import NARROW
@@ -33,11 +33,7 @@ from granular_response_extensions.crossover_scaling.parameters import Parameters
 from granular_response_extensions.crossover_scaling.simulate.series import ScaledSlab, packings, power_table, slabs
 from granular_response_extensions.surveyed import measured
 from granular_response_paper.datasets import labelled
-from granular_response_paper.records import axes, column, columns, record, table
-from granular_response_paper.slab_response import Scalars
-
-#: Force over the confinement, from which the answers of contacts to small forces are taken.
-SMALL = 0.1
+from granular_response_paper.records import axes, column, record, table
 
 EVENTS = {
     "first_opening": FIRST_OPENING,
@@ -49,20 +45,12 @@ EVENTS = {
 
 @record
 class SlabEvents:
-    """What a task leaves behind; arrays along its forces."""
+    """What a task leaves behind."""
 
     confinement: float = column(f"mean force of horizontal contacts in the central third at rest {WEIGHTS}")
-    linear_opening: float = column(
-        f"force {WEIGHTS} at which the first contact would open if contacts went on as under a small one"
-    )
     #: nan above for what was not seen
     brackets: FloatArray = column(f"forces {WEIGHTS} between which: {'; '.join(EVENTS.values())}", "event", "bracket")
     by_motion: float = column("steps of the force in which the motion of the disks had a part; nan: not recorded")
-    force: FloatArray = column(f"applied force {WEIGHTS}", "line")
-    dip: FloatArray = column(columns(Scalars)["central_dip"].long_name, "line")
-    depth: FloatArray = column(f"depth of the region of opened contacts below the loaded disk {RADII}", "line")
-    width: FloatArray = column(f"largest width of the region of opened contacts {RADII}", "line")
-    opened: FloatArray = column("contacts of the region", "line")
 
 
 def compute(
@@ -73,7 +61,7 @@ def compute(
     Raises what ``rest_state`` and load paths raise.
     """
     path = LoadPath.of(scene)
-    measures, rest = Measures(path), path.rest.pairs
+    measures = Measures(path)
     confinement = measures.confinement
     asked = [  # in the order of EVENTS
         studies.first_opening(measures),
@@ -90,20 +78,7 @@ def compute(
     states = path.through(forces)
     width = NARROW if scene.contact.friction else tolerance
     brackets = np.array([path.first(forces, what, width) for what in asked])
-    regions = [measures.region(state) for state in states]
-    # exact without friction, where all contacts go on as they are, but for the overlaps' effect on directions
-    small = path.at(SMALL * confinement)
-    change = (small.pairs.normal_force - rest.normal_force) / abs(small.load_factor)
-    falling = measures.near & rest.touching & (change < 0.0)
-    return SlabEvents(
-        confinement,
-        float((rest.normal_force[falling] / -change[falling]).min()),
-        brackets,
-        float(sum(map(by_motion, states))),
-        np.array(forces),
-        np.array(list(map(measures.dip, states))),
-        *np.array([(one.depth, one.width, one.count) for one in regions], float).T,
-    )
+    return SlabEvents(confinement, brackets, float(sum(map(by_motion, states))))
 
 
 def task(asked: Parameters, slab: ScaledSlab) -> partial[SlabEvents]:
@@ -113,7 +88,7 @@ def task(asked: Parameters, slab: ScaledSlab) -> partial[SlabEvents]:
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``slabs`` (slab), what each is, and its events; ``paths`` (slab, step); and ``powers`` (series).
+    """Datasets ``slabs`` (slab), what each is, and its events; and ``powers`` (series).
 
     Raises SweepError if a slab cannot be solved.
     """
@@ -131,9 +106,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "surveyed": variable("slab", [int(slab in stored) for _, slab in found], "1 for slabs of the survey"),
         **axes(bracket=(["low", "high"], "ends of a bracket")),
     }
-    each = xr.Dataset(brackets).assign(data[["linear_opening", "confinement", "by_motion"]].variables)
+    each = xr.Dataset(brackets).assign(data[["confinement", "by_motion"]].variables)
     each = each.assign_coords(kept).assign_coords(coordinates)
     each = each.assign_attrs(visible=parameters.visible, tolerance=parameters.tolerance)
-    paths = data[["force", "dip", "depth", "width", "opened"]].rename_dims(line="step")
-    datasets = {"slabs": each, "paths": paths, "powers": power_table(each, parameters)}
-    return labelled(datasets, parameters.base)
+    return labelled({"slabs": each, "powers": power_table(each, parameters)}, parameters.base)

@@ -52,7 +52,6 @@ class MeanProfiles:
 
     force: FloatArray = column("magnitude of added forces per length and load", "depth", "x", "estimate")
     stress: FloatArray = column("vertical stress of the load, per load", "depth", "x", "estimate")
-    scaled: FloatArray = column("the same times depth, mean over the fitted depths", "t", "estimate")
     direction: FloatArray = column("magnitude of added forces per radian and load", "angle", "estimate")
     strongest: FloatArray = column("direction of the largest of these, in degrees", "estimate")
     chain: FloatArray = column("the same with both sides folded, from 40 to 80 degrees, in degrees", "estimate")
@@ -61,8 +60,6 @@ class MeanProfiles:
     dip: FloatArray = column("lack of the scaled stress at x = 0, per largest", "estimate")
     length: FloatArray = column(f"half the width by each definition {RADII}", "definition", "depth", "estimate")
     power: FloatArray = column("power of depth with which it grows", "definition", "fit", "estimate")
-    slope: FloatArray = column("its growth per depth, straight line", "definition", "estimate")
-    offset: FloatArray = column(f"the straight line at depth 0 {RADII}", "definition", "estimate")
 
 
 def measure(asked: Parameters, case: LoadedPacking, realization: int) -> PackingProfiles:
@@ -97,13 +94,11 @@ def statistics(asked: Parameters, x: FloatArray, height: float, force: FloatArra
     half, side = folded(stress), x[len(x) // 2 :]
     scaled = np.mean([d * np.interp(d * SCALED, side, half[int(d) - 1]) for d in depth[used]] or [SCALED * np.nan], 0)
     length = lengths(side, half).T
-    fit = np.polyfit(depth[used], length[:, used].T, 1) if used.sum() > 1 else np.full((2, 2), np.nan)
     return {
-        "force": force, "stress": stress, "scaled": scaled, "direction": direction,
+        "force": force, "stress": stress, "direction": direction,
         "strongest": ANGLES[np.argmax(direction)], "chain": max(sideways, key=both.__getitem__),
         "contrast": both[LATTICE] / both[BETWEEN], "vertical": both[VERTICAL] / both[BETWEEN],
-        "dip": 1.0 - scaled[0] / scaled.max(), "slope": fit[0], "offset": fit[1],
-        "length": length, "power": powers(depth[used], length[:, used]),
+        "dip": 1.0 - scaled[0] / scaled.max(), "length": length, "power": powers(depth[used], length[:, used]),
     }  # fmt: skip
 
 
@@ -134,7 +129,6 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     points = axes(
         depth=(np.arange(1.0, asked.depths + 1.0), f"depth below the loaded disk {RADII}"),
         x=(x, f"position from the loaded disk {RADII}"), angle=(ANGLES, "angle below the horizontal, in degrees"),
-        t=(SCALED, "distance from the load per depth"),
         definition=(DEFINITIONS, "definition of the width"),
         fit=(FITS, "fitted depths"), estimate=(("mean", "low", "high"), "mean, and 95 % of its bootstrap draws"),
     )  # fmt: skip

@@ -36,8 +36,6 @@ class PackingInfluence:
     difference: FloatArray = column(
         "what a unit force and two halves of it differ by, summed over the floor disks", "row", "separation"
     )
-    height: FloatArray = column(f"mean height of the loads {RADII}", "row")
-    spacing: float = column(f"distance of neighbours in a row {RADII}")
     exponent: FloatArray = column("power of height with which the difference falls", "separation", "fit")
     position: FloatArray = column(f"centre from the middle {RADII}", "disk", "axis")
     radius: FloatArray = column(f"disk radius {RADII}", "disk")
@@ -54,10 +52,8 @@ def compute(scene: Scene, separations: tuple[int, ...], margin: float, fitted: t
     spacing = packing.width / float(np.max(packing.row_count))
     exponent = [decay(height, difference[:, k], spacing * apart, fitted) for k, apart in enumerate(separations)]
     middle = np.array([0.5 * packing.width, 0.0])
-    return PackingInfluence(
-        difference, height, spacing, np.array(exponent), rest.position - middle, packing.radius,
-        np.abs(found).sum(axis=0),
-    )  # fmt: skip
+    total = np.abs(found).sum(axis=0)
+    return PackingInfluence(difference, np.array(exponent), rest.position - middle, packing.radius, total)
 
 
 def differences(
@@ -118,6 +114,5 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
             separation=(parameters.separations, "of the halves from the disk, in places of the row"),
         )
     )
-    saint_venant.attrs.update({"fitted": list(parameters.fitted), "margin": parameters.margin})
     packings = found[of_packings].isel(realization=0).assign_coords(axes(axis=("xz", "component")))
     return labelled({"saint_venant": saint_venant, "packings": packings}, parameters.base)

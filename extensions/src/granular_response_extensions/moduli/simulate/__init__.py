@@ -14,14 +14,12 @@ from __future__ import annotations
 
 from functools import partial
 
-import numpy as np
 import xarray as xr
 
 from granular_response.scene.lattice import TOUCHING_LARGEST
-from granular_response.solvers.strain import FOLLOWING
 from granular_response_extensions.moduli.parameters import Parameters
 from granular_response_extensions.moduli.simulate.loaded import loaded_slabs
-from granular_response_extensions.moduli.simulate.response import PLACES, SOLIDS, PackingModuli, compute, symmetric
+from granular_response_extensions.moduli.simulate.response import PLACES, SOLIDS, PackingModuli, compute
 from granular_response_extensions.surveyed import measured
 from granular_response_paper.datasets import labelled
 from granular_response_paper.parameters import SIZE, material
@@ -69,28 +67,12 @@ def _packings(parameters: Parameters) -> xr.Dataset:
     cases = parameters.cases
     # the largest first: two workers then end together
     outcomes = measured(parameters, "packings", packings, task, PackingModuli, work=lambda p: cases[p[0]].layers[p[1]])
-    found = table(outcomes, "case", "size", "realization").rename(matrices="stiffness")
+    found = table(outcomes, "case", "size", "realization")
     layers = stacked({(c,): case.layers for c, case in enumerate(cases)}, float)
-    surveyed = np.nan_to_num(stacked({(c,): case.further for c, case in enumerate(cases)}, float))
-    matrices = found["stiffness"].values
-    prestress = symmetric(matrices[..., -1, :, :] - found["springs_alone"].values)
-    mirrored = "moduli over k_N, what a solid that mirrors itself has of them"
-    added = "what the forces that contacts bear at rest add to the moduli over k_N, rotations free"
-    derived = variables(
-        layers=("case size", layers, "number of rows"),
-        surveyed=("case size", surveyed, "realizations that are the survey's"),
-        moduli=("case size realization following modulus", symmetric(matrices), mirrored),
-        prestress=("case size realization modulus", prestress, added),
-    )
-    components = ["xx", "zz", "xz"]
     coordinates = axes(
-        following=(FOLLOWING, "how displacements and rotations follow the strain"),
         solid=(SOLIDS, "moduli of the elastic slab"),
-        modulus=("abcd", "modulus of eq. (6)"),
-        stress=(components, "component of the stress"),
-        strain=(components, "component of the strain"),
         smoothing=([f"{parameters.width:g} radii", f"{parameters.wide:.3g} heights"], "w of the Gaussian"),
         place=(PLACES, "distance from the load over the height of the slab"),
     )
     named = labels("case", cases, polydispersity="polydispersity", friction=FRICTION)
-    return found.drop_vars("springs_alone").assign(derived).assign_coords(named | coordinates)
+    return found.assign(variables(layers=("case size", layers, "number of rows"))).assign_coords(named | coordinates)

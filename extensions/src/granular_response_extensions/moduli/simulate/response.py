@@ -8,10 +8,9 @@ from numpy.typing import NDArray
 from granular_response.observe.floor import floor_disks, smoothed_response
 from granular_response.scene import Packing, Scene
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.small_loads import at_limit, influence
+from granular_response.solvers.small_loads import influence
 from granular_response.solvers.strain import FOLLOWING, strained
 from granular_response.state import FloatArray, State
-from granular_response.store.variables import RADII
 from granular_response.sweeps.rest import rest_state
 from granular_response.theory.moduli import Moduli, bulk_and_shear
 from granular_response.theory.slab import Floor, Slab
@@ -24,25 +23,16 @@ PLACES = np.linspace(-1.5, 1.5, 121)
 SOLIDS = (*FOLLOWING, "isotropic")
 
 _PLACES = ("smoothing", "place")
-_PER = "per largest pressure of the slab"
 
 
 @record
 class PackingModuli:
-    height: float = column(f"height of the slab {RADII}")  #: distance of the rows times their number
-    coordination: float = column("contacts per disk that bears something")  #: floor included
-    at_limit: float = column("contacts at the Coulomb limit, taken to stick")
-    matrices: FloatArray = column("stress per strain over k_N, as measured", "following", "stress", "strain")
-    springs_alone: FloatArray = column(
-        "the last of these without the forces that contacts bear at rest", "stress", "strain"
-    )
     response: FloatArray = column("mean floor pressure times height per force", *_PLACES)
     predicted: FloatArray = column(
         "floor pressure times height per force of the elastic slab with these moduli", "solid", *_PLACES
     )  #: nan without one
-    single: FloatArray = column(f"largest difference of one load to the slab {_PER}, mean", "smoothing")
     difference: FloatArray = column(
-        f"largest difference of the mean over loads to the slab {_PER}", "solid", "smoothing"
+        "largest difference of the mean over loads to the slab per largest pressure of the slab", "solid", "smoothing"
     )
 
 
@@ -108,17 +98,12 @@ def compute(scene: Scene, margin: float, width: float, wide: float) -> PackingMo
     """
     problem = Problem.from_scene(scene)
     rest = rest_state(problem)
-    count, period, stiffness = rest.contact_count(), problem.packing.width, problem.stiffness
-    matrices = np.stack([strained(problem, rest, how, margin=margin).moduli for how in FOLLOWING]) / stiffness
-    alone = strained(problem, rest, "free", margin=margin, prestress=False).moduli / stiffness
+    period = problem.packing.width
+    matrices = np.stack([strained(problem, rest, how, margin=margin).moduli for how in FOLLOWING]) / problem.stiffness
     height = slab_height(rest, problem.packing)
     widths = np.array([width, wide * height])
     floor: Floor = "rough" if problem.wall_friction else "smooth"
-    each, solids = responses(problem, rest, height, widths), symmetric(matrices)
-    mean = each.mean(axis=0)
+    mean, solids = responses(problem, rest, height, widths).mean(axis=0), symmetric(matrices)
     solids = np.stack([*solids, nearest_isotropic(solids[-1])])
     predicted = np.stack([prediction(solid, height, period, floor, widths) for solid in solids])
-    return PackingModuli(
-        height, float(count[count >= 2].mean()), at_limit(problem, rest), matrices, alone, mean, predicted,
-        apart(each, predicted[SOLIDS.index("free")]).mean(axis=0), apart(mean, predicted),
-    )  # fmt: skip
+    return PackingModuli(mean, predicted, apart(mean, predicted))

@@ -33,8 +33,8 @@ from granular_response_paper.ensembles.realizations import ensemble_scene
 from granular_response_paper.records import axes, column, record, table
 from granular_response_paper.tasks import computed
 
-#: Edges of the bins of forces over their mean, of mobilization, and number of bins of directions.
-FORCES, MOBILIZATION, ANGLES = np.linspace(0.0, 6.0, 25), np.linspace(0.0, 1.0, 21), 36
+#: Edges of the bins of forces over their mean.
+FORCES = np.linspace(0.0, 6.0, 25)
 
 
 @record
@@ -42,33 +42,21 @@ class NetworkStatistics:
     """Of one state; nan for one that is not found."""
 
     force_density: FloatArray = column("probability density of normal forces over their local mean", "force")
-    force_mean: float = column("mean of normal forces over their local mean")
     tail_variation: float = column(
         "coefficient of variation of the excess over the mean of normal forces above it; 1 for an exponential"
     )
-    mobilization_density: FloatArray = column(
-        "probability density of tangential forces over friction times normal force", "mobilization"
-    )
-    angle_density: FloatArray = column("distribution of the directions of contacts, per radian", "angle")
     coordination_number: float = column("contacts per disk without rattlers, those with walls twice")
-    rattlers: float = column("part of the disks that are rattlers")
-    mobilized: float = column("part of the contacts without rattlers that are fully mobilized")
     hyperstaticity: float = column("force components beyond the equations of balance, per equation")
-    cut_imbalance: float = column(
-        "largest difference of the force through a horizontal cut and the weight and load above, per weight and load"
-    )
 
 
-def measure(path: LoadPath, state: State, load: float, asked: Parameters) -> NetworkStatistics:
-    """Statistics of a state under the vertical ``load`` (mean disk weights)."""
+def measure(path: LoadPath, state: State, asked: Parameters) -> NetworkStatistics:
+    """Statistics of a state of a path."""
     friction, pairs, walls, width = path.scene.contact.friction, state.pairs, state.walls, path.problem.packing.width
     height, highest = network.contact_centre(state)[:, 1], state.position[:, 1].max() - VERTICAL_MARGIN
     inside = network.interior_contacts(state, width, wall_margin(width)) & pairs.touching
     inside &= (height > VERTICAL_MARGIN) & (height < highest)
     forces = relative(pairs.normal_force[inside], height[inside], asked.band)
     excess = forces[forces > 1.0] - 1.0
-    limits = np.maximum(friction * pairs.normal_force[inside], np.finfo(float).tiny)
-    mobilization = density(np.minimum(np.abs(pairs.tangential_force[inside]) / limits, 1.0), MOBILIZATION)
     loose = network.rattlers(state)
     live = pairs.touching & ~loose[pairs.first] & ~loose[pairs.second]
     live_walls = walls.touching & ~loose[walls.first]
@@ -77,16 +65,11 @@ def measure(path: LoadPath, state: State, load: float, asked: Parameters) -> Net
     limited += np.count_nonzero(walls.near_limit(path.scene.wall.friction, asked.margin) & live_walls)
     components, equations = (2 * contacts - limited, 3 * bearing) if friction else (contacts, 2 * bearing)
     return NetworkStatistics(
-        force_density=density(forces, FORCES),
-        force_mean=float(forces.mean()),
+        # of all forces those beyond the edges are a part
+        force_density=np.histogram(forces, FORCES)[0] / (len(forces) * np.diff(FORCES)),
         tail_variation=float(excess.std() / excess.mean()),
-        mobilization_density=mobilization if friction else np.full_like(mobilization, np.nan),
-        angle_density=network.contact_angle_histogram(state, ANGLES, inside)[1],
         coordination_number=2.0 * contacts / bearing,
-        rattlers=float(loose.mean()),
-        mobilized=limited / contacts,
         hyperstaticity=(components - equations) / equations,
-        cut_imbalance=cut_imbalance(path, state, load),
     )
 
 
@@ -96,37 +79,15 @@ def relative(force: FloatArray, height: FloatArray, band: float) -> FloatArray:
     return force / (np.bincount(number, force) / np.maximum(np.bincount(number), 1))[number]
 
 
-def density(values: FloatArray, edges: FloatArray) -> FloatArray:
-    """(bins,) probability per unit of values, of all of which those beyond the edges are a part."""
-    return np.histogram(values, edges)[0] / (len(values) * np.diff(edges))
-
-
-def cut_imbalance(path: LoadPath, state: State, load: float) -> float:
-    """Largest difference, over cuts between the disks, of the force through a cut and what rests on it, relative.
-
-    A cut separates the disks whose centres are above it. On them act contacts with disks below, floor and walls.
-    """
-    z, pairs, upward, at_wall = state.position[:, 1], state.pairs, state.pair_force()[:, 1], state.wall_force()[:, 1]
-    weight, worst = path.problem.packing.radius**2, 0.0
-    weight = weight / weight.mean()
-    for height in np.linspace(0.0, z.max(), 20, endpoint=False):
-        above = z > height
-        first, second = above[pairs.first], above[pairs.second]
-        borne = upward[first & ~second].sum() - upward[~first & second].sum() + at_wall[above[state.walls.first]].sum()
-        resting = weight[above].sum() + load * above[path.problem.load_disk[0]]
-        worst = max(worst, abs(borne - resting) / resting)
-    return float(worst)
-
-
 def compute(scene: Scene, asked: Parameters) -> list[NetworkStatistics]:
     """One packing at rest and, if it bears it, under the force; ``scene`` has one load, of unit force."""
     path = LoadPath.of(scene)
     disk = path.problem.load_disk[0]
     path.lowest = float(path.rest.position[disk, 1]) - asked.collapse_depth
-    states = [(path.rest, 0.0)]
+    states = [path.rest]
     with contextlib.suppress(SolveError):
-        states.append((path.at(asked.force), asked.force))
-    return [measure(path, state, load, asked) for state, load in states if state.position[disk, 1] >= path.lowest]
+        states.append(path.at(asked.force))
+    return [measure(path, state, asked) for state in states if state.position[disk, 1] >= path.lowest]
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -137,15 +98,12 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     found = {(*at, s): one for at, states in computed(tasks, "packings").items() for s, one in enumerate(states)}
     if not any(state for *_, state in found):
         raise SceneError(f"force = {parameters.force:g}: no packing bears it, must be smaller")
-    force, mobilization = (0.5 * (edges[1:] + edges[:-1]) for edges in (FORCES, MOBILIZATION))
     data = table(found, "polydispersity", "friction", "realization", "state").assign_coords(
         axes(
             polydispersity=(parameters.polydispersities, "delta: spread of the radii"),
             friction=(parameters.frictions, "coefficient of friction, floor and walls included"),
             state=(("rest", "loaded"), "without load, and with it"),
-            force=(force, "normal force over its local mean, middle of the bin"),
-            mobilization=(mobilization, "tangential force per limit, middle of the bin"),
-            angle=(np.pi / ANGLES * np.arange(ANGLES), "angle of a contact with the horizontal, in radians"),
+            force=(0.5 * (FORCES[1:] + FORCES[:-1]), "normal force over its local mean, middle of the bin"),
         )
     )
     return labelled({"statistics": data.assign_attrs(load=parameters.force, band=parameters.band)}, scenes[0, 0, 0])

@@ -68,7 +68,6 @@ AGAINST = ("linear_range", "first_opening", "crossover")
 @dataclass(frozen=True)
 class PreparedSlab:
     prepared: Prepared
-    measured: xr.Dataset
     events: list[slab.Event]
     mobilized: Mobilized
 
@@ -89,7 +88,7 @@ def compute(
     mobilized = Mobilized(packing["polydispersity"], packing["realization"], *taps[:2], part, against)
     gravity, contact = scene.preparation, scene.contact
     given = gravity.gravity, gravity.ramp_time, contact.damping_ratio, contact.friction, scene.wall.friction
-    return PreparedSlab(Prepared(way, *given), slab.measured(measures, states), events, mobilized)
+    return PreparedSlab(Prepared(way, *given), events, mobilized)
 
 
 def tasks(parameters: Parameters) -> dict[tuple[Any, ...], partial[PreparedSlab]]:
@@ -109,20 +108,16 @@ def tasks(parameters: Parameters) -> dict[tuple[Any, ...], partial[PreparedSlab]
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``response`` (case, force), nan above the last force, ``events``, and, of all slabs, ``mobilized``."""
-    asked, forces = tasks(parameters), parameters.forces
+    """Datasets ``events``, and, of all slabs, ``mobilized``."""
+    asked = tasks(parameters)
     # the longest ramps of gravity take longest
     found = computed(asked, "prepared slabs", work=lambda place: asked[place].args[1].preparation.ramp_time)
     every = [found[place] for place in sorted(found)]
     cases = [one for one in every if not one.mobilized.polydispersity and not one.mobilized.taps]
-    parts = [((k, slice(one.measured.sizes["state"])), one.measured) for k, one in enumerate(cases)]
-    response = slab.measured_dataset(("case", "force"), parts, (len(cases), len(forces)))
-    response = response.assign_coords(axes(force=(forces, f"applied force {WEIGHTS}")))
     events = slab.events_dataset([event for one in cases for event in one.events])
     names = axes(name=(AGAINST, "event"), margin=(MARGINS, "fraction below the Coulomb limit"))
     mobilized = table([one.mobilized for one in every], "case")
     datasets = {
-        "response": response.assign_coords(_prepared(cases, "case")),
         "events": events.assign(_prepared([one for one in cases for _ in one.events], "event")),
         "mobilized": mobilized.assign(_prepared(every, "case")).assign_coords(names),
     }

@@ -2,8 +2,8 @@
 
 ``thresholds`` has the least friction that holds a pile on a flat floor, whose sides nothing supports, and that below
 which no forces balance whatever the preparation. ``piles`` are those of the paper's friction. ``slabs`` has the
-response of a slab and its couple stress, ``torques`` how couples and antisymmetric stress share a torque on the loaded
-disk, line by line between the rows.
+response of a slab and how a Cosserat solid fits its couple stress, ``torques`` the same of a torque on the loaded disk,
+whose couples go down line by line between the rows.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     balances = {at: partial(balanced, size, mu, most, within) for at, (size, mu) in places(p.layers, rolling)}
     own, kinds = pile.contact.friction, (None, min(rolling), max(rolling))
     cases = {at: partial(settle, standing(pile, size, own, mu)) for at, (size, mu) in places(p.layers, kinds)}
-    slabs = {place: partial(respond, p, *one) for place, one in places(p.slabs, p.slab_rolling_frictions)}
+    slabs = {place: partial(respond, p, *one) for place, one in places(p.slab_frictions, p.slab_rolling_frictions)}
     held = table(computed(tries, "tries", work=lambda place: place[0]), "layers", "rolling_friction", "ramp")
     least = table(computed(balances, "balances", work=lambda place: place[0]), "layers", "rolling_friction")
     settled, found = computed(cases, "piles"), computed(slabs, "slabs")
@@ -115,12 +115,11 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     }
     sides = "with side walls; without; without, and with the largest rolling friction"
     of_slabs = {
-        "friction": ([slab.friction for slab in p.slabs], "coefficient of friction between disks"),
+        "friction": (p.slab_frictions, "coefficient of friction between disks"),
         "rolling_friction": (p.slab_rolling_frictions, "coefficient of rolling friction between disks"),
     }
     torque = p.torques, "torque in mean disk weights times mean radius, counter-clockwise"
-    z = np.linspace(0.0, 1.0, p.heights), "height above the floor per that of the loaded disk"
-    loaded = axes(**of_slabs, load=(p.shown_forces, f"force {WEIGHTS}"), z=z)
+    loaded = axes(**of_slabs, load=(p.slab_forces, f"force {WEIGHTS}"))
     of_pile = {
         "thresholds": held.merge(least).assign_coords(axes(**of_piles)),
         "piles": table_along(settled, **sizes, case=(CASES, sides)),

@@ -37,17 +37,15 @@ class Profile:
 
     contact_x: FloatArray = column(f"position of the contact from the loaded disk {RADII}", "point")
     magnitude: FloatArray = column(f"magnitude of the added contact force {WEIGHTS}", "point")
-    strongest_x: float = column(f"distance of the strongest contact from x = 0 {RADII}")
     axis_magnitude: float = column("largest magnitude below the load per largest at that depth")
 
     @classmethod
     def of(cls, where: FloatArray, size: FloatArray) -> Profile:
         """Of the contacts at ``where`` from the loaded disk; nan where the slab is not so deep."""
         if not len(where):
-            return cls(where, size, float("nan"), float("nan"))
-        top = size >= size.max() * (1.0 - 1e-3)  # both of a mirror pair
+            return cls(where, size, float("nan"))
         on_axis = size[np.abs(where) <= ON_AXIS].max(initial=0.0)
-        return cls(where, size, np.abs(where[top]).mean(), on_axis / size.max())
+        return cls(where, size, on_axis / size.max())
 
 
 def load(scene: Scene, force: float, profile_force: float | None) -> tuple[State, ...]:

@@ -8,7 +8,7 @@ the disks (``stiffness``). Each slab is settled once and all its forces are reac
 What sets the size of a slab apart from the stiffness of its disks is the overlap that gravity makes at its
 floor, so deep slabs are compared for the paper's stiffness and for much stiffer disks. Wide, deep or soft slabs
 have no symmetric rest state: the symmetric equilibrium is a saddle, and the slab leans by thousandths to tenths
-of a radius to one side or, as likely, to the other (``rest_asymmetry``). Gravity pushes very soft disks out of
+of a radius to one side or, as likely, to the other. Gravity pushes very soft disks out of
 their rows (``new_neighbours``); the rest state then depends on the fall and is found by dynamics.
 """
 
@@ -42,9 +42,6 @@ DIPS = (0.0, 0.005, 0.01, 0.02)
 #: What was found, by slab.
 Found = Mapping[OrderedSlab, SlabResponse]
 
-#: What is kept of the open region at close forces.
-REGION = ("teardrop_depth", "teardrop_width", "reaches_floor", "layers", "normal_stiffness")
-
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``response``, ``rest``, ``states``, ``events``, ``sizes``, ``regions``, ``widths`` and ``stiffness``."""
@@ -63,7 +60,9 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "states": first.pictures["states"].sel(force=list(forces)),
         "events": events_dataset(first.events[: len(EVENTS)]),
         "sizes": along("slab", outcomes, *asked["sizes"]),
-        "regions": along("slab", outcomes, *asked["regions"])[list(REGION)],
+        "regions": along("slab", outcomes, *asked["regions"])[
+            ["teardrop_depth", "teardrop_width", "reaches_floor", "layers", "normal_stiffness"]
+        ],
         "widths": along("slab", outcomes, *asked["widths"]),
         "stiffness": stiffnesses(outcomes, *asked["stiffness"]),
     }

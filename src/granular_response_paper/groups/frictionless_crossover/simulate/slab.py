@@ -13,7 +13,6 @@ from granular_response.solvers.equilibrium import Rearranged
 from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
 from granular_response.store.result import common_candidates
-from granular_response.store.variables import RADII
 from granular_response.studies import Happening, LoadPath, Measures
 from granular_response.studies.measures import TWO_PEAKS
 from granular_response.sweeps.rest import rest_state
@@ -46,9 +45,6 @@ class OrderedSlab:
 class SlabResponse:
     """What a task leaves behind."""
 
-    rest_asymmetry: float = column(
-        f"largest horizontal distance of a disk at rest from its place in a symmetric state {RADII}"
-    )
     new_neighbours: int = column("pairs touching at rest that are no lattice neighbours")
     open_at_rest: int = column("horizontal contacts of the lattice in the central third that are open at rest")
     measured: xr.Dataset  #: along ``force``
@@ -79,7 +75,6 @@ def solve(
     asked |= {f"dip {dip:g}": exceeds(dip) for dip in dips}
     level = (network.lattice_direction(rest) == network.HORIZONTAL) & measures.near
     return SlabResponse(
-        rest_asymmetry(packing.position, rest, packing.width),
         new_neighbours(packing.position, rest),
         int(np.count_nonzero(level & ~rest.pairs.touching)),
         slab_response.measured(measures, states).rename(state="force").assign_coords(force=list(forces)),
@@ -94,17 +89,6 @@ def settle(scene: Scene) -> State:
         return rest_state(Problem.from_scene(scene))
     except Rearranged:
         return rest_state(Problem.from_scene(scene.updated({"protocol.method": "dynamics"})))
-
-
-def rest_asymmetry(position: FloatArray, rest: State, width: float) -> float:
-    """Largest horizontal distance of a disk from where the rest state is symmetric, in radii.
-
-    The symmetric part of the displacements from the undeformed ``position`` (n, 2) is their mean with their mirror
-    image in ``x = width / 2``.
-    """
-    mirror = network.mirror_disks(position, 0.5 * width)
-    shift = rest.position[:, 0] - position[:, 0]
-    return float(0.5 * np.abs(shift + shift[mirror]).max())
 
 
 def new_neighbours(position: FloatArray, rest: State) -> int:

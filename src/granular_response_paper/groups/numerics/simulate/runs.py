@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,37 +63,20 @@ def stopped(scene: Scene, stop_energies: Sequence[float]) -> list[Errors]:
 
 @record
 class Readings:
-    """What is read of dynamics that goes on under a constant load."""
+    """What is read of a run that goes on after its stop."""
 
     mean_acceleration: FloatArray = column(ACCELERATION, "reading")
-    kinetic_energy: FloatArray = column("kinetic energy per disk", "reading")
-
-
-def go_on(problem: Problem, state: State, load: float, steps: int, every: int) -> Readings:
-    """From ``state``, at ``every`` so many steps."""
-    dynamics = Dynamics(problem, state, problem.scene.protocol.integrator, resolve_time_step(problem))
-    dynamics.set_ramps(load=(load, load, 0.0))
-    found = []
-    for _ in range(steps // every):
-        dynamics.advance(every)
-        found.append((dynamics.mean_acceleration(), dynamics.kinetic_energy()))
-    return Readings(*np.array(found).T)
-
-
-def restart(scene: Scene, force: float, steps: int, read_every: int) -> Readings:
-    """A statically finished frictionless state under ``force``, put back into the dynamics from rest."""
-    path = LoadPath.of(scene)
-    state = path.at(force) if force else path.rest
-    still = replace(
-        state, velocity=np.zeros_like(state.velocity), angular_velocity=np.zeros_like(state.angular_velocity)
-    )
-    return go_on(path.problem, still, force, steps, read_every)
 
 
 def swing(scene: Scene, steps: int, read_every: int) -> Readings:
-    """What a run does that goes on after its stop."""
     problem, _, loaded = rest_and_loaded(scene)
-    return go_on(problem, loaded, 1.0, steps, read_every)
+    dynamics = Dynamics(problem, loaded, scene.protocol.integrator, resolve_time_step(problem))
+    dynamics.set_ramps(load=(1.0, 1.0, 0.0))
+    found = []
+    for _ in range(steps // read_every):
+        dynamics.advance(read_every)
+        found.append(dynamics.mean_acceleration())
+    return Readings(np.array(found))
 
 
 @record

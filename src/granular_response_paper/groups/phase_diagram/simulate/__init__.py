@@ -53,9 +53,6 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     crossings, single = ({k: one[0] for k, one in done.items()}, {k: one[1] for k, one in done.items()})
     few = {(w, k): dips for (w, _), one in done.items() for k, dips in one[2].items()}
     found = _datasets(source, asked, crossings, single)
-    collapsed = (source["outcome"].values == COLLAPSED).any(axis=-1).sum(axis=-1).astype(np.int32)
-    text = "packings that collapse along their load paths"
-    found["medians"] = found["medians"].assign(variables(collapsed=("case", collapsed, text)))
     found["packings"] = packings
     found["starts"] = side_by_side(compared, few, found["shapes"], max(asked.numbers))
     small = survey.read(Path(asked.survey), [asked.linear_range])["ensembles"]
@@ -69,7 +66,7 @@ def of_case(
     """The crossover of an ensemble, its realizations one by one, and the dips of few of them at some ``steps``."""
     drawn = {"draws": asked.draws, "seed": asked.seed}
     symmetric = replace(ensemble, response=folded(ensemble.response))
-    crossing = crossover.cross(symmetric, numbers=asked.numbers, others=asked.other_tolerances, **drawn)
+    crossing = crossover.cross(symmetric, number=min(asked.numbers), others=asked.other_tolerances, **drawn)
     few = {k: dips_of_few(symmetric, step, asked) for k, step in steps.items()}
     return crossing, crossover.singles(ensemble, **drawn), few
 
@@ -109,13 +106,12 @@ def _datasets(
         data["draws"] = data["draws"].astype(np.float32)
     for name in ("shape", "asymmetry", "difference"):
         of_each[name] = of_each[name].astype(np.float32)
-    of_each["kind"] = of_each["kind"].copy(data=np.nan_to_num(of_each["kind"].values, nan=-1).astype(np.int8))
 
     crossovers = of_mean[["force", "kind", "interval", "draws", "limits", "seen", "seen_interval"]]
     force = variables(applied_force=("case step", source["force"].values, APPLIED))
     spread = of_each[["spread", "spread_interval", "largest_step", "largest_step_interval"]].variables
-    shapes = xr.Dataset(force | dict(of_mean[["shape", "shape_interval", "two_peaked_means"]].variables) | dict(spread))
-    realizations = of_each[["shape", "asymmetry", "difference", "crossover", "kind", "median", "median_interval"]]
+    shapes = xr.Dataset(force | dict(of_mean[["shape", "shape_interval"]].variables) | dict(spread))
+    realizations = of_each[["shape", "asymmetry", "difference", "median"]]
     gone = np.where(source["outcome"].values == COLLAPSED, source["force"].values[:, None], np.nan)
     collapse = np.fmin.reduce(gone, axis=-1)
     collapsed = f"force under which the packing collapsed {WEIGHTS}; nan for none"
@@ -129,7 +125,7 @@ def _datasets(
     found = {
         "crossovers": (crossovers.assign_attrs(tolerance), {}),
         "definitions": (by_tolerance.assign(limits=crossovers["limits"].variable), tolerances),
-        "shapes": (shapes.assign_attrs(tolerance), axes(number=(parameters.numbers, "realizations in a mean"))),
+        "shapes": (shapes.assign_attrs(tolerance), {}),
         "realizations": (realizations.assign(variables(collapse_force=("case realization", collapse, collapsed))), {}),
         "medians": (medians.assign(limits=crossovers["limits"].variable).assign_attrs(tolerance), {}),
     }

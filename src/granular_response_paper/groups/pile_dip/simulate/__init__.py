@@ -82,9 +82,7 @@ class Pile:
     wall_force: FloatArray = column(f"force of the wall on its disk {WEIGHTS}", "wall_contact", "axis")
     floor_force: FloatArray = column(f"vertical floor force {WEIGHTS}", "floor_disk")
     floor_dip: float = column(f"how far the floor force under the apex {DIP}")
-    floor_asymmetry: float = column(f"largest difference of a floor force from its mirror image {WEIGHTS}")
     central_open_contacts: float = column("open contacts in the connected region on the axis of the pile")
-    central_horizontal: float = column("how many of them are horizontal on the lattice")
     central_height: float = column(f"height of the highest contact of that region above the floor {RADII}")
     central_width: float = column(f"largest extent of one row of it {RADII}")
 
@@ -97,7 +95,6 @@ def _piles(packing: Packing, states: list[State]) -> xr.Dataset:
         floor, opened, centre = floor_force(state, bottom), ~state.pairs.touching, network.contact_centre(state)
         apex = state.position[np.argmax(state.position[:, 1])]
         region = teardrop.open_region(state, opened, apex, start=np.abs(centre[:, 0] - 0.5 * packing.width) < 2.0)
-        horizontal = packing.row[state.pairs.first] == packing.row[state.pairs.second]
         pile = Pile(
             position=state.position,
             contact_force=state.pair_force(),
@@ -105,21 +102,17 @@ def _piles(packing: Packing, states: list[State]) -> xr.Dataset:
             wall_force=state.wall_force(),
             floor_force=floor,
             floor_dip=peaks.central_dip(x, floor),
-            floor_asymmetry=np.abs(floor - floor[::-1]).max(),
             central_open_contacts=region.count,
-            central_horizontal=int(np.count_nonzero(region.contacts & horizontal)),
             central_height=centre[region.contacts, 1].max(initial=0.0),
             central_width=region.width,
         )
         found.append(pile)
-    image = np.abs(found[0].floor_force - found[1].floor_force[::-1]).max()
     of_packing = variables(
         radius=("disk", packing.radius, f"disk radius {RADII}"),
         contact_disk=("contact", states[0].pairs.first, "disk that the contact force acts on"),
         contact_partner=("contact", states[0].pairs.second, "other disk"),
         wall_disk=("wall_contact", states[0].walls.first, "disk that the wall's force acts on"),
         wall_index=("wall_contact", states[0].walls.second, "wall: 0 floor, 1 left, 2 right"),
-        image_difference=("", image, f"largest difference of the two minima's floor forces after mirroring {WEIGHTS}"),
         width=("", packing.width, f"distance of the side walls {RADII}"),
     )
     coordinates = axes(case=CASES, axis=("xz", "axis labels"), floor_disk=(bottom, "index of the floor disk"))
@@ -153,12 +146,11 @@ def _stress(packing: Packing, states: list[State], asked: Parameters) -> xr.Data
         return np.stack([coarse_grained_stress(contact_forces(state), points, width)[..., 1, 1] for state in states])
 
     line = vertical(np.array([height]))[:, 0]
-    dips = [peaks.central_dip(x, profile) for profile in (*line, line[:2].mean(axis=0))]
+    dips = [peaks.central_dip(x, profile) for profile in line]
     data = variables(
         stress_zz=("case z x", vertical(z), "vertical stress in weights per mean radius"),
         profile_zz=("case x", line, "vertical stress at the height of the dip, in weights per mean radius"),
-        dip=("case", dips[:-1], f"how far the vertical stress on the axis {DIP}"),
-        dip_of_mean=("", dips[-1], "the same of the mean of the two frictionless minima"),
+        dip=("case", dips, f"how far the vertical stress on the axis {DIP}"),
         dip_height=("", height, f"height above the floor of those profiles {RADII}"),
         stress_width=("", width, f"width w of the coarse-graining Gaussian {RADII}"),
     )

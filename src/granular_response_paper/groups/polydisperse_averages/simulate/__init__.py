@@ -63,7 +63,10 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     tasks: dict[tuple[str, int, int], partial[Realization]] = {
         ("ensembles", *place): ensemble_task(asked, cases[place[0]], place[1]) for place in datasets.places(cases)
     }
-    shown = "ensembles", asked.pictured[0], picture.realization
+    material = picture.polydispersity, picture.friction
+    alike = [c for c, one in enumerate(cases) if (one.polydispersity, one.friction) == material]
+    place = [c for c in alike if picture.force in cases[c].forces][0]  # noqa: RUF015, what is missing is no traceback
+    shown = "ensembles", place, picture.realization
     tasks[shown] = partial(tasks[shown], keep=(picture.force,))
     grid = [(delta, mu) for delta in linear.polydispersities for mu in linear.frictions]
     for k, (delta, mu) in enumerate(grid):
@@ -77,7 +80,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     x = np.arange(-half, half + 1, dtype=float) * asked.spacing
     made = {
         "ensembles": ensembles,
-        "averages": _averages(ensembles, x, asked.widths, asked.few),
+        "averages": _averages(ensembles, x, asked.widths),
         "individual": _individual(ensembles, asked.individual, x),
         "packings": datasets.packings_dataset(cases, found),
         "linear_range": _linear_range(linear, grid, [done["linear range", k, 0] for k in range(len(grid))]),
@@ -86,14 +89,11 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     return labelled(made, next(iter(tasks.values())).args[0])
 
 
-def _averages(ensembles: xr.Dataset, x: FloatArray, widths: Sequence[float], few: int) -> xr.Dataset:
-    """Fig. 21: mean smoothed responses with standard errors, and means of the first ``few`` realizations at rest.
-
-    A standard error needs two realizations, and is nan below.
-    """
+def _averages(ensembles: xr.Dataset, x: FloatArray, widths: Sequence[float]) -> xr.Dataset:
+    """Fig. 21: mean smoothed responses; a standard error needs two realizations, and is nan below."""
     cases, steps = ensembles.sizes["case"], ensembles.sizes["step"]
     mean = np.full((len(widths), cases, steps, len(x)), np.nan)
-    error, mean_few = mean.copy(), mean.copy()
+    error = mean.copy()
     count = np.zeros((cases, steps), np.int32)
     for w, width in enumerate(widths):
         for c in range(cases):
@@ -102,21 +102,20 @@ def _averages(ensembles: xr.Dataset, x: FloatArray, widths: Sequence[float], few
                 rows = at_rest(responses, s)
                 count[c, s] = len(rows)
                 if len(rows):
-                    mean[w, c, s], mean_few[w, c, s] = rows.mean(axis=0), rows[:few].mean(axis=0)
+                    mean[w, c, s] = rows.mean(axis=0)
                 if len(rows) > 1:
                     error[w, c, s] = rows.std(axis=0, ddof=1) / np.sqrt(len(rows))
     dims, per = "width case step x", "in 1/mean radius: vertical stress on the floor per applied force"
     data = variables(
         mean=(dims, mean, f"ensemble mean of the smoothed response {per}"),
         standard_error=(dims, error, f"standard error of the mean {per}"),
-        mean_of_few=(dims, mean_few, f"mean over the first {few} realizations at rest {per}"),
         count_at_rest=("case step", count, "realizations that are at rest"),
     )
     coordinates = axes(
         width=(widths, f"width w of the smoothing Gaussian {RADII}"), x=(x, f"distance from the loaded disk {RADII}")
     )
     kept = {name: ensembles[name].variable for name in (*OF_CASE, "realizations")}
-    return xr.Dataset(data | {"force": ensembles["force"].variable}, coordinates | kept, {"few": few})
+    return xr.Dataset(data | {"force": ensembles["force"].variable}, coordinates | kept)
 
 
 def _individual(ensembles: xr.Dataset, shown: Individual, x: FloatArray) -> xr.Dataset:

@@ -53,7 +53,6 @@ class VariantResponse:
     kinetic_energy: float = column(
         "kinetic energy per disk where the dynamics stopped, in mean weight times mean radius"
     )
-    force_residual: float = column("largest unbalanced force on a disk in mean disk weights")
     x: FloatArray = column("lattice position from the loaded disk in mean radii", "floor_disk")
 
 
@@ -80,7 +79,6 @@ def compute(scene: Scene, variant: Variant, steps: int) -> VariantResponse:
         floor_response=floor_response(rest, loaded, bottom, total),
         x=problem.packing.position[bottom, 0] - problem.packing.position[problem.load_disk[0], 0],
         kinetic_energy=float(energy),
-        force_residual=certificate.force_residual if certificate else np.nan,
     )
 
 

@@ -4,9 +4,9 @@ A lattice of equal bonds is isotropic in the long run, so the floor response of 
 approach the elastic solution of its own moduli and floor. ``slabs`` holds both for packings of growing depth and their
 distance; the distance to the solution with the other kind of floor says how much a distance means.
 
-What keeps a packing from it is stored too: contacts that are open at rest (beside smooth walls gravity opens some,
-in a part of the slab that does not shrink with depth; a sudden fall on a rough floor can open a row in the middle)
-and contacts that slide (gravity that grows slowly leaves some at the Coulomb limit).
+What keeps a packing from it: contacts that are open at rest (beside smooth walls gravity opens some, in a part of the
+slab that does not shrink with depth; a sudden fall on a rough floor can open a row in the middle), and contacts that
+slide (gravity that grows slowly leaves some at the Coulomb limit).
 """
 
 from __future__ import annotations
@@ -16,9 +16,8 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from granular_response.observe import network
 from granular_response.scene import Scene
-from granular_response.state import SLIDING, FloatArray, State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import certificates_dataset
 from granular_response.store.variables import RADII, variable
 from granular_response.studies import LoadPath, Measures
@@ -44,26 +43,16 @@ class Comparison:
     x: FloatArray = column(f"position from the loaded disk {RADII}", "floor_disk")
     distance: float = column(f"packing and elastic slab: {_COMPARED}")
     distance_other_floor: float = column(f"packing and elastic slab with the other floor: {_COMPARED}")
-    nonlinearity: float = column("largest change from half the force, per largest response")
-    response_sum: float = column("sum of the floor response")
-    open_at_rest: int = column("neighbours that do not touch at rest")
-    opened: int = column("contacts that the force opens")
-    sliding: int = column("contacts of disks that slide under the force")
 
 
 def compute(base: Scene, case: DepthSeries, layers: int, force: float) -> tuple[Comparison, State]:
-    """The response to the force and to half of it beside that of elastic slabs, and the state under the force.
+    """The response to the force beside that of elastic slabs, and the state under the force.
 
     ``base`` has one load of unit force. Raises what the solvers raise.
     """
     path = LoadPath.of(_scene(case, layers, base))
-    half, full = path.through([0.5 * force, force])
-    measures = Measures(path)
-    response, at_half, x = measures.response(full), measures.response(half), measures.x
-    pairs, position = path.rest.pairs, path.problem.packing.position
-    # all candidates but the pairs of neighbours on the lattice are farther apart
-    between = np.linalg.norm(position[pairs.first] - position[pairs.second], axis=1)
-    neighbours = between < 1.01 * measures.lattice_constant
+    (_, full), measures = path.through([0.5 * force, force]), Measures(path)
+    response, x = measures.response(full), measures.x
     ratio = base.contact.stiffness_ratio
     solid = lattice.moduli(Springs.uniform(1.0, ratio if case.friction > 0.0 else 0.0), "free")
     elastic = {
@@ -77,11 +66,6 @@ def compute(base: Scene, case: DepthSeries, layers: int, force: float) -> tuple[
         x=x,
         distance=apart[case.floor],
         distance_other_floor=apart["rough" if case.floor == "smooth" else "smooth"],
-        nonlinearity=float(np.abs(response - at_half).max() / response.max()),
-        response_sum=float(response.sum()),
-        open_at_rest=int(np.count_nonzero(neighbours & ~pairs.touching)),
-        opened=int(np.count_nonzero(network.opened(pairs, full.pairs))),
-        sliding=int(np.count_nonzero(full.pairs.status == SLIDING)),
     )
     return slab, full
 

@@ -11,7 +11,7 @@ Forces are in mean disk weights, lengths in mean radii, times in sqrt(R/g).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -93,13 +93,10 @@ def narrowed(
     low, high = protocol.between
     if first is not None and not asymmetric(first[0]) and asymmetric(first[1]):
         low, high = first
-    try:
-        low, high = studies.bisect_event(asymmetric, low, high, asked.tolerance).ends
-    except studies.EventNotBracketed:
-        low, high = (0.0, low) if asymmetric(low) else (high, float("nan"))
+    ends = slab.between(asymmetric, low, high, asked.tolerance)
     how = f"dynamics with a ramp of {protocol.ramp_time:g} and a time step of {time_step:g}"
     text = f"{how}: the asymmetry of the floor response exceeds {above:g}"
-    return slab.Event("loss_of_symmetry", measures.friction, low, high, text)
+    return slab.Event("loss_of_symmetry", measures.friction, *ends, text)
 
 
 def equal_rows(asked: Parameters) -> slab.Event:
@@ -122,36 +119,23 @@ def held(asked: Parameters, rest: State) -> xr.Dataset:
         dynamics = Dynamics(problem, start, problem.scene.protocol.integrator, resolve_time_step(problem))
         after = relax(dynamics, HELD_STOP, load=(state.load_factor, state.load_factor, 0.0))
         settled.append(replace(after, reached=after.reached.after(state.reached)))
-    moved = [np.abs(after.position - before.position).max() for before, after in zip(states, settled, strict=True)]
-    branch = [measures.asymmetry(state) for state in states]
-    further = variables(
-        branch_asymmetry=("force", branch, "asymmetry of the floor response before the displacement"),
-        moved=("force", moved, f"largest distance from the place before {RADII}"),
-        displacement=("", given.displacement, f"largest random displacement {RADII}"),
-    )
-    found = slab.measured_along("force", [slab.measured(measures, settled)]).assign(further)
+    found = slab.measured_along("force", [slab.measured(measures, settled)])
+    found["displacement"] = variable((), given.displacement, f"largest random displacement {RADII}")
     return found.assign_coords(axes(force=(given.forces, APPLIED)))
 
 
 def copies_of(given: Copies, packing: Packing) -> dict[str, Packing]:
     """By how they differ from the packing."""
-    found = {"as it is": packing, "numbered from right to left": mirrored(packing)}
-    shift, name = random_shift(packing.position.shape, given.displacement, given.seed), f"seed {given.seed}"
-    found[f"displaced at random, {name}"] = displaced(packing, shift)
-    found[f"displaced at random, {name}, mirror image"] = displaced(packing, shift, mirror_image=True)
-    return found
-
-
-def mirrored(packing: Packing) -> Packing:
-    """The mirror image of a packing, each disk with its number: for a symmetric lattice only the numbers change."""
-    return replace(packing, position=packing.position * [-1.0, 1.0] + [packing.width, 0.0])
-
-
-def displaced(packing: Packing, shift: FloatArray, *, mirror_image: bool = False) -> Packing:
-    """The packing with its disks moved by ``shift`` (n, 2), or by the mirror image of it."""
-    if mirror_image:
-        shift = shift[network.mirror_disks(packing.position, 0.5 * packing.width)] * [-1.0, 1.0]
-    return replace(packing, position=packing.position + shift)
+    place, name = packing.position, f"displaced at random, seed {given.seed}"
+    shift = random_shift(place.shape, given.displacement, given.seed)
+    image = shift[network.mirror_disks(place, 0.5 * packing.width)] * [-1.0, 1.0]
+    found = {
+        "as it is": place,
+        "numbered from right to left": place * [-1.0, 1.0] + [packing.width, 0.0],
+        name: place + shift,
+        f"{name}, mirror image": place + image,
+    }
+    return {name: replace(packing, position=position) for name, position in found.items()}
 
 
 def random_shift(shape: tuple[int, ...], size: float, seed: int) -> FloatArray:
@@ -163,16 +147,6 @@ def copied(scene: Scene, packing: Packing, force: float) -> xr.Dataset:
     """What is measured under one force on one copy of the packing, settled under gravity anew."""
     path = studies.LoadPath.of(scene, packing=packing)
     return slab.measured(studies.Measures(path), [path.at(force)])
-
-
-def compared(found: Mapping[str, xr.Dataset], force: float) -> xr.Dataset:
-    """The copies by name."""
-    return slab.measured_along("copy", list(found.values())).assign(
-        variables(
-            name=("copy", list(found), "how the copy differs from the packing"),
-            force=("", force, f"applied force {WEIGHTS}"),
-        )
-    )
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -200,7 +174,11 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "equal_rows": slab.events_dataset([done["equal rows"]]),
         "runs": runs.assign(of_run.variables).assign(force=variable("run", forces, APPLIED)),
         "held": done["held"],
-        "copies": compared({name: done[name] for name in packings}, force),
+        "copies": slab.measured_along("copy", [done[name] for name in packings]).assign(
+            variables(
+                name=("copy", list(packings), "how the copy differs from the packing"), force=("", force, APPLIED)
+            )
+        ),
         "states": slab.states_picture([rest, *found[0].states], studies.LoadPath.of(base, rest).problem),
     }
     friction = variable((), base.contact.friction, "coefficient of friction between disks")

@@ -67,9 +67,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         [coarse.coarse_grained_stress(coarse.load_forces(rest, s), points, p.stress_width) for s in loaded]
     )
     unit = "in weights per mean radius, compression positive"
-    width = variables(stress_width=("", p.stress_width, f"width w of the coarse-graining Gaussian {RADII}"))
     stress = xr.Dataset(
-        stress_components(("torque", "z", "x"), tensor, unit, " of the added forces") | width,
+        stress_components(("torque", "z", "x"), tensor, unit, " of the added forces"),
         axes(x=(x, f"distance from the left wall {RADII}"), z=(z, f"height above the floor {RADII}")),
     )
 
