@@ -19,12 +19,11 @@ import numpy as np
 
 from ..errors import EquilibriumError, require
 from ..state import FloatArray, Reached, State
-from .equilibrium import OPTIONS as NEWTON
 from .equilibrium import Rearranged, attainable, certify, external_force
 from .line_search import shortened
 from .problem import Problem
 from .stability import Spectrum
-from .system import OPTIONS as EQUATIONS
+from .system import OPTIONS as SYSTEM
 from .system import StaticSystem, Trial
 
 
@@ -45,13 +44,10 @@ class MinimiseOptions:
     #: First damping, and least where the stiffness of the springs alone makes a step; the first of large packings too.
     first_damping: float = 1e-3
     springs_alone: float = 1e-6
-    #: How often a saddle is left before the search is given up.
-    escapes: int = 20
     #: Where factorisations are expensive, in packings of more disks than this, the search begins little damped, and a
     #: saddle is left as soon as one is near: when the stiffness is not positive though little damped and no force out
     #: of balance exceeds that many disk weights. The rest state of 57,660 disks takes 2.1 times as long without.
     large: int = 20_000
-    little_damped: float = 1e-7
     near_saddle: float = 0.1
     #: First length along an unstable direction there, times the normal stiffness.
     shortest_escape: float = 1e-3
@@ -120,7 +116,7 @@ class _Descent:
         return self.problem.n > OPTIONS.large
 
     def _settled(self) -> bool:
-        return self.size < 0.01 * NEWTON.tolerance or (self.size < self.tolerance and self.damping == 0.0)
+        return self.size < 0.01 * SYSTEM.tolerance or (self.size < self.tolerance and self.damping == 0.0)
 
     def at_minimum(self) -> bool:
         """Whether nothing is out of balance and the stiffness is positive; looks for rearrangements now and then."""
@@ -140,12 +136,12 @@ class _Descent:
         if self._settled():
             self._leave_saddle()
             return
-        shift = self.damping + EQUATIONS.regularisation * self.stiffness
+        shift = self.damping + SYSTEM.regularisation * self.stiffness
         step = self.system.definite_step(self.trial, self.unbalanced, shift)
         self.iterations += 1
         if step is None:
-            near = self.size < OPTIONS.near_saddle and self.damping < OPTIONS.little_damped * self.stiffness
-            if self._large and near and self.escapes < OPTIONS.escapes:
+            near = self.size < OPTIONS.near_saddle and self.damping < SYSTEM.soft * self.stiffness
+            if self._large and near and self.escapes < SYSTEM.patience:
                 self.escapes += 1
                 self._go_down_from_saddle()
                 return
@@ -165,7 +161,7 @@ class _Descent:
 
     def _leave_saddle(self) -> None:
         rule = "the minimisation keeps returning to a saddle of the energy"
-        require(self.escapes != OPTIONS.escapes, rule, EquilibriumError)
+        require(self.escapes != SYSTEM.patience, rule, EquilibriumError)
         self.escapes += 1
         self.iterations += 1
         if self._large:
@@ -191,7 +187,7 @@ class _Descent:
             if best[1] is not self.trial:
                 break
         self._move(*best)
-        self.damping = OPTIONS.little_damped * self.stiffness
+        self.damping = SYSTEM.soft * self.stiffness
 
     def _damp(self, factor: float) -> None:
         self.damping = max(factor * self.damping, 1e-8 * self.stiffness)

@@ -5,7 +5,7 @@ import pytest
 from small_scenes import free_disks, scene, shaken, started
 
 from granular_response.solvers.equilibrium import finish
-from granular_response.solvers.path import OPTIONS, PathError, PathRecord, follow
+from granular_response.solvers.path import PathError, PathRecord, follow
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.rates import RateProblem
 from granular_response.state import OPEN, SLIDING, STICKING
@@ -88,7 +88,7 @@ def test_rates_of_random_packings_do_not_contradict_themselves():
         known = type(known)(known.q, np.where(slides, -sign * stretched, known.spring), known.overlap)
         sense = np.where(slides, sign * SLIDING, trial.status).astype(np.int8)
         here = system.trial(known, known.q, fixed=sense)
-        rates = RateProblem(system, 1.0, force=1e-9, negligible=OPTIONS.negligible).solve(here, sense)
+        rates = RateProblem(system, 1.0, force=1e-9).solve(here, sense)
         assert rates is not None
         h = 1e-8
         kept, free = (system.trial(known, known.q + h * rates.velocity, fixed=f) for f in (rates.sense, None))
