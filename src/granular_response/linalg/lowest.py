@@ -27,8 +27,8 @@ class LowestOptions:
     vector: float = 1e-9
     #: By how many times a Krylov space grows between two looks at its eigenvalues, which cost as much as a solution.
     look: float = 1.2
-    #: Most vectors of a Krylov space, without restarts, since a space of some dozens does; and most points in turn, each
-    #: of which, as a rule, comes a hundred times nearer to zero.
+    #: Most vectors of a Krylov space, without restarts, since a space of some dozens does; and most points in turn, of
+    #: which each, as a rule, comes a hundred times nearer to zero.
     most: int = 120
 
 

@@ -45,24 +45,25 @@ class RelaxationOptions:
 
     #: Steps between two looks at the stopping criteria: a look costs as much as some steps.
     check_every: int = 100
-    #: Looks between two at whether some disks roll freely, and the largest part of all disks that may roll fast.
-    rolling_checks: int = 10
+    #: Looks between two at whether some disks roll freely, and the least number of readings of the acceleration over
+    #: half a swing, which is too short for more in a small packing.
+    looks: int = 10
+    #: Largest part of all disks that may roll fast.
     most_rollers: float = 0.1
     #: Kinetic energy over its limit up to which a packing is nearly at rest: any number of disks may roll then, and one
     #: whose steps have run out may be in equilibrium all the same.
     nearly: float = 1e3
-    #: Distance at which a disk is lost: its way between two looks at displacements, when its motion has blown up, or its
-    #: gap above everything else, when its load pulls it up (mean radii).
+    #: Distance at which a disk is lost: its way between two looks at displacements, when its motion has blown up, or
+    #: its gap above everything else, when its load pulls it up (mean radii).
     lost: float = 5.0
-    #: Some swings of the slowest modes of the paper's slabs, in sqrt(R/g): over them the envelope of the kinetic energy is
-    #: taken, of which a single reading is low long before they have died out, and they lie between two tries of statics.
+    #: Some swings of the slowest modes of the paper's slabs, in sqrt(R/g). Over them the envelope of the kinetic energy
+    #: is taken, of which a single reading is low long before they have died out; and they lie between two tries of
+    #: statics.
     swings: float = 20.0
     #: Kinetic energy per disk that is rounding: what is left of it need not fall any more.
     motionless: float = 1e-24
     #: Kinetic energy of a disk that still rolls, over the mean of those that bear others, where accelerations decide.
     rolls: float = 10.0
-    #: Least number of readings of the acceleration, over half a swing: in a small packing that is too short for more.
-    readings: int = 10
     #: Acceleration of a disk with fewer than two contacts from which on it falls, or rolls down another one (g).
     falling: float = 0.1
 
@@ -384,7 +385,7 @@ class Dynamics:
 
 def half_swing(problem: Problem, time_step: float) -> int:
     """How many looks half a swing takes, at least as many as a judgement needs."""
-    return max(math.ceil(0.5 * problem.swing_time / (OPTIONS.check_every * time_step)), OPTIONS.readings)
+    return max(math.ceil(0.5 * problem.swing_time / (OPTIONS.check_every * time_step)), OPTIONS.looks)
 
 
 class Relaxation:
@@ -450,7 +451,7 @@ class Relaxation:
             raise DynamicsError(f"a load lifts disk {lifted} off the packing for good; nothing can hold it")
         slow = energy < OPTIONS.nearly * stop.kinetic_energy
         watched = slow or stop.acceleration > 0.0
-        look_at_rolling = (dynamics.steps // OPTIONS.check_every) % OPTIONS.rolling_checks == 0
+        look_at_rolling = (dynamics.steps // OPTIONS.check_every) % OPTIONS.looks == 0
         if not (watched or look_at_rolling or self.rolling):  # far from rest, whatever touches
             self.envelope.append(energy)
             self.settled, self.network = False, None

@@ -41,9 +41,8 @@ class MinimiseOptions:
     poor: float = 0.25
     #: Factor of the damping after a poor step, and of its inverse after a good one.
     more: float = 10.0
-    #: First damping, and least where the stiffness of the springs alone makes a step; the first of large packings too.
+    #: First damping.
     first_damping: float = 1e-3
-    springs_alone: float = 1e-6
     #: Where factorisations are expensive, in packings of more disks than this, the search begins little damped, and a
     #: saddle is left as soon as one is near: when the stiffness is not positive though little damped and no force out
     #: of balance exceeds that many disk weights. The rest state of 57,660 disks takes 2.1 times as long without.
@@ -51,6 +50,11 @@ class MinimiseOptions:
     near_saddle: float = 0.1
     #: First length along an unstable direction there, times the normal stiffness.
     shortest_escape: float = 1e-3
+
+    @property
+    def little_damped(self) -> float:
+        """Least damping where the stiffness of the springs alone makes a step, and the first of large packings."""
+        return 10.0 * SYSTEM.soft
 
 
 OPTIONS = MinimiseOptions()
@@ -98,7 +102,7 @@ class _Descent:
         self.system = StaticSystem(problem, start)
         self.external = external_force(problem, load_factor)
         self.known = self.system.start(start)
-        self.damping = (OPTIONS.springs_alone if self._large else OPTIONS.first_damping) * self.stiffness
+        self.damping = (OPTIONS.little_damped if self._large else OPTIONS.first_damping) * self.stiffness
         self.iterations = self.escapes = 0
         self.undetermined: tuple[int, ...] = ()  #: disks that nothing determines at the last equilibrium looked at
         q = self.system.displaced(self.known.q, load_factor).copy()
@@ -146,7 +150,7 @@ class _Descent:
                 self._go_down_from_saddle()
                 return
             springs = self.system.without_prestress(self.trial)
-            shift = max(self.damping, OPTIONS.springs_alone * self.stiffness)
+            shift = max(self.damping, OPTIONS.little_damped * self.stiffness)
             step = self.system.definite_step(springs, self.unbalanced, shift)
         if step is None:
             self._damp(OPTIONS.more)

@@ -94,7 +94,7 @@ def newton(
     for a moment). With ``backtracking``, after ``NewtonOptions.whole_steps`` of them, the longest part of a step that
     lowers the 2-norm of the residual is taken. A factorisation serves as long as no contact changes its status and the
     residual falls tenfold with it.
-    The end is a residual below ``SystemOptions.enough``, or below ``SystemOptions.tolerance`` where it falls no further.
+    The end is a residual below ``SystemOptions.enough``, or below its ``tolerance`` where it falls no further.
     Returns the last trial and a report; ``report.converged`` says whether it is a solution,
     ``report.iterations`` counts factorisations, of which there are at most ``maximum_iterations``.
     """

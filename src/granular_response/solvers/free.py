@@ -30,7 +30,8 @@ class FreeOptions:
     #: Times that the tangent's inverse takes from a random vector what some stiffness resists: at the default stiffness
     #: a direction of 1e-4 mean weights per mean radius keeps 3e-8 of itself, a null direction all.
     times: int = 3
-    #: Part of itself that a vector keeps from which on a disk moves freely.
+    #: Part of a vector that is none: what it keeps of itself at disks that do not move freely, and how far to one side
+    #: a direction leads that leads to neither.
     part: float = 1e-6
 
 

@@ -27,13 +27,14 @@ from .system import Configuration, StaticSystem, Trial
 class IncrementOptions:
     """Numbers that an increment goes by. Forces in mean weights."""
 
-    #: Newton iterations on the true law, before limits are held fixed and after: none that succeeded took more than 5.
+    #: Newton iterations on the true law before limits are held fixed, where none that succeeded took more than 5. Half
+    #: as many do after that, where none took more than 3.
     direct: int = 8
     #: Rounds of fixed limits before the true law is tried again, once a round.
     first_try: int = 2
-    #: Unbalanced force below which a minimisation ends when so many steps in turn have not halved it: contacts go to and
-    #: fro at no force.
+    #: Unbalanced force below which a minimisation ends when steps have stalled: contacts go to and fro at no force.
     still: float = 1e-5
+    #: Steps in turn that have not halved a force, and tries of the true law that have failed, after which none is made.
     stalled: int = 3
 
 
@@ -68,16 +69,13 @@ def solve_increment(
     limits = system.limits(system.trial(known, known.q))
     q = known.q.copy()
     q[system.held] = guess[system.held]
-    before_rounds = work.factorisations
-    done = 0
-    while work.factorisations - before_rounds <= SYSTEM.patience:
-        done += 1
+    for done in range(1, OPTIONS.first_try + OPTIONS.stalled + 1):
         held = minimise_with_limits(system, known, external, q, limits, work)
         if held is None:
             return None
         q = held.configuration.q
         limits = system.limits(held)
-        if done > OPTIONS.first_try and (found := on_true_law(q, OPTIONS.direct)) is not None:
+        if done > OPTIONS.first_try and (found := on_true_law(q, OPTIONS.direct // 2)) is not None:
             return found
     return None
 

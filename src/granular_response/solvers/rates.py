@@ -106,8 +106,8 @@ class Rates:
 class RateProblem:
     """Rates of one system on the way to larger (``direction`` 1) or smaller (-1) load factors.
 
-    ``force`` : by which a contact may be away from its change when it changes (mean weights). Contacts of rattlers, which
-    open and close at the rounding of a force, have no part in the load, and make no events.
+    ``force`` : by which a contact may be away from its change when it changes (mean weights). Contacts of rattlers,
+    which open and close at the rounding of a force, have no part in the load, and make no events.
     """
 
     def __init__(self, system: StaticSystem, direction: float, *, force: float):

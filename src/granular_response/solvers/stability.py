@@ -26,6 +26,7 @@ from ..errors import EquilibriumError
 from ..kernels.transitions import SLIDES, STICKS
 from ..linalg.lowest import Eigenpair, followed, lowest_real
 from ..state import SLIDING, STICKING, FloatArray
+from .free import OPTIONS as FREE
 from .free import free_disks, touched, without_bare
 from .rates import next_changes
 from .system import OPTIONS as SYSTEM
@@ -39,14 +40,15 @@ class StabilityOptions:
     #: Eigenvalue of M^-1 K, in g/R, above minus which nothing counts as unstable: disks that roll freely have 0, and
     #: what grows no faster than a thousandth in sqrt(R/g) does not in any time of interest.
     neutral: float = 1e-6
-    #: Eigenvalue from which on no direction is unstable or free, so that one factorisation settles both; the softest of
-    #: a packing of some hundred layers is 0.1.
-    soft: float = 1e-4
     #: How far to the left of zero the search begins, in units of the normal stiffness: the first of this and its
     #: products with 10 to 1,000 that the symmetric part allows, so that there are few points on the way.
     left_of_all: float = 1e-2
-    #: Sum of displacements along x below which a direction leads to neither side, its largest component being 1.
-    least_sideways: float = 1e-6
+
+    @property
+    def soft(self) -> float:
+        """Eigenvalue from which on no direction is unstable or free, so that one factorisation settles both, clear of
+        what is neutral; the softest of a packing of some hundred layers is 0.1."""
+        return 100.0 * self.neutral
 
 
 OPTIONS = StabilityOptions()
@@ -139,7 +141,7 @@ class Spectrum:
         direction = system.deinterleave(self._scale * self.lowest[1])
         direction /= np.abs(direction).max()
         sideways = float(direction[: system.problem.n].sum())
-        if abs(sideways) <= OPTIONS.least_sideways:
+        if abs(sideways) <= FREE.part:  # it leads to neither side
             sideways = float(direction[np.argmax(np.abs(direction))])
         return -direction if sideways < 0.0 else direction
 

@@ -30,8 +30,8 @@ class SystemOptions:
     A force counts as none on three levels, a decade apart, so that what one leaves is no event of the next.
     """
 
-    #: Largest force or torque left on any disk at an equilibrium. Displacements of a radius round the force of a contact
-    #: of stiffness 3000 by 3e-12.
+    #: Largest force or torque left on any disk at an equilibrium. Displacements of a radius round the force of a
+    #: contact of stiffness 3000 by 3e-12.
     tolerance: float = 1e-10
     #: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
     regularisation: float = 1e-10

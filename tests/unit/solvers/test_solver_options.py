@@ -48,6 +48,7 @@ def test_changed_stiffnesses_make_no_factorisation_up_to_a_number(loaded, monkey
 
 def test_a_landing_leaves_force_and_a_factorisation_as_its_options_say(loaded, monkeypatch):
     """Coarser events have other loads, by no more than the force that is left; the floor feels nothing of it."""
+
     def followed(finer: float = 1.0, **options) -> State:
         tolerance = finer * system.OPTIONS.tolerance
         with monkeypatch.context() as changed:

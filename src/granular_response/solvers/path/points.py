@@ -35,8 +35,8 @@ class PathOptions:
     outdated: int = 2
     #: Load by which the next equilibrium is looked for, with limits of friction held fixed, where no statuses are found
     #: for the rates; doubled while the path does not go on after it, or it would take as many steps as a slab has loads
-    #: of this size. In lattices the path mostly goes on there, only with other statuses. A loss of stability between two
-    #: events is found to a hundredth of it, and a motion, which needs more to drive it, begins with a hundred times.
+    #: of this size. In lattices the path mostly goes on there, only with other statuses. A loss of stability between
+    #: two events is found to a hundredth of it. A motion, which needs more to drive it, begins with a hundred times.
     beyond: float = 1e-4
     #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
     nearby: float = 1e-3
@@ -143,8 +143,8 @@ class Leg:
         self.unit, laws = self.problem.load_size, (self.problem.pair_law, self.problem.wall_law)
         self.whole = self.unit * abs(self.target - self.start.load_factor)
         #: Unbalanced force that is left at an event, less under a load below a mean weight. The next increment takes it
-        #: up, so that it does not add up: in the slabs of the benchmarks events are off by 5e-10 in the median, and wall
-        #: forces at the end by 3e-10 at most.
+        #: up, so that it does not add up: in the slabs of the benchmarks events are off by 5e-10 in the median, and
+        #: wall forces at the end by 3e-10 at most.
         self.passing = SYSTEM.bare * min(self.unit, 1.0)
         self.stiffest = max(law.tangential_stiffness for law in laws)
         #: whether the stiffness of contacts varies with their overlap
