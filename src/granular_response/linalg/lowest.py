@@ -23,15 +23,13 @@ class LowestOptions:
     #: Relative residual up to which the nearest eigenvalue is found; how many times as inaccurate its distance counts.
     residual: float = 1e-3
     certain: float = 10.0
-    #: Residual to which the eigenvector is found at last, from this part of the eigenvalue off it.
+    #: Residual to which the eigenvector is found at last.
     vector: float = 1e-9
-    beside: float = 1e-3
     #: By how many times a Krylov space grows between two looks at its eigenvalues, which cost as much as a solution.
     look: float = 1.2
-    #: Most vectors of a Krylov space: without restarts, since a space of some dozens does.
+    #: Most vectors of a Krylov space, without restarts, since a space of some dozens does; and most points in turn, of
+    #: which each, as a rule, comes a hundred times nearer to zero.
     most: int = 120
-    #: Most points in turn; each of the usual ones comes a hundred times nearer to zero.
-    points: int = 60
 
 
 OPTIONS = LowestOptions()
@@ -53,7 +51,7 @@ def lowest_real(
     """
     start = np.random.default_rng(0).standard_normal(n)
     point = left
-    for _ in range(OPTIONS.points):
+    for _ in range(OPTIONS.most):
         value, vector, residual = nearest(inverse(point), start, point, OPTIONS.residual)
         distance = abs(value - point)
         error = OPTIONS.certain * residual * distance
@@ -74,7 +72,7 @@ def followed(inverse: Callable[[float], Callable[[FloatArray], FloatArray]], nea
 
     ``inverse`` as in :func:`lowest_real`; ``near`` may be of another matrix.
     """
-    beside = near[0] * (1.0 + OPTIONS.beside)
+    beside = near[0] * (1.0 + OPTIONS.residual)  # off it by no more than it is known to
     value, vector, residual = nearest(inverse(beside), near[1], beside, OPTIONS.vector)
     real = value.imag == 0.0 and residual <= OPTIONS.residual
     return (float(value.real), vector) if real and value.real < 0.0 else None

@@ -21,9 +21,8 @@ from .factor import Factor, Renewable, Storage
 class NearbyOptions:
     """Numbers by which one factorisation serves other matrices."""
 
-    #: Most products of a solution, and the number from which on it is seen whether so many will do.
+    #: Most products of a solution. A quarter of them shows whether so many will do.
     most: int = 24
-    seen: int = 6
     #: Change of an entry, as a part of the largest, from which on its subtree is eliminated anew: the path of 14,430
     #: disks to 15 mg takes 1.9 times as long where none is.
     change: float = 5e-2
@@ -142,7 +141,7 @@ def _gmres(matrix: sp.csc_array, factor: Factor, right: FloatArray, tolerance: f
             for weight, direction in zip(weights, solved, strict=True):
                 total += weight * direction
             return total, k + 1
-        if k + 1 >= OPTIONS.seen and reduced ** (OPTIONS.most / (k + 1)) > tolerance:
+        if 4 * (k + 1) >= OPTIONS.most and reduced ** (OPTIONS.most / (k + 1)) > tolerance:
             break
         basis.append(new / below)
     return None, k + 1

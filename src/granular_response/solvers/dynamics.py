@@ -34,6 +34,7 @@ from ..state import FLOOR, FloatArray, Reached, State, wall_normals
 from .candidates import Candidates
 from .problem import Problem
 from .springs import carry_springs, spring_contacts
+from .system import OPTIONS as SYSTEM
 
 Ramp = tuple[float, float, float]
 
@@ -44,26 +45,25 @@ class RelaxationOptions:
 
     #: Steps between two looks at the stopping criteria: a look costs as much as some steps.
     check_every: int = 100
-    #: Looks between two at whether some disks roll freely, and the largest part of all disks that may roll fast.
-    rolling_checks: int = 10
+    #: Looks between two at whether some disks roll freely, and the least number of readings of the acceleration over
+    #: half a swing, which is too short for more in a small packing.
+    looks: int = 10
+    #: Largest part of all disks that may roll fast.
     most_rollers: float = 0.1
-    #: Kinetic energy, times its limit, below which any number of disks may roll.
-    slow_rolling: float = 1e3
-    #: Vertical force on a part of the packing that nothing bears, below which it floats (mean disk weights).
-    balanced: float = 1e-9
-    #: Way of a disk between two looks at displacements at which its motion counts as blown up (mean radii).
-    longest_stride: float = 5.0
-    #: Gap above everything else at which a disk that its load pulls up is lost (mean radii).
-    lifted: float = 5.0
-    #: Time over which the envelope of the kinetic energy is taken, in sqrt(R/g): some swings of the slowest modes of
-    #: the paper's slabs, at which a single reading is low long before they have died out.
-    envelope_time: float = 20.0
+    #: Kinetic energy over its limit up to which a packing is nearly at rest: any number of disks may roll then, and one
+    #: whose steps have run out may be in equilibrium all the same.
+    nearly: float = 1e3
+    #: Distance at which a disk is lost: its way between two looks at displacements, when its motion has blown up, or
+    #: its gap above everything else, when its load pulls it up (mean radii).
+    lost: float = 5.0
+    #: Some swings of the slowest modes of the paper's slabs, in sqrt(R/g). Over them the envelope of the kinetic energy
+    #: is taken, of which a single reading is low long before they have died out; and they lie between two tries of
+    #: statics.
+    swings: float = 20.0
     #: Kinetic energy per disk that is rounding: what is left of it need not fall any more.
     motionless: float = 1e-24
     #: Kinetic energy of a disk that still rolls, over the mean of those that bear others, where accelerations decide.
     rolls: float = 10.0
-    #: Least number of readings of the acceleration, over half a swing: in a small packing that is too short for more.
-    readings: int = 10
     #: Acceleration of a disk with fewer than two contacts from which on it falls, or rolls down another one (g).
     falling: float = 0.1
 
@@ -80,7 +80,7 @@ class Stop:
     """When a relaxation ends.
 
     ``kinetic_energy`` per disk (units of mean weight times mean radius); ``rule``: ``instantaneous`` stops at
-    the first reading below it, ``envelope`` when the largest of the last ``RelaxationOptions.envelope_time`` is.
+    the first reading below it, ``envelope`` when the largest of the last ``RelaxationOptions.swings`` is.
     ``least_time`` since the ramps began: what starts without motion and out of balance has no kinetic energy yet.
     ``fallen`` : part of its largest value since then to which the kinetic energy must have fallen.
     ``acceleration`` : a relaxation also ends when :meth:`Dynamics.unrest` has been below it for half a period of the
@@ -229,7 +229,7 @@ class Dynamics:
         """How far the fastest disk gets until displacements are looked at again, and half as much more."""
         speed = float(np.hypot(*self.v[: 2 * self.problem.n].reshape(2, -1)).max())
         stride = 1.5 * speed * self.time_step * LOOK_EVERY
-        if not stride < OPTIONS.longest_stride:
+        if not stride < OPTIONS.lost:
             raise DynamicsError(self._blow_up())
         return stride
 
@@ -344,7 +344,7 @@ class Dynamics:
         force = -weight
         np.add.at(force, problem.load_disk, self._now(self.load) * problem.load[:, 1])
         borne = np.bincount(part, weight, parts)
-        return bool((np.abs(np.bincount(part, force, parts)) > OPTIONS.balanced * borne)[~held].any())
+        return bool((np.abs(np.bincount(part, force, parts)) > SYSTEM.event * borne)[~held].any())
 
     def lifted_disk(self) -> int | None:
         """A disk that its load has torn off the packing and carries up for good; None without one."""
@@ -358,7 +358,7 @@ class Dynamics:
         z, radius = self.position[:, 1], problem.packing.radius
         rest = np.setdiff1d(np.arange(n), risen)
         top = float((z + radius)[rest].max(initial=0.0))
-        gone = risen[(z - radius)[risen] > top + OPTIONS.lifted]
+        gone = risen[(z - radius)[risen] > top + OPTIONS.lost]
         gone = gone[self.v[n + gone] > 0]
         return int(gone[0]) if len(gone) else None
 
@@ -385,7 +385,7 @@ class Dynamics:
 
 def half_swing(problem: Problem, time_step: float) -> int:
     """How many looks half a swing takes, at least as many as a judgement needs."""
-    return max(math.ceil(0.5 * problem.swing_time / (OPTIONS.check_every * time_step)), OPTIONS.readings)
+    return max(math.ceil(0.5 * problem.swing_time / (OPTIONS.check_every * time_step)), OPTIONS.looks)
 
 
 class Relaxation:
@@ -415,7 +415,7 @@ class Relaxation:
         self.progress = progress
         self.started = dynamics.steps
         self.ramp_time = max(gravity[2], load[2])
-        checks = max(1, round(OPTIONS.envelope_time / (OPTIONS.check_every * dynamics.time_step)))
+        checks = max(1, round(OPTIONS.swings / (OPTIONS.check_every * dynamics.time_step)))
         self.envelope: deque[float] = deque(maxlen=checks if stop.rule == "envelope" else 1)
         self.unrest: deque[float] = deque(maxlen=half_swing(dynamics.problem, dynamics.time_step))
         self.network: NDArray[np.bool_] | None = None
@@ -449,9 +449,9 @@ class Relaxation:
             return
         if dynamics.load[1] and (lifted := dynamics.lifted_disk()) is not None:
             raise DynamicsError(f"a load lifts disk {lifted} off the packing for good; nothing can hold it")
-        slow = energy < OPTIONS.slow_rolling * stop.kinetic_energy
+        slow = energy < OPTIONS.nearly * stop.kinetic_energy
         watched = slow or stop.acceleration > 0.0
-        look_at_rolling = (dynamics.steps // OPTIONS.check_every) % OPTIONS.rolling_checks == 0
+        look_at_rolling = (dynamics.steps // OPTIONS.check_every) % OPTIONS.looks == 0
         if not (watched or look_at_rolling or self.rolling):  # far from rest, whatever touches
             self.envelope.append(energy)
             self.settled, self.network = False, None

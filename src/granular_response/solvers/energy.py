@@ -19,12 +19,11 @@ import numpy as np
 
 from ..errors import EquilibriumError, require
 from ..state import FloatArray, Reached, State
-from .equilibrium import OPTIONS as NEWTON
 from .equilibrium import Rearranged, attainable, certify, external_force
 from .line_search import shortened
 from .problem import Problem
 from .stability import Spectrum
-from .system import OPTIONS as EQUATIONS
+from .system import OPTIONS as SYSTEM
 from .system import StaticSystem, Trial
 
 
@@ -42,19 +41,20 @@ class MinimiseOptions:
     poor: float = 0.25
     #: Factor of the damping after a poor step, and of its inverse after a good one.
     more: float = 10.0
-    #: First damping, and least where the stiffness of the springs alone makes a step; the first of large packings too.
+    #: First damping.
     first_damping: float = 1e-3
-    springs_alone: float = 1e-6
-    #: How often a saddle is left before the search is given up.
-    escapes: int = 20
     #: Where factorisations are expensive, in packings of more disks than this, the search begins little damped, and a
     #: saddle is left as soon as one is near: when the stiffness is not positive though little damped and no force out
     #: of balance exceeds that many disk weights. The rest state of 57,660 disks takes 2.1 times as long without.
     large: int = 20_000
-    little_damped: float = 1e-7
     near_saddle: float = 0.1
     #: First length along an unstable direction there, times the normal stiffness.
     shortest_escape: float = 1e-3
+
+    @property
+    def little_damped(self) -> float:
+        """Least damping where the stiffness of the springs alone makes a step, and the first of large packings."""
+        return 10.0 * SYSTEM.soft
 
 
 OPTIONS = MinimiseOptions()
@@ -102,7 +102,7 @@ class _Descent:
         self.system = StaticSystem(problem, start)
         self.external = external_force(problem, load_factor)
         self.known = self.system.start(start)
-        self.damping = (OPTIONS.springs_alone if self._large else OPTIONS.first_damping) * self.stiffness
+        self.damping = (OPTIONS.little_damped if self._large else OPTIONS.first_damping) * self.stiffness
         self.iterations = self.escapes = 0
         self.undetermined: tuple[int, ...] = ()  #: disks that nothing determines at the last equilibrium looked at
         q = self.system.displaced(self.known.q, load_factor).copy()
@@ -120,7 +120,7 @@ class _Descent:
         return self.problem.n > OPTIONS.large
 
     def _settled(self) -> bool:
-        return self.size < 0.01 * NEWTON.tolerance or (self.size < self.tolerance and self.damping == 0.0)
+        return self.size < 0.01 * SYSTEM.tolerance or (self.size < self.tolerance and self.damping == 0.0)
 
     def at_minimum(self) -> bool:
         """Whether nothing is out of balance and the stiffness is positive; looks for rearrangements now and then."""
@@ -140,17 +140,17 @@ class _Descent:
         if self._settled():
             self._leave_saddle()
             return
-        shift = self.damping + EQUATIONS.regularisation * self.stiffness
+        shift = self.damping + SYSTEM.regularisation * self.stiffness
         step = self.system.definite_step(self.trial, self.unbalanced, shift)
         self.iterations += 1
         if step is None:
-            near = self.size < OPTIONS.near_saddle and self.damping < OPTIONS.little_damped * self.stiffness
-            if self._large and near and self.escapes < OPTIONS.escapes:
+            near = self.size < OPTIONS.near_saddle and self.damping < SYSTEM.soft * self.stiffness
+            if self._large and near and self.escapes < SYSTEM.patience:
                 self.escapes += 1
                 self._go_down_from_saddle()
                 return
             springs = self.system.without_prestress(self.trial)
-            shift = max(self.damping, OPTIONS.springs_alone * self.stiffness)
+            shift = max(self.damping, OPTIONS.little_damped * self.stiffness)
             step = self.system.definite_step(springs, self.unbalanced, shift)
         if step is None:
             self._damp(OPTIONS.more)
@@ -165,7 +165,7 @@ class _Descent:
 
     def _leave_saddle(self) -> None:
         rule = "the minimisation keeps returning to a saddle of the energy"
-        require(self.escapes != OPTIONS.escapes, rule, EquilibriumError)
+        require(self.escapes != SYSTEM.patience, rule, EquilibriumError)
         self.escapes += 1
         self.iterations += 1
         if self._large:
@@ -191,7 +191,7 @@ class _Descent:
             if best[1] is not self.trial:
                 break
         self._move(*best)
-        self.damping = OPTIONS.little_damped * self.stiffness
+        self.damping = SYSTEM.soft * self.stiffness
 
     def _damp(self, factor: float) -> None:
         self.damping = max(factor * self.damping, 1e-8 * self.stiffness)

@@ -22,6 +22,7 @@ from ..state.box import bodies
 from .free import least_at_rest, solved_by, suspicious
 from .problem import Problem
 from .stability import Spectrum
+from .system import OPTIONS as SYSTEM
 from .system import Configuration, StaticSystem, Trial
 
 
@@ -29,19 +30,12 @@ from .system import Configuration, StaticSystem, Trial
 class NewtonOptions:
     """Numbers by which Newton's method on the true contact law goes. Forces in mean weights, lengths in mean radii."""
 
-    #: Largest force or torque left on any disk.
-    tolerance: float = 1e-10
-    #: Unbalanced force at which it ends without trying to do better.
-    enough: float = 1e-13
-    #: Most factorisations.
-    iterations: int = 30
-    #: Most of them in a try to end a motion: of 24 tries that led to an equilibrium the longest took 13.
+    #: Most factorisations in a try to end a motion: of 24 tries that led to an equilibrium the longest took 13.
     tries: int = 15
     #: Of these, how many take whole steps before a search along the step begins: where contacts change their status in
     #: turn, whole steps go round in a circle.
     whole_steps: int = 5
-    #: Parts of a step that are tried from then on, and how often it is halved before.
-    searched: tuple[float, ...] = (1.0, 0.5, 0.25, 0.1)
+    #: How often a step is halved.
     halvings: int = 5
     #: A step moves no disk farther than this.
     longest_step: float = 0.05
@@ -73,7 +67,7 @@ def external_force(problem: Problem, load_factor: float) -> FloatArray:
 def attainable(system: StaticSystem, q: FloatArray) -> float:
     """Unbalanced force to reach: the tolerance, or what the rounding of displacements leaves if that is more."""
     rounding = 4.0 * float(np.finfo(float).eps) * system.problem.stiffness
-    return max(OPTIONS.tolerance, rounding * float(np.abs(q).max(initial=0.0)))
+    return max(SYSTEM.tolerance, rounding * float(np.abs(q).max(initial=0.0)))
 
 
 @dataclass(frozen=True)
@@ -100,12 +94,11 @@ def newton(
     for a moment). With ``backtracking``, after ``NewtonOptions.whole_steps`` of them, the longest part of a step that
     lowers the 2-norm of the residual is taken. A factorisation serves as long as no contact changes its status and the
     residual falls tenfold with it.
-    The end is a residual below ``NewtonOptions.enough``, or below ``tolerance`` where it falls no further.
+    The end is a residual below ``SystemOptions.enough``, or below its ``tolerance`` where it falls no further.
     Returns the last trial and a report; ``report.converged`` says whether it is a solution,
-    ``report.iterations`` counts factorisations, of which there are at most ``maximum_iterations``,
-    or ``NewtonOptions.iterations``.
+    ``report.iterations`` counts factorisations, of which there are at most ``maximum_iterations``.
     """
-    tolerance, most = OPTIONS.tolerance, OPTIONS.iterations if maximum_iterations is None else maximum_iterations
+    tolerance, most = SYSTEM.tolerance, SYSTEM.patience if maximum_iterations is None else maximum_iterations
     n = system.problem.n
     q = (known.q if start is None else start).copy()
     trial = system.trial(known, q)
@@ -115,7 +108,7 @@ def newton(
     stalled = iterations = 0
     slow = False
     while True:
-        if size < OPTIONS.enough or (size < tolerance and stalled):
+        if size < SYSTEM.enough or (size < tolerance and stalled):
             return trial, NewtonReport(True, iterations, size)
         try:
             factor = None if slow else system.kept_factor(trial)
@@ -137,7 +130,7 @@ def newton(
             length = float(np.abs(step[: 2 * n]).max())
         scale = min(1.0, OPTIONS.longest_step / length) if length > 0 else 1.0
         search = backtracking and iterations > OPTIONS.whole_steps
-        for part in OPTIONS.searched if search else [0.5**k for k in range(OPTIONS.halvings + 1)]:
+        for part in 0.5 ** np.arange(OPTIONS.halvings + 1):
             new = system.trial(known, q + part * scale * step)
             r_new = new.contact_force + external
             size_new = float(np.abs(r_new).max())

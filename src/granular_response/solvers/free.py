@@ -27,20 +27,19 @@ class FreeOptions:
     #: Displacement per force, over that along a null direction, from which on a step may go along one: the softest
     #: directions of packings have up to 1e-5.
     soft: float = 1e-3
-    #: Force (mean weights) along a null direction up to which it is a residual, and moves nothing. The lightest disk
-    #: that is allowed weighs more, and falls.
-    residual: float = 0.1 * LEAST_MASS
-    #: Normal force (mean weights) up to which a contact bears nothing, that of ``PathOptions.passing``: it is no tie,
-    #: as it may open.
-    bare: float = 1e-8
     #: Times that the tangent's inverse takes from a random vector what some stiffness resists: at the default stiffness
     #: a direction of 1e-4 mean weights per mean radius keeps 3e-8 of itself, a null direction all.
     times: int = 3
-    #: Part of itself that a vector keeps from which on a disk moves freely.
+    #: Part of a vector that is none: what it keeps of itself at disks that do not move freely, and how far to one side
+    #: a direction leads that leads to neither.
     part: float = 1e-6
 
 
 OPTIONS = FreeOptions()
+
+#: Force (mean weights) along a null direction up to which it is a residual, and moves nothing. The lightest disk that
+#: is allowed weighs more, and falls.
+RESIDUAL = 0.1 * LEAST_MASS
 
 
 def suspicious(system: StaticSystem, step: float, force: float) -> bool:
@@ -62,12 +61,12 @@ def least_at_rest(
     """The same where the forces out of balance (dof,) are no more than a residual along null directions; else ``step``:
     a disk in the air falls along one."""
     along = SYSTEM.regularisation * system.problem.stiffness * solve(force)
-    return least(system, solve, step) if float(np.abs(along).max()) <= OPTIONS.residual else step
+    return least(system, solve, step) if float(np.abs(along).max()) <= RESIDUAL else step
 
 
 def without_bare(system: StaticSystem, trial: Trial) -> Trial | None:
-    """The trial with its contacts open that bear nothing; None where there are none."""
-    bare = (trial.status != OPEN) & (trial.normal <= OPTIONS.bare)
+    """The trial with its contacts open that bear nothing: they are no ties. None where there are none."""
+    bare = (trial.status != OPEN) & (trial.normal <= SYSTEM.bare)
     if not bare.any():
         return None
     sense = trial.sense.copy()

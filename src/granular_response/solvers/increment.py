@@ -19,6 +19,7 @@ from ..state import FloatArray
 from .equilibrium import OPTIONS as NEWTON
 from .equilibrium import newton
 from .line_search import shortened
+from .system import OPTIONS as SYSTEM
 from .system import Configuration, StaticSystem, Trial
 
 
@@ -26,25 +27,15 @@ from .system import Configuration, StaticSystem, Trial
 class IncrementOptions:
     """Numbers that an increment goes by. Forces in mean weights."""
 
-    #: Newton iterations on the true law before limits are held fixed, where none that succeeded took more than 5, and
-    #: in each try after that, where none took more than 3.
+    #: Newton iterations on the true law before limits are held fixed, where none that succeeded took more than 5. Half
+    #: as many do after that, where none took more than 3.
     direct: int = 8
-    finish: int = 4
-    #: Rounds of fixed limits before the true law is tried again.
+    #: Rounds of fixed limits before the true law is tried again, once a round.
     first_try: int = 2
-    #: Levenberg shift of a minimisation, in units of the normal stiffness: holds disks that nothing holds.
-    shift: float = 1e-7
-    #: Unbalanced force at which a minimisation ends; its limits change anyway.
-    rough: float = 1e-7
-    #: That below which it ends too when so many steps in turn have not halved it: contacts go to and fro at no force.
+    #: Unbalanced force below which a minimisation ends when steps have stalled: contacts go to and fro at no force.
     still: float = 1e-5
+    #: Steps in turn that have not halved a force, and tries of the true law that have failed, after which none is made.
     stalled: int = 3
-    #: Tries of the true law, one a round, before an increment is given up: all that succeeded did so at the first.
-    tries: int = 3
-    #: Factorisations after which an increment, or one minimisation, is given up. Minimisations of increments that
-    #: succeeded took 7 at most, in lattices and disordered packings.
-    most: int = 40
-    minimise: int = 15
 
 
 OPTIONS = IncrementOptions()
@@ -78,16 +69,13 @@ def solve_increment(
     limits = system.limits(system.trial(known, known.q))
     q = known.q.copy()
     q[system.held] = guess[system.held]
-    before_rounds = work.factorisations
-    for done in range(1, OPTIONS.first_try + OPTIONS.tries + 1):
-        if work.factorisations - before_rounds > OPTIONS.most:
-            return None
+    for done in range(1, OPTIONS.first_try + OPTIONS.stalled + 1):
         held = minimise_with_limits(system, known, external, q, limits, work)
         if held is None:
             return None
         q = held.configuration.q
         limits = system.limits(held)
-        if done > OPTIONS.first_try and (found := on_true_law(q, OPTIONS.finish)) is not None:
+        if done > OPTIONS.first_try and (found := on_true_law(q, OPTIONS.direct // 2)) is not None:
             return found
     return None
 
@@ -98,14 +86,15 @@ def minimise_with_limits(
     """The minimum of an increment's energy with fixed Coulomb limits, as near as steps come; None where they go on."""
     q = start
     trial = system.trial(known, q, limits=limits)
-    shift = OPTIONS.shift * system.problem.stiffness
+    shift = SYSTEM.soft * system.problem.stiffness
     best, stalled = np.inf, 0
-    for left in range(OPTIONS.minimise, -1, -1):
+    for left in range(NEWTON.tries, -1, -1):
         r = trial.contact_force + external
         size = float(np.abs(r).max())
         stalled = stalled + 1 if size > 0.5 * best else 0
         best = min(best, size)
-        if size < OPTIONS.rough or (best < OPTIONS.still and stalled >= OPTIONS.stalled):
+        # limits change after it, so that it need not be exact
+        if size < 10.0 * SYSTEM.bare or (best < OPTIONS.still and stalled >= OPTIONS.stalled):
             return trial
         if left == 0:
             break

@@ -25,9 +25,8 @@ class RemovalOptions:
 
     #: Overlap that is left. A contact of stiffness 1e6 mg / mean radius that holds it could lift a disk by 0.005.
     left: float = 1e-4
-    #: Parts of the overlaps, and of the last step, by which disks move: faster steps throw them farther.
+    #: Part of the overlaps, and of the last step, by which disks move: faster steps throw them farther.
     part: float = 0.5
-    momentum: float = 0.5
     #: Gap up to which pairs are listed, and most steps.
     skin: float = 0.25
     steps: int = 20_000
@@ -52,7 +51,7 @@ def without_overlaps(packing: Packing) -> Packing:
         push, largest = _push(packing, position, first, second)
         if largest <= OPTIONS.left:
             return replace(packing, position=position)
-        step = OPTIONS.momentum * step + OPTIONS.part * push
+        step = OPTIONS.part * step + OPTIONS.part * push
         position = position + step
     raise SceneError(
         f"packing.overlaps = 'removed': an overlap of {largest:.2g} mean radii is left after {OPTIONS.steps} steps, "

@@ -20,6 +20,7 @@ from ..kernels import transitions
 from ..kernels.transitions import CLOSES, OPENS
 from ..linalg.updated import Updated
 from ..state import OPEN, SLIDING, STICKING, FloatArray
+from .system import OPTIONS as SYSTEM
 from .system import Configuration, StaticSystem, Trial
 
 
@@ -27,20 +28,16 @@ from .system import Configuration, StaticSystem, Trial
 class RateOptions:
     """Numbers by which statuses of a rate problem are found."""
 
-    #: Rounds in which all contacts that contradict themselves change, and rounds in which the worst ones do, twice if
-    #: need be. Those that ended took 17 and 30 at most in the packings of the benchmarks.
+    #: Rounds in which all contacts that contradict themselves change, before the worst ones alone do.
     all: int = 8
-    worst: int = 60
-    #: Part of the largest rate from which on a contact is among the worst: a mirror pair differs by rounding.
-    as_bad: float = 0.999
-    #: Part to which all displacements must fall where contacts that bear nothing open, or they stay closed.
-    less: float = 1.0 - 1e-6
-    #: Force that events leave at the contacts of a disk that bears nothing (mean weights): some times that of
-    #: ``PathOptions.passing``.
-    bare: float = 1e-7
-    #: Part of the largest rate of a displacement that rounding makes of a gap's where a disk bears nothing; a tenth of
-    #: a thousandth was seen.
+    #: Part of the largest rate by which rounding may change rates: of the gaps of a disk that bears nothing, where a
+    #: tenth of that was seen, of a mirror pair, which is bad together, and of displacements that are to be smaller.
     rounding: float = 1e-3
+
+    @property
+    def bare(self) -> float:
+        """Force (mean weights) that some events leave at the contacts of a disk that bears nothing."""
+        return 10.0 * SYSTEM.bare
 
 
 OPTIONS = RateOptions()
@@ -109,13 +106,13 @@ class Rates:
 class RateProblem:
     """Rates of one system on the way to larger (``direction`` 1) or smaller (-1) load factors.
 
-    ``force`` : by which a contact may be away from its change when it changes; ``negligible`` : rate of a force, per
-    load, with which a contact has no part in the load (mean weights).
+    ``force`` : by which a contact may be away from its change when it changes (mean weights). Contacts of rattlers,
+    which open and close at the rounding of a force, have no part in the load, and make no events.
     """
 
-    def __init__(self, system: StaticSystem, direction: float, *, force: float, negligible: float):
+    def __init__(self, system: StaticSystem, direction: float, *, force: float):
         self.system, self.direction, self.force = system, direction, force
-        self.negligible = negligible * system.problem.load_size
+        self.negligible = SYSTEM.event * system.problem.load_size
         self._right = system.interleave(direction * system.problem.load_vector)
         self.lifts = bool((system.problem.held.axis == 1).any())  #: whether a load holds the height of a disk
         #: (dof,) rates of what loads hold
@@ -149,7 +146,7 @@ class RateProblem:
         # one that bears nothing has no slip to go on with
         idle = (np.abs(sense) == SLIDING) & (trial.borne <= self.force)
         sense = np.where(idle, np.int8(STICKING), sense)
-        ways = (OPTIONS.all, False, False), (OPTIONS.worst, True, False), (OPTIONS.worst, True, True)
+        ways = (OPTIONS.all, False, False), (SYSTEM.patience, True, False), (SYSTEM.patience, True, True)
         for rounds, worst, anew in ways:  # whether the worst alone change, and whether each tangent is factorised anew
             now, tried = sense, {sense.tobytes()}
             had: dict[int, set[int]] = {}  #: statuses, in these rounds, of contacts that opened or closed
@@ -169,7 +166,7 @@ class RateProblem:
                 due = found.due(self.force)
                 if worst:
                     rates = found.rate[due]
-                    due = due[rates >= OPTIONS.as_bad * rates.max()]
+                    due = due[rates >= (1.0 - OPTIONS.rounding) * rates.max()]
                 now = changed(now, due, found.what)
                 for c in due.tolist():
                     if found.what[c] not in (OPENS, CLOSES) or not self.system.friction[c] > 0.0:
@@ -211,7 +208,7 @@ class RateProblem:
             factor = self.system.updated_factor(known, opened)
             less = self.velocity(known, opened, factor)
             changes = self.changes(trial, less, opened)
-            if not changes.now and np.linalg.norm(less) < OPTIONS.less * np.linalg.norm(velocity):
+            if not changes.now and np.linalg.norm(less) < (1.0 - OPTIONS.rounding) * np.linalg.norm(velocity):
                 return Rates(opened, factor, less, changes, True, self.system.idle(trial, opened))
         return replace(rates, factor=self.system.updated_factor(known, sense))
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from ..errors import EquilibriumError, SolveError
 from ..kernels.integrators import INTEGRATORS
 from ..state import FloatArray, Reached, State
+from .dynamics import OPTIONS as MOTION
 from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
 from .equilibrium import OPTIONS, finish, overlap_at_start
@@ -31,13 +32,10 @@ class NotSettled(SolveError, RuntimeError):
 
 @dataclass(frozen=True)
 class HandOver:
-    """How dynamics hands over to statics. Times in sqrt(R/g)."""
+    """How dynamics hands over to statics."""
 
     tries: int  #: how often statics is tried
-    wait: float = 20.0  #: least time of dynamics between tries
     fallen: float = 1.0  #: part of its largest value since the last try to which the kinetic energy falls
-    nearly: float = 1e3  #: kinetic energy over its limit up to which a state whose steps ran out is tried all the same
-    nearly_still: float = 30.0  #: or the acceleration, which goes as the root of the energy
     nudged: bool = False  #: from the third try on, dynamics starts from an unstable equilibrium, displaced a little
 
 
@@ -106,8 +104,9 @@ def settle(
     why = ""
     for attempt in range(1, how.tries + 1):
         kinetic = settled.reached.kinetic_energy or 0.0
-        moving = kinetic > how.nearly * stop.kinetic_energy
-        moving = moving and not (settled.reached.mean_acceleration or math.inf) < how.nearly_still * stop.acceleration
+        moving = kinetic > MOTION.nearly * stop.kinetic_energy
+        nearly_still = math.sqrt(MOTION.nearly) * stop.acceleration  # that goes as the root of the energy
+        moving = moving and not (settled.reached.mean_acceleration or math.inf) < nearly_still
         # steps that run out within a ramp leave another load than the one that is asked for
         if not settled.reached.settled and (moving or settled.load_factor != load[1]):
             break
@@ -126,7 +125,7 @@ def settle(
             why = f": {error}"
         if not settled.reached.settled or attempt == how.tries or left().maximum_steps == 0:
             break
-        settled = relax(dynamics, replace(left(), least_time=how.wait), load=held)
+        settled = relax(dynamics, replace(left(), least_time=MOTION.swings), load=held)
         settled = replace(settled, reached=replace(settled.reached, more_relaxations=attempt))
     if settled.reached.settled and why and left().maximum_steps > 0:
         raise NotSettled(f"the packing is nearly at rest under {what}, but finds no stable equilibrium{why}")

@@ -26,8 +26,10 @@ from ..errors import EquilibriumError
 from ..kernels.transitions import SLIDES, STICKS
 from ..linalg.lowest import Eigenpair, followed, lowest_real
 from ..state import SLIDING, STICKING, FloatArray
+from .free import OPTIONS as FREE
 from .free import free_disks, touched, without_bare
 from .rates import next_changes
+from .system import OPTIONS as SYSTEM
 from .system import StaticSystem, Trial
 
 
@@ -38,21 +40,22 @@ class StabilityOptions:
     #: Eigenvalue of M^-1 K, in g/R, above minus which nothing counts as unstable: disks that roll freely have 0, and
     #: what grows no faster than a thousandth in sqrt(R/g) does not in any time of interest.
     neutral: float = 1e-6
-    #: Eigenvalue from which on no direction is unstable or free, so that one factorisation settles both; the softest of
-    #: a packing of some hundred layers is 0.1.
-    soft: float = 1e-4
-    #: Part of the normal stiffness that rounding makes of a stiffness of 0; softer disks than that cannot be judged.
-    rounding: float = 1e-14
     #: How far to the left of zero the search begins, in units of the normal stiffness: the first of this and its
     #: products with 10 to 1,000 that the symmetric part allows, so that there are few points on the way.
     left_of_all: float = 1e-2
-    #: Sum of displacements along x below which a direction leads to neither side, its largest component being 1.
-    least_sideways: float = 1e-6
-    #: Times that a direction may change the contacts that slide along it before it counts as one that grows.
-    rounds: int = 12
+
+    @property
+    def soft(self) -> float:
+        """Eigenvalue from which on no direction is unstable or free, so that one factorisation settles both, clear of
+        what is neutral; the softest of a packing of some hundred layers is 0.1."""
+        return 100.0 * self.neutral
 
 
 OPTIONS = StabilityOptions()
+
+#: Part of the normal stiffness that rounding makes of a stiffness of 0, a sum over some ten contacts that turn; softer
+#: disks than that cannot be judged.
+ROUNDING = 64.0 * float(np.finfo(float).eps)
 
 
 class Clustered(EquilibriumError):
@@ -138,7 +141,7 @@ class Spectrum:
         direction = system.deinterleave(self._scale * self.lowest[1])
         direction /= np.abs(direction).max()
         sideways = float(direction[: system.problem.n].sum())
-        if abs(sideways) <= OPTIONS.least_sideways:
+        if abs(sideways) <= FREE.part:  # it leads to neither side
             sideways = float(direction[np.argmax(np.abs(direction))])
         return -direction if sideways < 0.0 else direction
 
@@ -191,7 +194,7 @@ def divergence(spectrum: Spectrum) -> FloatArray | None:
     slides = trial.sense[sliding]
     for side in (1.0, -1.0):
         direction, here = side * spectrum.direction, trial
-        for _ in range(OPTIONS.rounds):
+        for _ in range(SYSTEM.patience):
             what = next_changes(system, here, direction, here.sense, 0.0, 0.0).what[sliding]
             now = here.sense[sliding]
             after = np.where(what == STICKS, STICKING, np.where(what == np.sign(slides) * SLIDES, slides, now))
@@ -243,7 +246,7 @@ def _too_light(system: StaticSystem, trial: Trial) -> bool:
     stiffness = system.state(trial, 0.0).largest_normal_force() / system.problem.packing.radius
     held = system.problem.held
     stiffness[held.disk[held.axis == 1]] = 0.0
-    return bool(((stiffness > 0.0) & (stiffness < OPTIONS.rounding * system.problem.stiffness)).any())
+    return bool(((stiffness > 0.0) & (stiffness < ROUNDING * system.problem.stiffness)).any())
 
 
 def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArray]:
@@ -261,5 +264,5 @@ def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArra
     scale = 1.0 / np.sqrt(mass)
     matrix.data *= scale[matrix.indices] * np.repeat(scale, np.diff(matrix.indptr))
     k = system.problem.stiffness
-    matrix.data[system.pattern.diagonal] += np.where(idle, k, np.maximum(OPTIONS.neutral, OPTIONS.rounding * k / mass))
+    matrix.data[system.pattern.diagonal] += np.where(idle, k, np.maximum(OPTIONS.neutral, ROUNDING * k / mass))
     return matrix, scale

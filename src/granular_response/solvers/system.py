@@ -25,17 +25,45 @@ __all__ = ["OPTIONS", "Configuration", "StaticSystem", "SystemOptions", "Trial"]
 
 @dataclass(frozen=True)
 class SystemOptions:
-    """Numbers by which the static equations are solved."""
+    """Numbers by which the static equations are solved. Forces in mean weights.
 
+    A force counts as none on three levels, a decade apart, so that what one leaves is no event of the next.
+    """
+
+    #: Largest force or torque left on any disk at an equilibrium. Displacements of a radius round the force of a
+    #: contact of stiffness 3000 by 3e-12.
+    tolerance: float = 1e-10
     #: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
     regularisation: float = 1e-10
     #: Part of the force out of balance that a step by the factorisation of another tangent leaves (2-norms).
     left_over: float = 1e-6
-    #: Difference of two shifts, in units of the normal stiffness, that solutions by the factorisation with one of them
-    #: make up for with little effort: below the softest modes of a packing of some hundred layers.
-    same_shift: float = 1e-7
+    #: A shift of the diagonal, in units of the normal stiffness, that is below the softest modes of a packing of some
+    #: hundred layers. It holds disks that nothing holds and hardly damps others, and solutions by the factorisation of
+    #: a matrix make up for it with little effort.
+    soft: float = 1e-7
+    #: Repetitions after which a search is given up that ends by itself, as a rule long before: one that goes on goes in
+    #: a circle. Worst contacts of rates changed 30 times at most, contacts at one load of a path 8 times, and with the
+    #: 3/2 law an increment took 12 steps.
+    patience: int = 40
     #: Stiffnesses that may have changed since a factorisation: with more, solutions cost more than another one.
     most_changed: int = 40
+
+    @property
+    def enough(self) -> float:
+        """Force at which Newton's method ends without trying to do better: what displacements of some hundredths of a
+        radius round a contact force by."""
+        return 1e-3 * self.tolerance
+
+    @property
+    def event(self) -> float:
+        """By how much a contact force may be away from its event, and how much it must change in a mean weight of load
+        to have a part in it: ten times what an equilibrium leaves, which would decide on events otherwise."""
+        return 10.0 * self.tolerance
+
+    @property
+    def bare(self) -> float:
+        """Force up to which a contact bears nothing: what an event may leave out of balance."""
+        return 10.0 * self.event
 
 
 OPTIONS = SystemOptions()
@@ -50,7 +78,7 @@ class StaticSystem(Equations):
         self._kept: tuple[np.ndarray, Factor] | None = None
         self._updated: Updated | None = None
         self.renewals = 0  #: factorisations made by :meth:`renewed_factor`
-        self._steps = Sequence(self.storage, same=OPTIONS.same_shift * problem.stiffness)
+        self._steps = Sequence(self.storage, same=OPTIONS.soft * problem.stiffness)
 
     def factorise(self, matrix: sp.csc_array) -> Eliminated:
         """LU of a tangent, after those of steps have gone."""

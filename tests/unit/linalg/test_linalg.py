@@ -164,10 +164,10 @@ def test_the_lowest_is_found_where_it_is_negative(values, expected, seed):
     assert solutions < 120 and points < 20  # that of a slab is decided within 40
 
 
-def test_none_is_found_where_points_run_out(monkeypatch):
+def test_none_is_found_where_vectors_and_points_run_out(monkeypatch):
     matrix = with_eigenvalues((1e-6, *SPREAD), 0)
     assert lowest_of(matrix)[0] is not None
-    monkeypatch.setattr(lowest, "OPTIONS", replace(lowest.OPTIONS, points=2))
+    monkeypatch.setattr(lowest, "OPTIONS", replace(lowest.OPTIONS, most=2))
     assert lowest_of(matrix)[0] is None
 
 

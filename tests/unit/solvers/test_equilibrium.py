@@ -104,7 +104,7 @@ def test_fixed_limits_lead_to_the_same_equilibrium(start, monkeypatch):
     assert around.configuration.q == pytest.approx(direct.configuration.q, abs=1e-11)
     assert np.array_equal(around.status, direct.status)
     calls.clear()
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, tries=0))
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, stalled=0))
     assert solve_increment(system, known, external, known.q, Work()) is None
 
 

@@ -9,7 +9,7 @@ from small_scenes import free_disks
 import granular_response as gr
 from granular_response.observe.broke_in import broke_in
 from granular_response.scene.arrays import LEAST_MASS
-from granular_response.solvers import free, path, rates, solution
+from granular_response.solvers import free, solution
 from granular_response.solvers.equilibrium import external_force
 from granular_response.solvers.solution import Solution
 from granular_response.solvers.system import StaticSystem
@@ -64,11 +64,27 @@ def test_disks_that_roll_freely_are_named_and_those_that_do_not_are_not():
     assert [one.undetermined for one in gr.solve(slab, progress=False).certificates] == [(), ()]
 
 
-def test_forces_that_are_none_are_those_of_events():
-    """A contact bears nothing up to the force that an event leaves, and a residual moves no disk that may fall."""
-    passing = path.OPTIONS.passing
-    assert free.OPTIONS.bare == passing and rates.OPTIONS.bare == pytest.approx(10.0 * passing)
-    assert free.OPTIONS.residual == pytest.approx(0.1 * LEAST_MASS)
+@pytest.mark.parametrize("force", [3e-9, 3e-8])
+def test_a_contact_is_a_tie_from_the_force_that_an_event_leaves_on(force):
+    """Up to 1e-8 mean weights it may open; its disk then lies on nothing."""
+    alone, state = free_disks([[500.0, 1.0 - force / 6000.0]])
+    equations = StaticSystem(alone, state)
+    known = equations.start(state)
+    opened = free.without_bare(equations, equations.trial(known, known.q))
+    assert (opened is None) == (force > 1e-8)
+
+
+@pytest.mark.parametrize("part", [0.03, 0.3])
+def test_a_residual_along_a_null_direction_moves_nothing_and_the_lightest_disk_falls(part):
+    """Of a disk in the air: forces up to a tenth of the least mass are taken out of its step."""
+    alone, state = free_disks([[500.0, 50.0]])
+    equations = StaticSystem(alone, state)
+    trial = equations.trial(equations.start(state), equations.start(state).q)
+    force = part * LEAST_MASS * np.array([0.0, 1.0, 0.0])
+    step = equations.step(trial, force)
+    by = free.solved_by(equations, equations.kept_factor(trial))
+    left = np.abs(free.least_at_rest(equations, by, step, force)).max() / np.abs(step).max()
+    assert left > 0.99 if part > 0.1 else left < 1e-6
 
 
 @pytest.mark.parametrize("part", [3e-4, 3e-3])

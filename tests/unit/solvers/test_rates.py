@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene, shaken, started
 
+from granular_response.kernels import transitions
 from granular_response.solvers.equilibrium import finish
-from granular_response.solvers.path import OPTIONS, PathError, PathRecord, follow
+from granular_response.solvers.path import PathError, PathRecord, follow
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.rates import RateProblem
+from granular_response.solvers.rates import Changes, RateProblem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 
@@ -88,7 +89,7 @@ def test_rates_of_random_packings_do_not_contradict_themselves():
         known = type(known)(known.q, np.where(slides, -sign * stretched, known.spring), known.overlap)
         sense = np.where(slides, sign * SLIDING, trial.status).astype(np.int8)
         here = system.trial(known, known.q, fixed=sense)
-        rates = RateProblem(system, 1.0, force=1e-9, negligible=OPTIONS.negligible).solve(here, sense)
+        rates = RateProblem(system, 1.0, force=1e-9).solve(here, sense)
         assert rates is not None
         h = 1e-8
         kept, free = (system.trial(known, known.q + h * rates.velocity, fixed=f) for f in (rates.sense, None))
@@ -102,3 +103,37 @@ def test_rates_of_random_packings_do_not_contradict_themselves():
         at_limit += int(slides.sum())
         stuck += int((rates.sense[slides] == STICKING).sum())
     assert 0.1 * at_limit < stuck < 0.9 * at_limit
+
+
+@pytest.mark.parametrize(("less", "together"), [(3e-4, 2), (3e-3, 1)])
+def test_contacts_that_contradict_themselves_change_all_at_once_for_some_rounds_and_then_the_worst(
+    monkeypatch, less, together
+):
+    """Eight rounds, and then two times forty; of two contacts one is by a part less bad than the other."""
+    problem = Problem.from_scene(scene())
+    system, known = started(problem, problem.bare_state())
+    trial = system.trial(known, known.q)
+    begin = np.full(len(trial.sense), STICKING, np.int8)
+    seen: list[np.ndarray] = []
+
+    def contradicts(_self, _trial, _velocity, sense):
+        """Two contacts, by a Gray code, so that no statuses come again."""
+        step = 1 if np.array_equal(sense, begin) else contradicts.step + 1
+        contradicts.step = step
+        seen.append(sense)
+        place = (step & -step).bit_length() - 1
+        what, left, rate = np.zeros((3, len(sense)))
+        two = [2 * place, 2 * place + 1]
+        what[two] = np.where(sense[two] == STICKING, transitions.SLIDES, transitions.STICKS)
+        left[:], rate[two] = 1.0, (1.0, 1.0 - less)
+        left[two] = 0.0
+        return Changes(what, left, rate, len(two))
+
+    monkeypatch.setattr(RateProblem, "changes", contradicts)
+    monkeypatch.setattr(RateProblem, "velocity", lambda *_: np.zeros(system.dof))
+    monkeypatch.setattr(system, "updated_factor", lambda *_: None)
+    monkeypatch.setattr(system, "renewed_factor", lambda *_: None)
+    assert RateProblem(system, 1.0, force=1e-9).solve(trial, begin) is None
+    begins = [k for k, sense in enumerate(seen) if np.array_equal(sense, begin)]
+    assert np.diff([*begins, len(seen)]).tolist() == [8, 40, 40]
+    assert [int((seen[k + 1] != begin).sum()) for k in begins] == [2, together, together]

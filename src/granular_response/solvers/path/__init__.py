@@ -6,7 +6,7 @@ frictionless arrays):
 
 1. :class:`..rates.RateProblem` gives the statuses with which the equilibrium goes on, and the rates of displacements;
 2. the load at which the next contact changes follows from the rates; Newton's method with the statuses as they are
-   finds equilibrium there, and by the way the load at which the change is exact to ``PathOptions.event``; where the
+   finds equilibrium there, and by the way the load at which the change is exact to ``SystemOptions.event``; where the
    return map would give another force than a status that was kept, the rates at the end tell what changed on the way,
    and slip that turned round is bracketed;
 3. contacts that are at their change change, a mirror pair together, and so on from 1.
@@ -34,6 +34,7 @@ from ...state import State
 from ..dynamics import DynamicsError
 from ..increment import Work
 from ..problem import Problem
+from ..system import OPTIONS as SYSTEM
 from . import events
 from .landing import landed
 from .losses import beyond, by_motion, diverges, first_unstable, relisted
@@ -114,7 +115,7 @@ def followed(leg: Leg, point: Point, together: Together | None, watched: bool = 
         while point.factor != leg.target:
             before, known = point, len(recorded)
             increment = None if together is None else together.step(point)
-            point = step(leg, point, still > leg.options.still) if increment is None else increment
+            point = step(leg, point, still > SYSTEM.patience) if increment is None else increment
             if watched and not any(event.lost for event in recorded[known:]):
                 point = first_unstable(leg, before, point, one_by_one=together is None)
             gone = abs(point.factor - before.factor) * leg.unit
@@ -129,7 +130,7 @@ def followed(leg: Leg, point: Point, together: Together | None, watched: bool = 
         if not watched:
             return followed(leg, leg.at(leg.start), together, watched=True)
         returned += 1
-        if returned > leg.options.still:
+        if returned > SYSTEM.patience:
             raise PathError(f"the equilibrium at load factor {leg.target:g} is unstable, and motion returns to it")
         try:
             point = by_motion(leg, point, "bifurcation", "unstable", None)

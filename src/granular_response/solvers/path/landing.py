@@ -14,6 +14,7 @@ from ..equilibrium import OPTIONS as NEWTON
 from ..equilibrium import attainable, external_force
 from ..free import least, solved_by, suspicious
 from ..rates import Changes, Rates, changed
+from ..system import OPTIONS as SYSTEM
 from ..system import Trial
 from .points import Leg, Point, largest
 
@@ -39,7 +40,8 @@ def landed(leg: Leg, point: Point, rates: Rates) -> Point | None:
         left = leg.options.listed_again / fastest
     contact, length = rates.changes.first()
     aim = Aim(left, length, contact, int(rates.changes.what[contact]) if np.isfinite(length) else transitions.NOTHING)
-    for _ in range(leg.options.tries):
+    # shorter each time: to an event before the one expected, or half as long where there is no equilibrium at the end
+    for _ in range(SYSTEM.patience):
         tried = _tried(leg, point, rates, aim)
         if not isinstance(tried, Aim):
             return tried
@@ -78,8 +80,9 @@ def _tried(leg: Leg, point: Point, rates: Rates, aim: Aim) -> Point | Aim | None
         return other.shorter(0.5 * way) if event is not None and contact == aim.contact else other
     if again and (turn := _turn(leg, point, rates, then, way)) is not None:
         return aim.shorter(turn)
-    if (bent := leg.stiffest * trial.bend) > leg.options.bent:
-        return aim.shorter(min(0.5, 0.8 * (leg.options.bent / bent) ** (1 / 3)) * way)
+    # force of a spring from the bend of its contact's way: it falls as the third power of the length
+    if (bent := leg.stiffest * trial.bend) > SYSTEM.bare:
+        return aim.shorter(min(0.5, 0.8 * (SYSTEM.bare / bent) ** (1 / 3)) * way)
     if steps > leg.options.outdated:
         point.system.outdate(rates.factor)
     if not again:  # what the rates of the start say of contacts that bear nothing is the turn on the way
@@ -140,8 +143,8 @@ def smooth(
     at_end = event is None and length >= abs(leg.target - point.factor)
     factor = leg.target if at_end else point.factor + leg.direction * length
     q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
-    before, enough, stalled = np.inf, NEWTON.enough if event is None else leg.passing, False
-    for done in range(leg.options.tries):
+    before, enough, stalled = np.inf, SYSTEM.enough if event is None else leg.passing, False
+    for done in range(SYSTEM.patience):
         along = abs(factor - point.factor)
         trial = system.trial(known, q, fixed=rates.sense, velocity=rates.velocity, length=along)
         force = trial.contact_force + external_force(leg.problem, factor)

@@ -19,6 +19,7 @@ from ..problem import Problem
 from ..rates import OPTIONS as RATES
 from ..rates import RateProblem
 from ..stability import judged
+from ..system import OPTIONS as SYSTEM
 from ..system import Configuration, StaticSystem, Trial
 
 
@@ -26,48 +27,25 @@ from ..system import Configuration, StaticSystem, Trial
 class PathOptions:
     """Numbers that a path goes by. Forces and loads in mean weights, lengths in mean radii."""
 
-    #: Force by which a contact may be away from its event when it changes its status: what a path of a thousand events
-    #: leaves of them is 1e-8 of a load of some weights.
-    event: float = 1e-9
-    #: Rate of a contact force, per load, below which the contact has no part in the load: rattlers, whose contacts open
-    #: and close at the rounding of a force, make no events.
-    negligible: float = 1e-9
     #: Newton steps with one factorisation, and part of the residual that a step may leave; two or three are usual.
     same_tangent: int = 6
     slow: float = 0.3
-    #: Force of a spring from the bend of its contact's way within an increment, above which that is shortened; what is
-    #: left of it is smaller, and falls as the third power of the length.
-    bent: float = 1e-8
-    #: Unbalanced force that is left at an event, and part of the load where that is below a mean weight. The next
-    #: increment takes it up, so that it does not add up. In the slabs of the benchmarks events are off by 5e-10 in the
-    #: median, and wall forces at the end by 3e-10 at most.
-    passing: float = 1e-8
     #: Newton steps of a landing above which the next rates have a factorisation of their own. Those of an old one miss
     #: events, and a landing is then tried again; a lower number asks for more factorisations than that spares.
     outdated: int = 2
-    #: Newton steps of an increment (with the 3/2 law, whose stiffness changes on the way, up to 12 were needed), and
-    #: times that it is shortened: to an event that came before the one expected, or to half of its length where no
-    #: equilibrium is found at its end.
-    tries: int = 40
-    #: Points at one load after which no more are looked for there; 8 in turn were the most that led on.
-    still: int = 30
     #: Load by which the next equilibrium is looked for, with limits of friction held fixed, where no statuses are found
     #: for the rates; doubled while the path does not go on after it, or it would take as many steps as a slab has loads
-    #: of this size. In lattices the path mostly goes on there, only with other statuses.
+    #: of this size. In lattices the path mostly goes on there, only with other statuses. A loss of stability between
+    #: two events is found to a hundredth of it. A motion, which needs more to drive it, begins with a hundred times.
     beyond: float = 1e-4
     #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
     nearby: float = 1e-3
-    #: Load to which the loss of stability between two events is found.
-    stability: float = 1e-6
-    #: Load by which the motion goes on where an equilibrium is lost, doubled while the path does not go on after it.
-    jump: float = 0.01
     #: Displacement after which candidates are listed again, and longest in one increment; the two together are below
     #: half of the largest gap listed.
     listed_again: float = 0.12
     #: Increment of a large packing that takes events together: this times the square root of the number of disks, since
-    #: a deeper packing takes more load to change as many contacts; and at most ``longest``.
+    #: a deeper packing takes more load to change as many contacts.
     together: float = 0.0033
-    longest: float = 3.2
 
 
 #: As measured in docs/benchmarks.md.
@@ -164,7 +142,10 @@ class Leg:
         self.begun, self.reported = len(self.record.events), self.start.load_factor
         self.unit, laws = self.problem.load_size, (self.problem.pair_law, self.problem.wall_law)
         self.whole = self.unit * abs(self.target - self.start.load_factor)
-        self.passing = self.options.passing * min(self.unit, 1.0)
+        #: Unbalanced force that is left at an event, less under a load below a mean weight. The next increment takes it
+        #: up, so that it does not add up: in the slabs of the benchmarks events are off by 5e-10 in the median, and
+        #: wall forces at the end by 3e-10 at most.
+        self.passing = SYSTEM.bare * min(self.unit, 1.0)
         self.stiffest = max(law.tangential_stiffness for law in laws)
         #: whether the stiffness of contacts varies with their overlap
         self.varying = any(law.stiffest(2.0) != law.stiffest(1.0) for law in laws)
@@ -176,14 +157,14 @@ class Leg:
 
     def gone_on(self) -> None:
         """The load has grown: steps off the next lost equilibrium begin short again."""
-        self.jump, self.beyond = self.options.jump / self.unit, self.options.beyond / self.unit
+        self.jump, self.beyond = 100.0 * self.options.beyond / self.unit, self.options.beyond / self.unit
 
     def at(self, state: State) -> Point:
         """A point of a new section, around the positions and candidates of a state."""
         system = StaticSystem(self.problem, state)
         trial = system.at(state)
-        force = max(self.options.event, 10.0 * attainable(system, trial.configuration.q))
-        rates = RateProblem(system, self.direction, force=force, negligible=self.options.negligible)
+        force = 10.0 * attainable(system, trial.configuration.q)  # that of an event, or more where rounding is more
+        rates = RateProblem(system, self.direction, force=force)
         return Point(rates, state.load_factor, trial, trial.sense, trial.sense)
 
     def origin(self, point: Point) -> FloatArray:

@@ -26,7 +26,7 @@ class Together:
     def asked(cls, leg: Leg, point: Point, load: float | None) -> Together | None:
         """As asked for, by default in large packings only; None where events are taken one by one."""
         if load is None and point.system.pattern.dissected:
-            load = min(leg.options.together * leg.problem.n**0.5, leg.options.longest)
+            load = leg.options.together * leg.problem.n**0.5
         # in two increments at least, or there are none of twice the length
         load = min(load or 0.0, 0.5 * leg.whole)
         return cls(leg, load) if load else None
