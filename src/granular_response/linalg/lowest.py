@@ -27,9 +27,10 @@ class LowestOptions:
     vector: float = 1e-9
     #: By how many times a Krylov space grows between two looks at its eigenvalues, which cost as much as a solution.
     look: float = 1.2
-    #: Most vectors of a Krylov space, without restarts, since a space of some dozens does; and most points in turn, of
-    #: which each, as a rule, comes a hundred times nearer to zero.
+    #: Most vectors of a Krylov space: without restarts, since a space of some dozens does.
     most: int = 120
+    #: Most points in turn; each of the usual ones comes a hundred times nearer to zero.
+    points: int = 60
 
 
 OPTIONS = LowestOptions()
@@ -51,7 +52,7 @@ def lowest_real(
     """
     start = np.random.default_rng(0).standard_normal(n)
     point = left
-    for _ in range(OPTIONS.most):
+    for _ in range(OPTIONS.points):
         value, vector, residual = nearest(inverse(point), start, point, OPTIONS.residual)
         distance = abs(value - point)
         error = OPTIONS.certain * residual * distance

@@ -45,9 +45,10 @@ class RelaxationOptions:
 
     #: Steps between two looks at the stopping criteria: a look costs as much as some steps.
     check_every: int = 100
-    #: Looks between two at whether some disks roll freely, and the least number of readings of the acceleration over
-    #: half a swing, which is too short for more in a small packing.
-    looks: int = 10
+    #: Looks between two at whether some disks roll freely.
+    rolling_checks: int = 10
+    #: Least number of readings of the acceleration over half a swing, which is too short for more in a small packing.
+    readings: int = 10
     #: Largest part of all disks that may roll fast.
     most_rollers: float = 0.1
     #: Kinetic energy over its limit up to which a packing is nearly at rest: any number of disks may roll then, and one
@@ -385,7 +386,7 @@ class Dynamics:
 
 def half_swing(problem: Problem, time_step: float) -> int:
     """How many looks half a swing takes, at least as many as a judgement needs."""
-    return max(math.ceil(0.5 * problem.swing_time / (OPTIONS.check_every * time_step)), OPTIONS.looks)
+    return max(math.ceil(0.5 * problem.swing_time / (OPTIONS.check_every * time_step)), OPTIONS.readings)
 
 
 class Relaxation:
@@ -451,7 +452,7 @@ class Relaxation:
             raise DynamicsError(f"a load lifts disk {lifted} off the packing for good; nothing can hold it")
         slow = energy < OPTIONS.nearly * stop.kinetic_energy
         watched = slow or stop.acceleration > 0.0
-        look_at_rolling = (dynamics.steps // OPTIONS.check_every) % OPTIONS.looks == 0
+        look_at_rolling = (dynamics.steps // OPTIONS.check_every) % OPTIONS.rolling_checks == 0
         if not (watched or look_at_rolling or self.rolling):  # far from rest, whatever touches
             self.envelope.append(energy)
             self.settled, self.network = False, None

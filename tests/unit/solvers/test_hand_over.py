@@ -81,7 +81,7 @@ def test_accelerations_are_watched_for_half_a_period_of_the_slowest_motion():
         run.look()
         small = small + 1 if motion.mean_acceleration() < 1e-3 else 0
     assert small * 100 * motion.time_step >= 0.5 * problem.swing_time
-    assert small == run.unrest.maxlen > OPTIONS.looks
+    assert small == run.unrest.maxlen > OPTIONS.readings
 
 
 def test_a_packing_is_not_at_rest_while_one_of_its_disks_falls():
