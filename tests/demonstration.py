@@ -163,4 +163,4 @@ def problem(friction: float) -> Problem:
     pair, wall = (Cubic.of(k, 50.0, 0.8 * k, 40.0, mu, -math.inf, 0.5) for k, mu in ((3000.0, friction), (6000.0, 0.0)))
     if friction == 0.0:
         pair = without_friction(pair)
-    return replace(made, pair_law=pair, wall_law=without_friction(wall))
+    return replace(made, laws=((pair, without_friction(wall)),))

@@ -60,8 +60,8 @@ def profile(name: str, command: str) -> dict[str, Any]:
     packing = problem.packing
     problem = problem.with_loads(packing.position)
     words = [
-        lammps.model(problem.pair_law, problem.pair_rolling),
-        lammps.model(problem.wall_law, problem.wall_rolling),
+        lammps.model(*(between for between, _ in problem.laws)),
+        lammps.model(*(at_wall for _, at_wall in problem.laws)),
     ]
     lammps.LAWS["rolling"] = lambda _: (f"pair_style granular\npair_coeff * * {words[0]}", f"granular {words[1]}")
     body = lammps.loaded_stages(

@@ -22,8 +22,8 @@ PROCESSORS = {"haswell": ["avx2", "fma", "bmi2"], "skylake-avx512": ["avx512f", 
 #: A kernel of one file, with what another one has inlined into it.
 SCRIPT = """
 from granular_response.contact import Linear
-from granular_response.contact.pair import frictionless_pair
-print(frictionless_pair(1.99, 0.0, 0.0, 0.0, 2.0, None, Linear(1000.0, 0.0, 0.0, 0.0, 0.0, 0.0))[0])
+from granular_response.contact.law import normal_force
+print(normal_force(0.01, None, 0.0, Linear(1000.0, 0.0, 0.0, 0.0, 0.0, 0.0)))
 """
 
 

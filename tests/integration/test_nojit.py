@@ -24,7 +24,7 @@ for integrator in ("beeman", "gear"):
     problem = Problem.from_scene(Scene.from_dict(base))
     dynamics = Dynamics(problem, problem.bare_state(), integrator, 4e-4)
     dynamics.advance(STEPS)
-    result += [dynamics.q, dynamics.v, dynamics.spring, dynamics.wall_spring]
+    result += [dynamics.q, dynamics.v, dynamics.model.pairs.spring, dynamics.model.walls.spring]
 frictionless = {**base, "contact": {"friction": 0.0}, "wall": {"friction": 0.0}, "loads": []}
 smooth = Problem.from_scene(Scene.from_dict(frictionless))
 result.append(minimise(smooth, smooth.bare_state()).position.ravel())

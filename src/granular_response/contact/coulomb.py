@@ -31,20 +31,13 @@ def cut(trial, damped, limit, stiffness):
 
     ``damped`` : force of the dashpot against the slip, a part of what the limit cuts; 0 at rest, where this is the
     return map. Where the limit acts, the stored spring becomes the one that gives the cut force, so that the contact
-    sticks again from there. Along the rolling too.
+    sticks again from there.
     """
     force = -stiffness * trial - damped
     kept = select(force > limit, limit, force)
     kept = select(kept < -limit, -limit, kept)
     slides = kept != force
     return kept, quotient_where(slides, -kept - damped, stiffness, trial), slides
-
-
-@kernel
-def moved(spring, slip_velocity, limit, stiffness, damping, time_step):
-    """Force and new spring, by :func:`cut`, of a contact that slips for a ``time_step``."""
-    force, new, _ = cut(spring + slip_velocity * time_step, damping * slip_velocity, limit, stiffness)
-    return force, new
 
 
 @kernel
@@ -65,8 +58,12 @@ def tangential_frozen(spring, slip_velocity, force_normal, law, rule, time_step)
 
 @kernel
 def tangential(spring, slip_velocity, force_normal, law, rule, time_step):
-    """Tangential force and new spring by ``rule``: CUT, LITERAL or UNLOADING."""
+    """Force and new spring of a contact that slips for a ``time_step``, by ``rule``: CUT, LITERAL or UNLOADING.
+
+    Along the rolling too, with ``contact.rolling.Rolling`` as the law and the velocity at which the contact rolls.
+    """
     if rule != CUT:
         return tangential_frozen(spring, slip_velocity, force_normal, law, rule, time_step)
-    most = limit(law, magnitude(force_normal))
-    return moved(spring, slip_velocity, most, law.tangential_stiffness, law.tangential_damping, time_step)
+    damped, most = law.tangential_damping * slip_velocity, limit(law, magnitude(force_normal))
+    force, new, _ = cut(spring + slip_velocity * time_step, damped, most, law.tangential_stiffness)
+    return force, new

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..machine.lanes import magnitude, root
-from .rolling import arms
+from .geometry import reduced_radii
 
 
 class Hertz(NamedTuple):
@@ -47,7 +47,7 @@ class Hertz(NamedTuple):
 
     def shapes(self, first, second):
         # 1 between the bodies for which the stiffness is given
-        return np.sqrt(arms(first, second) / self.reduced_radius)
+        return np.sqrt(reduced_radii(first, second) / self.reduced_radius)
 
     def stiffest(self, force: float) -> float:
         return self.normal_stiffness * max(force, 0.0) ** (1.0 / 3.0)

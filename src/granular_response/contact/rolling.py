@@ -1,8 +1,7 @@
 """The part of a contact along the rolling: a spring and a dashpot against relative spin, under a limit of its own.
 
 All laws share it, as they share the part along the tangent; :func:`.coulomb.cut` is that of both. With the relative
-spin ``w = w_i - w_j`` (``w_i`` at a wall) and the reduced radius ``R = R_i R_j / (R_i + R_j)`` (``R_i`` at a wall; both
-are full radii)
+spin ``w = w_i - w_j`` (``w_i`` at a wall) and the reduced radius ``R`` of :func:`.geometry.reduced_radii`
 
     dpsi/dt = R w,    F_r = -k_R psi - nu_R R w,    |F_r| <= mu_R |f_n|,
 
@@ -14,17 +13,17 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
 
 class Rolling(NamedTuple):
-    """Constants of the rolling resistance of one kind of contact."""
+    """Constants of the rolling resistance of one kind of contact, k_R, nu_R and mu_R; without friction there is none.
 
-    stiffness: float
-    damping: float
-    friction: float
+    Named as those that a law has along the tangent, so that what goes through both parts need not know which one it is.
+    """
+
+    tangential_stiffness: float = 0.0
+    tangential_damping: float = 0.0
+    friction: float = 0.0
 
 
-def arms(first, second=None):
-    """(m,) reduced radii of contacts of disks with radii ``first`` and ``second`` (None: a wall)."""
-    return np.array(first, float) if second is None else first * second / (first + second)
+#: Of contacts that roll freely.
+FREE = Rolling()

@@ -13,12 +13,13 @@ the force of the pair it is first in before that of the pair it is second in, al
 
 from __future__ import annotations
 
-from ..contact.coulomb import limit, moved
+from ..contact.coulomb import CUT, tangential
 from ..contact.geometry import at_wall, between
 from ..contact.law import normal_force
-from ..contact.pair import frictional, frictional_pair, frictionless, frictionless_pair
-from ..machine.lanes import WIDTH, gather, magnitude, put, select, spread, take
+from ..contact.pair import frictional, frictionless
+from ..machine.lanes import WIDTH, gather, put, select, spread, take
 from ..machine.machine_code import kernel
+from .model import Motion
 
 #: Pairs of a run of close indices whose forces are held back before they are added to their second disks: memory
 #: that one vector has just written at another offset cannot be read again at once.
@@ -28,63 +29,54 @@ SCRATCH = 4 * _BLOCK
 
 
 @kernel(forceinline=True)
-def _shape_at(shape, k, like):
-    """What the law needs of the bodies from contact ``k`` on; None for a law that needs nothing."""
-    if shape is None:
-        return None
-    return take(shape, k, like)
-
-
-@kernel(forceinline=True)
-def _rolled(overlap, normal, spin, s, rolls, dt):
-    """Couple on the first body of contact ``s``, or of several from there on; springs advance."""
-    arm, spring, rolling = take(rolls.arm, s, overlap), take(rolls.spring, s, overlap), rolls.rolling
-    most = limit(rolling, magnitude(normal))
-    force, new = moved(spring, arm * spin, most, rolling.stiffness, rolling.damping, dt)
-    put(rolls.spring, s, select(overlap > 0.0, new, 0.0))
+def _couples(overlap, normal, spin, c, rolls, dt):
+    """Couple on the first body of contact ``c``, or of several from there on; springs advance."""
+    arm = take(rolls.arm, c, overlap)
+    force, new = tangential(take(rolls.spring, c, overlap), arm * spin, normal, rolls.law, CUT, dt)
+    put(rolls.spring, c, select(overlap > 0.0, new, 0.0))
     return select(overlap > 0.0, arm * force, 0.0)
 
 
 @kernel(forceinline=True)
-def _couple(dx, dz, du, dw, reach, form, law, spin, s, rolls, dt):
-    """Couple on the first disk of the pair in slot ``s`` that rolls with a relative ``spin``, or of several pairs.
+def _forces(s, dx, dz, relative, spring, rolls, pairs, motion):
+    """Force on the first disk, its tangential part, and couple, of the pair in slot ``s``, or of several from there on.
 
-    Springs advance; what is open forgets its own.
+    ``dx``, ``dz`` : separation; ``relative`` : velocity along x and z, that of the rims, and spin. Springs advance.
     """
-    overlap, nx, nz = between(dx, dz, reach)
-    normal = normal_force(overlap, form, du * nx + dw * nz, law)
-    return _rolled(overlap, normal, spin, s, rolls, dt)
+    du, dw, rims, spin = relative
+    overlap, nx, nz = between(dx, dz, take(pairs.reach, s, dx))
+    normal = normal_force(overlap, take(pairs.shape, s, dx), du * nx + dw * nz, pairs.law)
+    if spring is None:
+        px, pz = frictionless(overlap, nx, nz, normal)
+        return px, pz, rims, spin
+    slip, before = dw * nx - du * nz - rims, take(spring, s, dx)
+    px, pz, pt, new = frictional(overlap, nx, nz, normal, slip, before, pairs.law, motion.rule, motion.dt)
+    put(spring, s, new)
+    if rolls is None:
+        return px, pz, pt, spin
+    return px, pz, pt, _couples(overlap, normal, spin, s, rolls, motion.dt)
 
 
 @kernel(forceinline=True)
-def _forces_at(like, i, j, s, n, q, v, rim, spring, shape, pairs, rolls, rule, dt):
-    """Force on the first disk, its tangential part, and couple, of the pair of disks ``i`` and ``j`` in slot ``s``.
-
-    Or of as many pairs from there on as ``like`` has lanes. Springs advance.
-    """
+def _forces_at(like, i, j, s, spring, rolls, pairs, motion):
+    """The same of the disks ``i`` and ``j``, or of as many pairs from there on as ``like`` has lanes."""
+    n, q, v, rim = motion.n, motion.q, motion.v, motion.rim
     dx = take(pairs.dx, s, like) + (take(q, i, like) - take(q, j, like))
     dz = take(pairs.dz, s, like) + (take(q, n + i, like) - take(q, n + j, like))
     du = take(v, i, like) - take(v, j, like)
     dw = take(v, n + i, like) - take(v, n + j, like)
-    reach = take(pairs.reach, s, like)
-    form = _shape_at(shape, s, like)
-    if spring is None:
-        px, pz = frictionless_pair(dx, dz, du, dw, reach, form, pairs.law)
-        return px, pz, like, like
-    rims = take(rim, i, like) + take(rim, j, like)
-    px, pz, pt, new = frictional_pair(
-        dx, dz, du, dw, rims, reach, form, take(spring, s, like), pairs.law, rule, dt
-    )  # fmt: skip
-    put(spring, s, new)
-    if rolls is None:
-        return px, pz, pt, like
-    spin = take(v, 2 * n + i, like) - take(v, 2 * n + j, like)
-    return px, pz, pt, _couple(dx, dz, du, dw, reach, form, pairs.law, spin, s, rolls, dt)
+    rims = spin = like
+    if spring is not None:
+        rims = take(rim, i, like) + take(rim, j, like)
+    if rolls is not None:
+        spin = take(v, 2 * n + i, like) - take(v, 2 * n + j, like)
+    return _forces(s, dx, dz, (du, dw, rims, spin), spring, rolls, pairs, motion)
 
 
 @kernel(forceinline=True)
-def _add(f, n, i, px, pz, pt, pc, spring, rolls):
+def _add(i, px, pz, pt, pc, spring, rolls, motion):
     """Add to the forces on disk ``i``, and the disks after it with lanes."""
+    f, n = motion.f, motion.n
     put(f, i, take(f, i, px) + px)
     put(f, n + i, take(f, n + i, pz) + pz)
     if spring is not None:
@@ -94,7 +86,7 @@ def _add(f, n, i, px, pz, pt, pc, spring, rolls):
 
 
 @kernel
-def _add_run(r, n, q, v, rim, f, spring, shape, pairs, rolls, rule, dt):
+def _add_run(r, spring, rolls, pairs, motion):
     """Add the forces of run ``r``."""
     i = pairs.runs[r, 0]
     j = pairs.runs[r, 1]
@@ -103,24 +95,24 @@ def _add_run(r, n, q, v, rim, f, spring, shape, pairs, rolls, rule, dt):
     scratch = pairs.scratch
     while k % WIDTH:
         k -= 1
-        px, pz, pt, pc = _forces_at(0.0, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rolls, rule, dt)
-        _add(f, n, i + k, px, pz, pt, pc, spring, rolls)
-        _add(f, n, j + k, -px, -pz, pt, -pc, spring, rolls)
+        px, pz, pt, pc = _forces_at(0.0, i + k, j + k, s + k, spring, rolls, pairs, motion)
+        _add(i + k, px, pz, pt, pc, spring, rolls, motion)
+        _add(j + k, -px, -pz, pt, -pc, spring, rolls, motion)
     like = spread(0.0)
     if j - i >= WIDTH:
         while k:
             k -= WIDTH
-            px, pz, pt, pc = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rolls, rule, dt)
-            _add(f, n, i + k, px, pz, pt, pc, spring, rolls)
-            _add(f, n, j + k, -px, -pz, pt, -pc, spring, rolls)
+            px, pz, pt, pc = _forces_at(like, i + k, j + k, s + k, spring, rolls, pairs, motion)
+            _add(i + k, px, pz, pt, pc, spring, rolls, motion)
+            _add(j + k, -px, -pz, pt, -pc, spring, rolls, motion)
         return
     while k:
         end = k
         start = max(k - _BLOCK, 0)
         while k > start:
             k -= WIDTH
-            px, pz, pt, pc = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rolls, rule, dt)
-            _add(f, n, i + k, px, pz, pt, pc, spring, rolls)
+            px, pz, pt, pc = _forces_at(like, i + k, j + k, s + k, spring, rolls, pairs, motion)
+            _add(i + k, px, pz, pt, pc, spring, rolls, motion)
             put(scratch, k - start, px)
             put(scratch, _BLOCK + k - start, pz)
             if spring is not None:
@@ -133,14 +125,14 @@ def _add_run(r, n, q, v, rim, f, spring, shape, pairs, rolls, rule, dt):
             pz = take(scratch, _BLOCK + end - start, like)
             pt = take(scratch, 2 * _BLOCK + end - start, like)
             pc = take(scratch, 3 * _BLOCK + end - start, like)
-            _add(f, n, j + end, -px, -pz, pt, -pc, spring, rolls)
+            _add(j + end, -px, -pz, pt, -pc, spring, rolls, motion)
 
 
 @kernel
-def _add_single_pairs(start, n, q, v, rim, f, spring, shape, pairs, rolls, rule, dt):
+def _add_single_pairs(start, spring, rolls, pairs, motion):
     """Add the forces of the runs of count one, from ``start`` on, several at once; their slots follow one another."""
-    runs = pairs.runs
-    scratch = pairs.scratch
+    runs, scratch = pairs.runs, pairs.scratch
+    n, q, v, f, rim = motion.n, motion.q, motion.v, motion.f, motion.rim
     end = runs.shape[0]
     whole = end - (end - start) % WIDTH
     like = spread(0.0)
@@ -150,22 +142,16 @@ def _add_single_pairs(start, n, q, v, rim, f, spring, shape, pairs, rolls, rule,
         dz = take(pairs.dz, s, like) + (gather(q, n, runs, r, 0) - gather(q, n, runs, r, 1))
         du = gather(v, 0, runs, r, 0) - gather(v, 0, runs, r, 1)
         dw = gather(v, n, runs, r, 0) - gather(v, n, runs, r, 1)
-        reach = take(pairs.reach, s, like)
-        form = _shape_at(shape, s, like)
-        if spring is None:
-            px, pz = frictionless_pair(dx, dz, du, dw, reach, form, pairs.law)
-        else:
+        rims = spin = like
+        if spring is not None:
             rims = gather(rim, 0, runs, r, 0) + gather(rim, 0, runs, r, 1)
-            px, pz, pt, new = frictional_pair(
-                dx, dz, du, dw, rims, reach, form, take(spring, s, like), pairs.law, rule, dt
-            )  # fmt: skip
-            put(spring, s, new)
-            put(scratch, 2 * WIDTH, pt)
         if rolls is not None:
             spin = gather(v, 2 * n, runs, r, 0) - gather(v, 2 * n, runs, r, 1)
-            put(scratch, 3 * WIDTH, _couple(dx, dz, du, dw, reach, form, pairs.law, spin, s, rolls, dt))
+        px, pz, pt, pc = _forces(s, dx, dz, (du, dw, rims, spin), spring, rolls, pairs, motion)
         put(scratch, 0, px)
         put(scratch, WIDTH, pz)
+        put(scratch, 2 * WIDTH, pt)
+        put(scratch, 3 * WIDTH, pc)
         for lane in range(WIDTH):
             i = runs[r + lane, 0]
             j = runs[r + lane, 1]
@@ -182,48 +168,50 @@ def _add_single_pairs(start, n, q, v, rim, f, spring, shape, pairs, rolls, rule,
     for r in range(whole, end):
         i = runs[r, 0]
         j = runs[r, 1]
-        px, pz, pt, pc = _forces_at(0.0, i, j, runs[r, 3], n, q, v, rim, spring, shape, pairs, rolls, rule, dt)
-        _add(f, n, i, px, pz, pt, pc, spring, rolls)
-        _add(f, n, j, -px, -pz, pt, -pc, spring, rolls)
+        px, pz, pt, pc = _forces_at(0.0, i, j, runs[r, 3], spring, rolls, pairs, motion)
+        _add(i, px, pz, pt, pc, spring, rolls, motion)
+        _add(j, -px, -pz, pt, -pc, spring, rolls, motion)
 
 
-# Springs, shapes and rolling are arguments of their own, beside what holds them: only of an argument does the compiler
+# Springs, rims and what rolls are arguments of their own, beside what holds them: only of an argument does the compiler
 # know that it is None.
 @kernel
-def add_pair_forces(q, v, rim, f, n, spring, shape, pairs, rolls, rule, dt):
-    """Add the forces of all disk-disk candidates to ``f``.
+def add_pair_forces(spring, rolls, pairs, motion):
+    """Add the forces of all disk-disk candidates to those of ``motion``, and their couples to those of ``rolls``.
 
-    Parameters
-    ----------
-    q, v, f : (2 n,) or (3 n,) generalised displacements, velocities, forces. With friction the third part
-        of ``f`` collects the sum of tangential forces, not yet multiplied by ``-radius``.
-    rim : (n,) radius times angular velocity, or None without friction.
-    pairs : ``model.Pairs``, and its ``spring`` and ``shape``; ``rule`` : of ``contact.RULES``; ``dt`` : time step of
-        the spring update.
-    rolls : ``model.Rolls``, to whose couples is added; None without rolling resistance.
+    ``spring``, ``rolls`` : of ``pairs``; ``pairs``, ``motion`` : ``model.Pairs`` and ``model.Motion``. With friction
+    the third part of ``motion.f`` collects the sum of tangential forces, not yet multiplied by ``-radius``.
     """
     for r in range(pairs.runs.shape[0]):
         if pairs.runs[r, 2] == 1:
-            _add_single_pairs(r, n, q, v, rim, f, spring, shape, pairs, rolls, rule, dt)
+            _add_single_pairs(r, spring, rolls, pairs, motion)
             break
-        _add_run(r, n, q, v, rim, f, spring, shape, pairs, rolls, rule, dt)
+        _add_run(r, spring, rolls, pairs, motion)
+
+
+@kernel(forceinline=True)
+def _wall_contact(c, walls, motion):
+    """Overlap of the disk of wall contact ``c``, and the force were it closed."""
+    i, nx, nz = walls.disk[c], walls.normal[c, 0], walls.normal[c, 1]
+    overlap = at_wall(motion.q[i], motion.q[motion.n + i], nx, nz, walls.gap[c])
+    apart = motion.v[i] * nx + motion.v[motion.n + i] * nz
+    return overlap, normal_force(overlap, take(walls.shape, c, 0.0), apart, walls.law)
 
 
 @kernel
-def add_wall_forces(q, v, rim, f, n, spring, shape, walls, rule, dt):
-    """Add the forces of the disk-wall candidates to ``f``; arguments as in :func:`add_pair_forces`."""
+def add_wall_forces(spring, walls, motion):
+    """Add the forces of the disk-wall candidates; arguments as in :func:`add_pair_forces`."""
+    n, v, f, rim = motion.n, motion.v, motion.f, motion.rim
     for c in range(walls.disk.size):
-        i = walls.disk[c]
-        nx = walls.normal[c, 0]
-        nz = walls.normal[c, 1]
-        overlap = at_wall(q[i], q[n + i], nx, nz, walls.gap[c])
-        form = _shape_at(shape, c, 0.0)
+        i, nx, nz = walls.disk[c], walls.normal[c, 0], walls.normal[c, 1]
+        overlap, normal = _wall_contact(c, walls, motion)
         if overlap > 0.0:
             if spring is None:
-                fx, fz = frictionless(overlap, nx, nz, v[i], v[n + i], form, walls.law)
+                fx, fz = frictionless(overlap, nx, nz, normal)
             else:
+                slip = v[n + i] * nx - v[i] * nz - rim[i]
                 fx, fz, ft, spring[c] = frictional(
-                    overlap, nx, nz, v[i], v[n + i], rim[i], form, spring[c], walls.law, rule, dt
+                    overlap, nx, nz, normal, slip, spring[c], walls.law, motion.rule, motion.dt
                 )  # fmt: skip
                 f[2 * n + i] += ft
             f[i] += fx
@@ -233,25 +221,25 @@ def add_wall_forces(q, v, rim, f, n, spring, shape, walls, rule, dt):
 
 
 @kernel
-def add_wall_couples(q, v, f, n, shape, rolls, walls, dt):
-    """Add the couples of disks that roll on walls to ``f``; ``rolls`` : ``model.Rolls``."""
+def add_wall_couples(rolls, walls, motion):
+    """Add the couples of disks that roll on walls."""
+    n = motion.n
     for c in range(walls.disk.size):
-        i, nx, nz = walls.disk[c], walls.normal[c, 0], walls.normal[c, 1]
-        overlap = at_wall(q[i], q[n + i], nx, nz, walls.gap[c])
-        normal = normal_force(overlap, _shape_at(shape, c, 0.0), v[i] * nx + v[n + i] * nz, walls.law)
-        f[2 * n + i] += _rolled(overlap, normal, v[2 * n + i], c, rolls, dt)
+        i = walls.disk[c]
+        overlap, normal = _wall_contact(c, walls, motion)
+        motion.f[2 * n + i] += _couples(overlap, normal, motion.v[2 * n + i], c, rolls, motion.dt)
 
 
 @kernel
 def forces(q, v, f, gravity, load_factor, dt, model):
     """Fill ``f`` with all forces and torques at ``(q, v)``; springs advance by ``dt``."""
-    pairs, walls, pair_rolls, wall_rolls = model.pairs, model.walls, model.pair_rolls, model.wall_rolls
-    _fill(q, v, f, gravity, load_factor, dt, model.rim, pairs, walls, pair_rolls, wall_rolls, model)
+    motion = Motion(model.n, q, v, model.rim, f, model.rule, dt)
+    _fill(gravity, load_factor, model.rim, model.pairs.rolls, model.walls.rolls, motion, model)
 
 
 @kernel
-def _fill(q, v, f, gravity, load_factor, dt, rim, pairs, walls, pair_rolls, wall_rolls, model):
-    n = model.n
+def _fill(gravity, load_factor, rim, pair_rolls, wall_rolls, motion, model):
+    n, f, pairs, walls = model.n, motion.f, model.pairs, model.walls
     weight = model.weight
     radius = model.radius
     for i in range(n):
@@ -260,12 +248,12 @@ def _fill(q, v, f, gravity, load_factor, dt, rim, pairs, walls, pair_rolls, wall
         f[n + i] = -gravity * weight[i]
     if rim is not None:
         for i in range(n):
-            rim[i] = radius[i] * v[2 * n + i]
+            rim[i] = radius[i] * motion.v[2 * n + i]
             f[2 * n + i] = 0.0
     if pair_rolls is not None:
         pair_rolls.couple[:] = 0.0
-    add_pair_forces(q, v, rim, f, n, pairs.spring, pairs.shape, pairs, pair_rolls, model.rule, dt)
-    add_wall_forces(q, v, rim, f, n, walls.spring, walls.shape, walls, model.rule, dt)
+    add_pair_forces(pairs.spring, pair_rolls, pairs, motion)
+    add_wall_forces(walls.spring, walls, motion)
     if rim is not None:
         for i in range(n):
             f[2 * n + i] *= -radius[i]
@@ -273,7 +261,7 @@ def _fill(q, v, f, gravity, load_factor, dt, rim, pairs, walls, pair_rolls, wall
         for i in range(n):
             f[2 * n + i] += pair_rolls.couple[i]
     if wall_rolls is not None:
-        add_wall_couples(q, v, f, n, walls.shape, wall_rolls, walls, dt)
+        add_wall_couples(wall_rolls, walls, motion)
     load = model.load
     for c in range(model.load_disk.size):
         i = model.load_disk[c]

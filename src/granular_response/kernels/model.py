@@ -18,8 +18,23 @@ class Rolls(NamedTuple):
 
     arm: Floats  #: (slots,) or (w,) reduced radii
     spring: Floats  #: the same; updated in place
-    rolling: Any  #: contact.rolling.Rolling
+    law: Any  #: contact.rolling.Rolling
     couple: Floats | None = None  #: (n,) scratch for the couples of pairs; None at walls
+
+
+def rows(laws, springs, arm: Floats, couple: Floats | None = None) -> tuple[Floats | None, Rolls | None]:
+    """Tangential springs and rolling resistance of one kind of contacts, from its laws and springs row by row.
+
+    None for what has no friction.
+    """
+    rubs, rolls = (row < len(laws) and laws[row].friction > 0.0 for row in range(2))
+    return springs[0] if rubs else None, Rolls(arm, springs[1], laws[1], couple) if rolls else None
+
+
+def springs_of(kind: Pairs | Walls) -> list[Floats]:
+    """Springs of the rows that have friction."""
+    rolls = () if kind.rolls is None else (kind.rolls.spring,)
+    return [] if kind.spring is None else [kind.spring, *rolls]
 
 
 class Pairs(NamedTuple):
@@ -31,6 +46,7 @@ class Pairs(NamedTuple):
     reach: Floats  #: (slots,) sums of radii; 0 in slots of no listed pair
     shape: Floats | None  #: (slots,) what the law needs of the radii
     spring: Floats | None  #: (slots,) tangential springs, updated in place; None without friction
+    rolls: Rolls | None
     scratch: Floats  #: (SCRATCH,)
     law: Any  #: a named tuple of ``contact``
 
@@ -43,6 +59,7 @@ class Walls(NamedTuple):
     gap: Floats  #: (w,) reference gaps
     shape: Floats | None  #: (w,)
     spring: Floats | None  #: (w,)
+    rolls: Rolls | None
     law: Any
 
 
@@ -59,8 +76,18 @@ class Model(NamedTuple):
     pairs: Pairs
     walls: Walls
     rule: int  #: how the Coulomb limit acts (contact.RULES)
-    pair_rolls: Rolls | None = None  #: None without rolling resistance
-    wall_rolls: Rolls | None = None
+
+
+class Motion(NamedTuple):
+    """Disks in motion, and the forces on them."""
+
+    n: int
+    q: Floats  #: (dof,) displacements
+    v: Floats  #: (dof,) velocities
+    rim: Floats | None  #: (n,) radius times angular velocity; None without rotations
+    f: Floats  #: (dof,) forces, added to
+    rule: int
+    dt: float  #: time by which springs advance
 
 
 class Schedule(NamedTuple):

@@ -112,21 +112,24 @@ def near(along, across, radius, skin, farthest, period, found):
 
 
 @kernel
-def mark_closed(q, n, dx, dz, reach, slot, first, second, wall_disk, wall_normal, wall_gap, closed):
+def mark_closed(q, n, separation, reach, slot, pairs, walls, closed):
     """Fill ``closed``: which listed pairs overlap, then which listed wall contacts do.
 
-    ``dx``, ``dz``, ``reach`` (slots,): separations when the list was made and sums of radii, ``slot`` (m,) those of the
-    listed pairs; ``wall_gap``: gaps at that time; ``q`` : displacements since.
+    ``separation`` (2, slots), ``reach`` (slots,): separations when the list was made and sums of radii, ``slot`` (m,)
+    those of the listed ``pairs`` (first and second disks); ``walls``: disks, normals, and gaps at that time; ``q`` :
+    displacements since.
     """
-    pairs = len(first)
-    for k in range(pairs):
+    first, second = pairs
+    wall_disk, wall_normal, wall_gap = walls
+    for k in range(len(first)):
         i, j, s = first[k], second[k], slot[k]
-        x = dx[s] + (q[i] - q[j])
-        z = dz[s] + (q[n + i] - q[n + j])
+        x = separation[0, s] + (q[i] - q[j])
+        z = separation[1, s] + (q[n + i] - q[n + j])
         closed[k] = x * x + z * z < reach[s] * reach[s]
     for k in range(len(wall_disk)):
         i = wall_disk[k]
-        closed[pairs + k] = wall_gap[k] + (wall_normal[k, 0] * q[i] + wall_normal[k, 1] * q[n + i]) < 0.0
+        gap = wall_gap[k] + (wall_normal[k, 0] * q[i] + wall_normal[k, 1] * q[n + i])
+        closed[len(first) + k] = gap < 0.0
 
 
 @kernel

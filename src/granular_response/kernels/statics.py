@@ -45,15 +45,15 @@ class Listed(NamedTuple):
     shape: Floats | None  #: (m + w,) what the law needs of the radii
     pair_law: Any  #: named tuples of ``contact``, of one class
     wall_law: Any
-    arm: Floats  #: (m + w,) reduced radii, or (0,) where no contact resists rolling; the same of the next two
-    rolling_friction: Floats  #: 0 for contacts that do not resist
-    rolling_stiffness: Floats
+    arm: Floats  #: (m + w,) reduced radii, or (0,) where no contact resists rolling
+    pair_rolling: Any  #: contact.rolling.Rolling, of zeros for contacts that do not resist
+    wall_rolling: Any
     radius: Floats  #: (n,) of all disks
     loaded: NDArray[Any]  #: (n,) ties that loads count as
 
 
 class Increment(NamedTuple):
-    """From a configuration that is known to a trial. What belongs to the rolling follows the m + w numbers of contacts.
+    """From a configuration that is known to a trial. Springs, limits and statuses follow each other row by row.
 
     Attributes
     ----------
@@ -69,32 +69,50 @@ class Increment(NamedTuple):
     ahead: Floats
     length: float
     overlap: Floats  #: (m + w,) at ``q0``
-    spring: Floats  #: (m + w,) at ``q0``, and rolling springs
+    spring: Floats  #: (r (m + w),) at ``q0``
     limits: Floats | None
     fixed: Floats | None
 
 
 class Response(NamedTuple):
-    """Contact forces at a trial configuration, to be filled. What belongs to the rolling follows the m + w numbers."""
+    """Contact forces at a trial configuration, to be filled; tangential ones and all after them row by row."""
 
     overlap: Floats  #: (m + w,)
     normal: Floats  #: (m + w,)
     nx: Floats  #: (m + w,) direction of the normal force on the first body
     nz: Floats
-    tangential: Floats  #: (m + w,), and forces along the rolling
+    tangential: Floats  #: (r (m + w),)
     spring: Floats
     status: Floats  #: negative where it slides under a negative force
-
-    @classmethod
-    def empty(cls, size: int, *, rolls: bool = False) -> Response:
-        """Zeros for ``size`` contacts."""
-        return cls(*np.zeros((4, size)), *np.zeros((3, size * (1 + rolls))))
 
 
 @kernel(forceinline=True)
 def law_of(listed, c):
     """The law of contact ``c``."""
     return listed.pair_law if c < listed.pairs else listed.wall_law
+
+
+@kernel(forceinline=True)
+def resistance(c, normal, listed):
+    """Stiffness, limit and slope of the limit in place ``c`` of the rows, of a contact with a ``normal`` force."""
+    size = listed.gap.size
+    if c < size:
+        law = law_of(listed, c)
+        return law.tangential_stiffness, limit(law, normal), limit_slope(law, normal)
+    rolling = listed.pair_rolling if c - size < listed.pairs else listed.wall_rolling
+    return rolling.tangential_stiffness, limit(rolling, normal), limit_slope(rolling, normal)
+
+
+@kernel(forceinline=True)
+def lever(c, i, j, nx, nz, listed):
+    """What a unit force in place ``c`` of the rows does: force on disk ``i``, couples on ``i`` and ``j``, and the arm.
+
+    Couples along the rolling are to be multiplied with the arm, and so is the slip against which the force acts.
+    """
+    size = listed.gap.size
+    if c < size:
+        return -nz, nx, -listed.radius[i], -listed.radius[j] if j >= 0 else 0.0, 1.0
+    return 0.0, 0.0, 1.0, -1.0 if j >= 0 else 0.0, listed.arm[c - size]
 
 
 @kernel(forceinline=True)
@@ -108,32 +126,6 @@ def contact_at(c, q, listed):
         dx, dz, distance, overlap = displaced(q[i] - q[j], q[n + i] - q[n + j], nx, nz, listed.distance[c], gap)
         nx, nz = dx / distance, dz / distance
     return i, j, nx, nz, overlap, stiffness(law_of(listed, c), overlap, take(listed.shape, c, 0.0))
-
-
-@kernel
-def _fill_tangent(g, nx, nz, normal, tangential, inverse, k, kt_w_t, kt_w_n, kt_rho, mu_slide):
-    """Local tangent from the normal stiffness ``k`` and the derivative of the tangential force.
-
-    ``d f_t = -(kt_w_t t.w + kt_w_n n.w - kt_rho rho)`` when sticking and ``mu_slide d f_n`` when sliding.
-    """
-    tx = -nz
-    tz = nx
-    # d f_n = -k n.w; d n = inverse (t.w) t; d t = -inverse (t.w) n
-    ft_n = -kt_w_n - mu_slide * k
-    ft_t = -kt_w_t
-    for col in range(2):
-        n_c = nx if col == 0 else nz
-        t_c = tx if col == 0 else tz
-        dfn = -k * n_c
-        dft = ft_n * n_c + ft_t * t_c
-        along_n = dfn - tangential * inverse * t_c
-        along_t = dft + normal * inverse * t_c
-        g[0, col] = along_n * nx + along_t * tx
-        g[1, col] = along_n * nz + along_t * tz
-        g[2, col] = dft
-    g[0, 2] = kt_rho * tx
-    g[1, 2] = kt_rho * tz
-    g[2, 2] = kt_rho
 
 
 @kernel(forceinline=True)
@@ -384,15 +376,16 @@ def along_rolling(step, fixed, listed, out, force):
     for c in range(size):
         r = size + c
         out.tangential[r], out.spring[r], out.status[r] = 0.0, 0.0, 0.0
-        if out.status[c] == OPEN or listed.rolling_stiffness[c] == 0.0:
+        stiff, most, _ = resistance(r, out.normal[c], listed)
+        if out.status[c] == OPEN or stiff == 0.0:
             continue
         a, b = 2 * n + listed.disks[c, 0], 2 * n + listed.disks[c, 1]
         turned, arm = step.q[a] - step.q0[a], listed.arm[c]
         if b >= 2 * n:
             turned -= step.q[b] - step.q0[b]
         trial = step.spring[r] + _closed_part(step.overlap[c], out.overlap[c]) * arm * turned
-        most = _most(take(step.limits, r, 0.0), listed.rolling_friction[c] * out.normal[c])
-        found, spring, sense, wrong = _returned(trial, most, listed.rolling_stiffness[c], take(fixed, r, 0.0))
+        most = _most(take(step.limits, r, 0.0), most)
+        found, spring, sense, wrong = _returned(trial, most, stiff, take(fixed, r, 0.0))
         worst = max(worst, wrong)
         out.tangential[r], out.spring[r] = found, spring
         out.status[r] = sense if abs(sense) > STICKING else float(STICKING)
@@ -432,52 +425,50 @@ def tangents(q, q0, overlap0, follow, listed, out, tangent):
             stiff = 0.0
             if follow:
                 slides = limit_slope(law, normal) if status > 0.0 else -limit_slope(law, normal)
-        by_t = stiff * mean / distance
-        _fill_tangent(tangent[c], nx, nz, normal, out.tangential[c], inverse, k, by_t, stiff * slip_n, stiff, slides)
+        # d f_n = -k n.w; d f_t = slides d f_n - stiff (slip_n n + mean / distance t).w + stiff rho;
+        # d n = inverse (t.w) t; d t = -inverse (t.w) n
+        g, tx, tz = tangent[c], -nz, nx
+        ft_n, ft_t = -(stiff * slip_n) - slides * k, -(stiff * mean / distance)
+        for col in range(2):
+            n_c, t_c = (nx, tx) if col == 0 else (nz, tz)
+            dfn, dft = -k * n_c, ft_n * n_c + ft_t * t_c
+            along_n, along_t = dfn - out.tangential[c] * inverse * t_c, dft + normal * inverse * t_c
+            g[0, col], g[1, col], g[2, col] = along_n * nx + along_t * tx, along_n * nz + along_t * tz, dft
+        g[0, 2], g[1, 2], g[2, 2] = stiff * tx, stiff * tz, stiff
         if out.status.size == size or out.status[size + c] == 0.0:
             continue
         status, arm = out.status[size + c], listed.arm[c]
+        stiff, _, slope = resistance(size + c, normal, listed)
         if abs(status) > STICKING:
-            slides = (1.0 if status > 0.0 else -1.0) * listed.rolling_friction[c] * k * arm if follow else 0.0
+            slides = (1.0 if status > 0.0 else -1.0) * slope * k * arm if follow else 0.0
             tangent[c, 3, 0], tangent[c, 3, 1] = -slides * nx, -slides * nz
         else:
-            tangent[c, 3, 2] = -arm * arm * listed.rolling_stiffness[c] * share
+            tangent[c, 3, 2] = -arm * arm * stiff * share
 
 
 @kernel
-def rolling_spring_forces(spring, rolling, out):
-    """Fill what belongs to the rolling in ``out`` from springs (m,) as they are, where its contacts are not OPEN."""
-    size = spring.size
-    for c in range(size):
+def normal_forces(overlap, shape, law, out):
+    """Fill ``out`` (:class:`Response`) with normal forces from overlaps (m,), its contacts OPEN or STICKING."""
+    for c in range(overlap.size):
+        closed = overlap[c] > 0.0
+        out.overlap[c], out.status[c] = overlap[c], STICKING if closed else OPEN
+        if closed:
+            out.normal[c] = elastic_force(law, overlap[c], take(shape, c, 0.0))
+
+
+@kernel
+def spring_forces(row, spring, law, out):
+    """Fill a ``row`` of closed contacts after :func:`normal_forces`, from springs (m,) as they are.
+
+    A contact slides when its spring force has reached the limit (to ``AT_LIMIT`` of it).
+    """
+    for c in range(spring.size):
         if out.status[c] == OPEN:
             continue
-        force = -rolling.stiffness * spring[c]
-        out.spring[size + c], out.tangential[size + c] = spring[c], force
-        within = abs(force) < limit(rolling, abs(out.normal[c])) * (1 - AT_LIMIT)
-        out.status[size + c] = STICKING if within else SLIDING
-
-
-@kernel
-def spring_forces(overlap, spring, shape, law, out):
-    """Fill ``out`` (:class:`Response`) with forces from overlaps and springs (m,) as they are.
-
-    A touching contact slides when its spring force has reached the Coulomb limit (to ``AT_LIMIT`` of it).
-    """
-    rubs = law.friction > 0.0
-    for c in range(overlap.size):
-        xi = overlap[c]
-        out.overlap[c] = xi
-        if not xi > 0.0:
-            out.status[c] = OPEN
-            continue
-        fn = elastic_force(law, xi, take(shape, c, 0.0))
-        out.normal[c] = fn
-        out.status[c] = STICKING
-        if rubs:
-            out.spring[c] = spring[c]
-            out.tangential[c] = -law.tangential_stiffness * spring[c]
-            if abs(out.tangential[c]) >= limit(law, abs(fn)) * (1 - AT_LIMIT):
-                out.status[c] = SLIDING
+        r, force = row * spring.size + c, -law.tangential_stiffness * spring[c]
+        out.spring[r], out.tangential[r] = spring[c], force
+        reached = abs(force) >= limit(law, abs(out.normal[c])) * (1 - AT_LIMIT)
+        out.status[r] = SLIDING if reached else STICKING
 
 
 def elastic_energy(overlap, shape, law) -> float:

@@ -16,14 +16,14 @@ from ..contact.law import elastic_force, stiffness
 from ..machine.lanes import WIDTH, anywhere, gather, magnitude, put, select, spread, take
 from ..machine.machine_code import kernel
 from ..state import OPEN, SLIDING, STICKING
-from .statics import contact_at, law_of
+from .statics import contact_at, law_of, lever, resistance
 
 #: What a contact does next; ``SLIDES`` is negative where it will slide under a negative force.
 NOTHING, OPENS, CLOSES, SLIDES, STICKS = 0, 1, 2, 3, 4
 
 
 class Changes(NamedTuple):
-    """What each of m + w contacts does next, and then what each does along the rolling, to be filled."""
+    """What each of m + w contacts does next in each row (``state.ROWS``), to be filled."""
 
     what: NDArray[Any]
     left: NDArray[Any]  #: force until then (mean weights)
@@ -40,29 +40,22 @@ class Columns(NamedTuple):
 
 
 @kernel(forceinline=True)
-def _motion(v, i, j, nx, nz, radius):
-    """Rates of the relative displacement along the normal and, less the rolling, along the tangent."""
-    n = radius.size
+def _rates(c, v, nx, nz, listed):
+    """Rate at which the contact in place ``c`` of the rows parts, rate of its slip there, and the arm of that."""
+    n, at = listed.radius.size, c % listed.gap.size
+    i, j = listed.disks[at, 0], listed.disks[at, 1]
+    tx, tz, turn, other, arm = lever(c, i, j, nx, nz, listed)
     wx, wz = v[i], v[n + i]
     if j >= 0:
         wx -= v[j]
         wz -= v[n + j]
-    along = wz * nx - wx * nz
+    slip = wz * tz + wx * tx
     if v.size == 3 * n:
-        turn = radius[i] * v[2 * n + i]
+        turned = turn * v[2 * n + i]
         if j >= 0:
-            turn += radius[j] * v[2 * n + j]
-        along -= turn
-    return wx * nx + wz * nz, along
-
-
-@kernel(forceinline=True)
-def _rolling_rates(c, v, apart, k, listed):
-    """Limit per normal force of the rolling force of contact ``c``, its rate, if it sticks, and that of its limit."""
-    a, b = 2 * listed.radius.size + listed.disks[c, 0], 2 * listed.radius.size + listed.disks[c, 1]
-    spin = v[a] - v[b] if listed.disks[c, 1] >= 0 else v[a]
-    friction = listed.rolling_friction[c]
-    return friction, -listed.rolling_stiffness[c] * listed.arm[c] * spin, friction * k * apart
+            turned += other * v[2 * n + j]
+        slip += turned
+    return wx * nx + wz * nz, slip, arm
 
 
 @kernel(forceinline=True)
@@ -92,25 +85,21 @@ def _next_to_limit(what, left, rate, status, limit, force, grows, falls, tip, ne
 
 @kernel
 def until(c, what, q, v, listed, here):
-    """Force that is left until contact ``c`` does ``what``, and by how much displacements ``v`` (dof,) lower it.
+    """Force that is left until the contact in place ``c`` of the rows does ``what``, and how ``v`` (dof,) lowers it.
 
-    From m + w on along the rolling. ``q`` (dof,), ``here`` : displacements and :class:`statics.Response` of the trial.
+    ``q`` (dof,), ``here`` : displacements and :class:`statics.Response` of the trial.
     """
     at = c % here.normal.size
-    i, j, nx, nz, _, k = contact_at(at, q, listed)
-    law, normal = law_of(listed, at), here.normal[at]
-    apart, along = _motion(v, i, j, nx, nz, listed.radius)
+    _, _, nx, nz, _, k = contact_at(at, q, listed)
+    unit = law_of(listed, at).normal_stiffness
+    apart, slip, arm = _rates(c, v, nx, nz, listed)
     if what == OPENS:
-        return law.normal_stiffness * here.overlap[at], law.normal_stiffness * apart
+        return unit * here.overlap[at], unit * apart
     if what == CLOSES:
-        return -law.normal_stiffness * here.overlap[at], -law.normal_stiffness * apart
-    most, grows = limit(law, normal), -law.tangential_stiffness * along
-    falls = limit_slope(law, normal) * k * apart
-    if c > at:
-        friction, grows, falls = _rolling_rates(at, v, apart, k, listed)
-        most = friction * normal
+        return -unit * here.overlap[at], -unit * apart
+    stiff, most, slope = resistance(c, here.normal[at], listed)
     sense = 1.0 if what > 0 else -1.0
-    return most - sense * here.tangential[c], falls + sense * grows
+    return most - sense * here.tangential[c], slope * k * apart + sense * (-stiff * arm * slip)
 
 
 @kernel
@@ -159,11 +148,10 @@ def next_changes(v, listed, here, status, tip, negligible, count, found):
     """Fill ``found`` (:class:`Changes`), as long as ``status`` each.
 
     ``v`` (dof,) : rates of displacements; ``listed``, ``here`` : :class:`statics.Listed` and :class:`statics.Response`
-    of the trial; ``status`` (m + w,), or twice as many with rolling resistance, of floats : negative for contacts that
-    slide under a negative force; ``tip``, ``negligible`` : a force and a rate of a force that are none; ``count``
-    (3, n) : room to count in. A rattler that rests on one contact and that no more ties than it has freedoms, pushed
-    along by another disk, bears nothing there however it moves: such a contact opens when the other disk withdraws, and
-    nothing else happens to it.
+    of the trial; ``status`` (r (m + w),) of floats : negative for contacts that slide under a negative force;
+    ``tip``, ``negligible`` : a force and a rate of a force that are none; ``count`` (3, n) : room to count in.
+    A rattler that rests on one contact and that no more ties than it has freedoms, pushed along by another disk, bears
+    nothing there however it moves: such a contact opens when the other disk withdraws, and nothing else happens to it.
 
     Returns how many are within ``tip`` of their change.
     """
@@ -191,7 +179,7 @@ def next_changes(v, listed, here, status, tip, negligible, count, found):
         put(found.rate, c, speed)
     for c in range(whole, size):
         law, fn, xi = law_of(listed, c), here.normal[c], here.overlap[c]
-        apart, along = _motion(v, disks[c, 0], disks[c, 1], here.nx[c], here.nz[c], radius)
+        apart, along, _ = _rates(c, v, here.nx[c], here.nz[c], listed)
         rests = rests or (status[c] != 0.0 and fn <= tip)
         k = stiffness(law, xi, take(listed.shape, c, 0.0))
         found.what[c], found.left[c], found.rate[c] = _next(
@@ -201,12 +189,12 @@ def next_changes(v, listed, here, status, tip, negligible, count, found):
         c, does, until, speed = r - size, 0.0, 0.0, 0.0
         if status[r] != 0.0:
             k = stiffness(law_of(listed, c), here.overlap[c], take(listed.shape, c, 0.0))
-            apart, _ = _motion(v, disks[c, 0], disks[c, 1], here.nx[c], here.nz[c], radius)
-            friction, grows, falls = _rolling_rates(c, v, apart, k, listed)
+            apart, slip, arm = _rates(r, v, here.nx[c], here.nz[c], listed)
+            stiff, most, slope = resistance(r, here.normal[c], listed)
+            grows, falls = -stiff * arm * slip, slope * k * apart
             does, until, speed = _next_to_limit(
-                does, until, speed, status[r], friction * here.normal[c], here.tangential[r], grows, falls, tip,
-                negligible,
-            )  # fmt: skip
+                does, until, speed, status[r], most, here.tangential[r], grows, falls, tip, negligible
+            )
         found.what[r], found.left[r], found.rate[r] = does, until, speed
     if rests:
         _keep_rattlers(v, listed, here, status, tip, negligible, count, found)
@@ -239,9 +227,9 @@ def _keep_rattlers(v, listed, here, status, tip, negligible, count, found):
             drawn = -(v[i] * nx + v[n + i] * nz) if first else v[j] * nx + v[n + j] * nz
             if listed.pair_law.normal_stiffness * drawn > negligible:
                 does, speed = float(OPENS), listed.pair_law.normal_stiffness * drawn
-        found.what[c], found.left[c], found.rate[c] = does, 0.0, speed
-        if status.size > size:
-            found.what[size + c], found.left[size + c], found.rate[size + c] = 0.0, 0.0, 0.0
+        for r in range(c, status.size, size):
+            found.what[r], found.left[r], found.rate[r] = 0.0, 0.0, 0.0
+        found.what[c], found.rate[c] = does, speed
 
 
 @kernel
@@ -255,24 +243,13 @@ def first_change(left, rate):
 
 
 @kernel(forceinline=True)
-def _slopes(status, c, part, k, slope, listed):
-    """Derivatives of one part of the force of contact ``c`` by the displacement along n, and along t or the rolling.
-
-    ``part`` : 0 along n, 1 along t, 2 along the rolling, a couple; ``k`` : normal stiffness; ``slope`` : of the limit.
-    """
-    sense = 1.0 if status > 0 else -1.0
+def _slopes(status, stiff, slope, arm, k):
+    """Derivatives of a force, or its couple, by the displacement along n and by the slip; ``k`` : normal stiffness."""
     if status == OPEN:
         return 0.0, 0.0
-    if part == 0:
-        return -k, 0.0
-    if part == 1:
-        if abs(status) == SLIDING:
-            return -(slope * sense) * k, 0.0
-        return 0.0, -law_of(listed, c).tangential_stiffness
-    arm = listed.arm[c]
     if abs(status) == SLIDING:
-        return -sense * arm * listed.rolling_friction[c] * k, 0.0
-    return 0.0, -arm * arm * listed.rolling_stiffness[c]
+        return -(slope * (arm if status > 0 else -arm)) * k, 0.0
+    return 0.0, -arm * arm * stiff
 
 
 @kernel
@@ -280,47 +257,43 @@ def changed_stiffness(contacts, before, after, q, listed, freedoms, place, colum
     """Fill rows of ``columns`` (:class:`Columns`) with what other statuses of contacts add to the tangent.
 
     As many rows as are returned: one where a contact changes between sticking, sliding and open along one direction,
-    two where it opens from sticking. ``contacts`` (k,) : which, from m + w on along the rolling; ``before``, ``after``
-    : signed statuses of all; ``place`` (n,) : of disks in the order of the tangent.
+    two where it opens from sticking. ``contacts`` (k,) : places in the rows of which; ``before``, ``after`` : signed
+    statuses of all; ``place`` (n,) : of disks in the order of the tangent.
     """
     owner, places, left, right = columns
-    size, radius = listed.gap.size, listed.radius
-    rows = 0
+    size, rows = listed.gap.size, 0
     for c in contacts:
         at = c % size
         i, j, nx, nz, overlap, k = contact_at(at, q, listed)
-        law = law_of(listed, at)
-        slope = limit_slope(law, elastic_force(law, max(overlap, 0.0), take(listed.shape, at, 0.0)))
-        # force along n and t on the first disk, of which the part along n changes with the overlap alone, or couple
-        for part in range(2, 3) if c >= size else range(2):
-            new_n, new_t = _slopes(after[c], at, part, k, slope, listed)
-            old_n, old_t = _slopes(before[c], at, part, k, slope, listed)
-            by_n, by_t = new_n - old_n, new_t - old_t
+        normal = elastic_force(law_of(listed, at), max(overlap, 0.0), take(listed.shape, at, 0.0))
+        stiff, _, slope = resistance(c, normal, listed)
+        tx, tz, turn, other, arm = lever(c, i, j, nx, nz, listed)
+        # the force along n, which changes where a contact opens or closes, and that of its row
+        for part in range(0 if c < size else 1, 2):
+            if part == 0:
+                by_n, by_t = (k if before[c] != OPEN else 0.0) - (k if after[c] != OPEN else 0.0), 0.0
+            else:
+                new_n, new_t = _slopes(after[c], stiff, slope, arm, k)
+                old_n, old_t = _slopes(before[c], stiff, slope, arm, k)
+                by_n, by_t = new_n - old_n, new_t - old_t
             if by_n == 0.0 and by_t == 0.0:
                 continue
-            ex, ez = (nx, nz) if part == 0 else (-nz, nx)
-            rx, rz = by_n * nx - by_t * nz, by_n * nz + by_t * nx
+            ex, ez = (nx, nz) if part == 0 else (tx, tz)
+            rx, rz = by_n * nx + by_t * tx, by_n * nz + by_t * tz
             for e in range(2):
                 sign = 1.0 if e == 0 else -1.0
                 live = 1.0 if e == 0 or j >= 0 else 0.0
                 disk = i if e == 0 or j < 0 else j
+                couple = (turn if e == 0 else other) if freedoms == 3 else 0.0
                 base = 3 * e
                 for a in range(3):
                     places[rows, base + a] = place[disk] * freedoms + min(a, freedoms - 1)
-                turns = live if freedoms == 3 else 0.0
-                if part < 2:
-                    couple = 0.0 if part == 0 else 1.0
-                    left[rows, base] = -live * sign * ex
-                    left[rows, base + 1] = -live * sign * ez
-                    left[rows, base + 2] = turns * radius[disk] * couple
-                    right[rows, base] = live * sign * rx
-                    right[rows, base + 1] = live * sign * rz
-                    right[rows, base + 2] = -turns * radius[disk] * by_t
-                else:
-                    left[rows, base], left[rows, base + 1], left[rows, base + 2] = 0.0, 0.0, -live * sign
-                    right[rows, base] = live * sign * by_n * nx
-                    right[rows, base + 1] = live * sign * by_n * nz
-                    right[rows, base + 2] = live * sign * by_t
+                left[rows, base] = -live * sign * ex
+                left[rows, base + 1] = -live * sign * ez
+                left[rows, base + 2] = -couple if part == 1 else 0.0
+                right[rows, base] = live * sign * rx
+                right[rows, base + 1] = live * sign * rz
+                right[rows, base + 2] = couple * by_t
             owner[rows] = c
             rows += 1
     return rows

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import require
-from ..state import OPEN, Contacts, FloatArray, State
+from ..state import Contacts, FloatArray, State
 
 
 def require_same(rest: Contacts, loaded: Contacts, kind: str = "contacts") -> None:
@@ -97,11 +97,16 @@ def _spread(
 ) -> Contacts:
     at = np.searchsorted(union, key)
     require(np.unique(at).size == at.size, f"{kind}: a contact is listed twice")
-    spread: dict[str, NDArray] = {"overlap": overlap}
-    for name in ("normal_force", "tangential_force", "spring", "rolling_force", "rolling_spring"):
-        spread[name] = np.zeros(union.size)
-    for name in ("status", "rolling_status"):
-        spread[name] = np.full(union.size, OPEN, np.int8)
-    for name, values in spread.items():
-        values[at] = getattr(contacts, name) * (turned if name in ("rolling_force", "rolling_spring") else 1)
-    return Contacts(first.astype(np.int32), second.astype(np.int32), **spread)
+
+    def spread(values: NDArray) -> NDArray:
+        """In the common list, zero and OPEN where there is none."""
+        wide = np.zeros((*values.shape[:-1], union.size), values.dtype)
+        wide[..., at] = values
+        return wide
+
+    overlap[at] = contacts.overlap
+    forces, springs = contacts.forces, contacts.springs
+    forces[1:] *= turned
+    springs[1:] *= turned
+    rows = (spread(one) for one in (forces, springs, contacts.statuses))
+    return Contacts.of(first, second, overlap, spread(contacts.normal_force), *rows)

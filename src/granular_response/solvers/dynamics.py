@@ -27,7 +27,7 @@ from scipy.sparse.csgraph import connected_components
 from ..errors import SolveError
 from ..kernels.forces import SCRATCH, accelerations
 from ..kernels.integrators import INTEGRATORS, LOOK_EVERY, Memory, advance
-from ..kernels.model import Model, Pairs, Rolls, Schedule, Walls
+from ..kernels.model import Model, Pairs, Schedule, Walls, rows, springs_of
 from ..kernels.neighbours import count_closed, mark_closed, rolling
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..state import FLOOR, FloatArray, Reached, State, wall_normals
@@ -103,6 +103,13 @@ class Stop:
         return replace(by_energy, acceleration=plan.stop_acceleration)
 
 
+def in_slots(candidates: Candidates, values: FloatArray) -> FloatArray:
+    """(slots,) what listed pairs have (m,), and 0 in other slots."""
+    room = aligned_zeros(len(candidates.reach))
+    room[candidates.slot] = values
+    return room
+
+
 class Dynamics:
     """One packing in motion.
 
@@ -147,29 +154,22 @@ class Dynamics:
         problem = self.problem
         self.candidates: Candidates = problem.list_candidates(state.position, stride=stride)
         c = self.candidates
-        self.spring = self.wall_spring = None
-        if problem.pair_friction:
-            self.spring = aligned_zeros(len(c.reach))
-            self.spring[c.slot], roll = carry_springs(problem.n, state.pairs, c.first, c.second)
-        if problem.wall_friction:
-            self.wall_spring, wall_roll = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
-        self.pair_rolls = self.wall_rolls = None
-        if problem.pair_rolling is not None:
-            arm, springs = aligned_zeros(len(c.reach)), aligned_zeros(len(c.reach))
-            arm[c.slot], springs[c.slot] = problem.pair_arms(c.first, c.second), roll
-            self.pair_rolls = Rolls(arm, springs, problem.pair_rolling, couple=aligned_zeros(problem.n))
-        if problem.wall_rolling is not None:
-            self.wall_rolls = Rolls(problem.wall_arms(c.wall_disk), wall_roll, problem.wall_rolling)
-        self.wall_normal = wall_normals(c.wall)
+        pair_laws, wall_laws = zip(*problem.laws, strict=True)
+        springs = [in_slots(c, row) for row in carry_springs(problem.n, state.pairs, c.first, c.second)]
+        wall_springs = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
+        arm, couple = in_slots(c, problem.pair_arms(c.first, c.second)), aligned_zeros(problem.n)
         self.model = Model(
             problem.n, problem.weight, self._inverse_mass, problem.packing.radius, self.rim,
             problem.load, problem.load_disk,
             Pairs(
-                c.runs, c.separation[0], c.separation[1], c.reach, c.shape, self.spring, aligned_zeros(SCRATCH),
-                problem.pair_law,
+                c.runs, c.separation[0], c.separation[1], c.reach, c.shape, *rows(pair_laws, springs, arm, couple),
+                aligned_zeros(SCRATCH), problem.pair_law,
             ),
-            Walls(c.wall_disk, self.wall_normal, c.wall_gap, c.wall_shape, self.wall_spring, problem.wall_law),
-            problem.rule, self.pair_rolls, self.wall_rolls,
+            Walls(
+                c.wall_disk, wall_normals(c.wall), c.wall_gap, c.wall_shape,
+                *rows(wall_laws, wall_springs, problem.wall_arms(c.wall_disk)), problem.wall_law,
+            ),
+            problem.rule,
         )  # fmt: skip
 
     def _fill_history(self) -> None:
@@ -277,17 +277,13 @@ class Dynamics:
     def state(self) -> State:
         """The present state, with spring forces only (what remains at rest)."""
         problem, c, n = self.problem, self.candidates, self.problem.n
-        spring = None if self.spring is None else self.spring[c.slot]
-        wall_spring = None if self.wall_spring is None else self.wall_spring.copy()
-        roll = None if self.pair_rolls is None else self.pair_rolls.spring[c.slot]
-        wall_roll = None if self.wall_rolls is None else self.wall_rolls.spring.copy()
         bare = State(
             position=self.position,
             angle=self.angle.copy(),
             velocity=self.v[: 2 * n].reshape(2, n).T.copy(),
             angular_velocity=self.v[2 * n :].copy() if problem.rotations else np.zeros(n),
-            pairs=spring_contacts(c.first, c.second, spring, roll),
-            walls=spring_contacts(c.wall_disk, c.wall, wall_spring, wall_roll),
+            pairs=spring_contacts(c.first, c.second, [row[c.slot] for row in springs_of(self.model.pairs)]),
+            walls=spring_contacts(c.wall_disk, c.wall, [row.copy() for row in springs_of(self.model.walls)]),
             box=problem.packing.box,
             load_factor=self._now(self.load),
             reached=Reached(
@@ -301,8 +297,8 @@ class Dynamics:
         c = self.candidates
         closed = np.empty(len(c.first) + len(c.wall_disk), dtype=bool)
         mark_closed(
-            self.q, self.problem.n, c.separation[0], c.separation[1], c.reach, c.slot, c.first, c.second,
-            c.wall_disk, self.wall_normal, c.wall_gap, closed,
+            self.q, self.problem.n, c.separation, c.reach, c.slot, (c.first, c.second),
+            (c.wall_disk, self.model.walls.normal, c.wall_gap), closed,
         )  # fmt: skip
         return closed
 

@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from ..contact.coulomb import limit
+from ..contact.rolling import FREE
 from ..kernels import statics, transitions
 from ..linalg import REMEMBERED, elimination
 from ..machine.lanes import WIDTH
@@ -36,12 +36,12 @@ TOUCHING = 1e-12
 class Configuration:
     """A static configuration: displacements and everything the return map remembers of its m + w candidates.
 
-    Contacts between disks come first, contacts at walls after them, here as everywhere in statics. What belongs to the
-    rolling, where some contact resists it, follows: there are twice as many springs and statuses then.
+    Contacts between disks come first, contacts at walls after them, here as everywhere in statics. Springs and statuses
+    follow each other row by row (``state.ROWS``), as many as the problem has.
     """
 
     q: FloatArray  #: (dof,)
-    spring: FloatArray  #: (m + w,), and rolling springs
+    spring: FloatArray  #: (r (m + w),)
     overlap: FloatArray  #: (m + w,)
 
 
@@ -73,7 +73,7 @@ class Trial:
 
     @cached_property
     def tangents(self) -> FloatArray:
-        """(m + w, 3, 3) local tangents, with rolling (m + w, 4, 3); see :func:`.statics.tangents`."""
+        """(m + w, 3, 3) local tangents, with a second row (m + w, 4, 3); see :func:`.statics.tangents`."""
         return self.local()
 
     @property
@@ -83,14 +83,13 @@ class Trial:
 
     @cached_property
     def sense(self) -> np.ndarray:
-        """(m + w,) statuses, negative for contacts that slide against the tangent; twice as many with rolling."""
+        """(r (m + w),) statuses, negative for contacts that slide under a negative force."""
         return signed_status(np.abs(self.contacts.status).astype(np.int8), self.contacts.tangential)
 
     @property
     def borne(self) -> FloatArray:
         """Normal force beside each status of :attr:`sense`."""
-        rows = len(self.contacts.status) > len(self.normal)
-        return np.concatenate([self.normal, self.normal]) if rows else self.normal
+        return np.resize(self.normal, len(self.contacts.status))
 
 
 def signed_status(status: np.ndarray, tangential: FloatArray) -> np.ndarray:
@@ -119,7 +118,7 @@ class Equations:
         distance = np.sqrt(self.dx0 * self.dx0 + self.dz0 * self.dz0)  # rounded as that of a trial where nothing moves
         self._room, self._no_rates = np.zeros(2 * WIDTH), np.zeros(self.dof)
         self.count = np.zeros((3, problem.n), np.int64)  #: room for kernels to count in
-        self.rolls = problem.rolls
+        self.rows = len(problem.laws)
         self.listed = self._list(gap, distance, wall_gap)
         self.held = problem.held.unknowns(problem.n)
         # one order of elimination for all states of a large lattice
@@ -134,12 +133,8 @@ class Equations:
         loaded = np.zeros(problem.n, np.int64)
         loaded[problem.load_disk] = LOADED
         shape, wall_shape = problem.pair_shapes(self.first, self.second), problem.wall_shapes(self.wall_disk)
-        arm, friction, stiffness = np.zeros((3, 0))
-        if problem.rolls:
-            arm = np.concatenate([problem.pair_arms(self.first, self.second), problem.wall_arms(self.wall_disk)])
-            kinds = problem.pair_rolling, problem.wall_rolling
-            constants = [(0.0, 0.0) if one is None else (one.friction, one.stiffness) for one in kinds]
-            friction, stiffness = np.repeat(np.array(constants).T, [m, w], axis=1)
+        arms = problem.pair_arms(self.first, self.second), problem.wall_arms(self.wall_disk)
+        _, (pair_rolling, wall_rolling) = (*problem.laws, (FREE, FREE))[:2]
         return statics.Listed(
             disks=np.stack([np.r_[self.first, self.wall_disk], np.r_[self.second, np.full(w, -1)]], axis=1),
             pairs=m,
@@ -150,24 +145,23 @@ class Equations:
             shape=None if shape is None or wall_shape is None else np.concatenate([shape, wall_shape]),
             pair_law=problem.pair_law,
             wall_law=problem.wall_law,
-            arm=arm,
-            rolling_friction=friction,
-            rolling_stiffness=stiffness,
+            arm=np.concatenate(arms) if self.rows > 1 else np.zeros(0),
+            pair_rolling=pair_rolling,
+            wall_rolling=wall_rolling,
             radius=problem.packing.radius,
             loaded=loaded,
         )
 
     @cached_property
     def friction(self) -> FloatArray:
-        """(m + w,) coefficient of each candidate."""
-        laws = self.problem.pair_law.friction, self.problem.wall_law.friction
-        return np.repeat(laws, [len(self.first), len(self.wall_disk)])
+        """(r (m + w),) coefficient of each candidate in each row."""
+        frictions = [[law.friction for law in row] for row in self.problem.laws]
+        return np.repeat(frictions, [len(self.first), len(self.wall_disk)], axis=1).ravel()
 
     def limits(self, trial: Trial) -> FloatArray:
-        """Coulomb limits of a trial, and those of rolling after them where there is any."""
-        kinds = zip((self.problem.pair_law, self.problem.wall_law), self.split(trial.normal), strict=True)
-        sliding = [limit(law, normal) for law, normal in kinds]
-        return np.concatenate([*sliding, self.listed.rolling_friction * trial.normal if self.rolls else ()])
+        """(r (m + w),) limits of a trial."""
+        kinds = self.split(trial.normal)
+        return np.concatenate([limit(*one) for row in self.problem.laws for one in zip(row, kinds, strict=True)])
 
     def idle(self, trial: Trial, sense: np.ndarray) -> NDArray[np.int64]:
         """Unknowns that change no force with signed statuses ``sense``: angles of disks of which no contact sticks."""
@@ -178,18 +172,18 @@ class Equations:
         return 2 * self.problem.n + np.flatnonzero(self.count[2] == 0)
 
     def coupled(self, sense: np.ndarray) -> np.ndarray:
-        """Signed statuses of which those along the rolling, if any, are open where the contact is, else not."""
-        if not self.rolls:
+        """Signed statuses of which those of further rows, if any, are open where the contact is, else not."""
+        if self.rows == 1:
             return sense
-        contact, roll = np.split(sense, 2)
-        new = np.where(roll == OPEN, STICKING, roll)
-        new = np.where((contact == OPEN) | (self.listed.rolling_stiffness == 0.0), OPEN, new)
-        return np.concatenate([contact, new]).astype(sense.dtype)
+        contact, *others = sense.reshape(self.rows, -1)
+        new = np.where(np.equal(others, OPEN), STICKING, others)
+        new = np.where((contact == OPEN) | (self.friction.reshape(self.rows, -1)[1:] == 0.0), OPEN, new)
+        return np.concatenate([contact, *new]).astype(sense.dtype)
 
     def status_keys(self) -> NDArray[np.int64]:
-        """One number for what each status belongs to."""
+        """(r (m + w),) one number for what each status belongs to."""
         keys = self.keys()
-        return np.concatenate([keys, -1 - keys]) if self.rolls else keys
+        return np.concatenate([keys, -1 - keys][: self.rows])
 
     def keys(self) -> NDArray[np.int64]:
         """(m + w,) one number for the two bodies of each candidate."""
@@ -200,21 +194,18 @@ class Equations:
         """The configuration of a state of the same candidates."""
         shift = (state.position - self.reference).T.ravel()
         q = np.concatenate([shift, state.angle - self.angle0])[: self.dof]
-        springs = self._of_all(state, "spring", "rolling_spring")
-        bare = Configuration(q, springs, np.zeros(len(self.friction)))
+        springs = self._of_all(state, "springs")
+        bare = Configuration(q, springs, np.zeros(len(self.listed.gap)))
         return replace(self.trial(bare, q).configuration, spring=springs)
 
-    def _of_all(self, state: State, *names: str) -> np.ndarray:
-        """(m + w,) attributes of the contacts of a state, and after them, where there is any, that of their rolling."""
-        rows = names[: 1 + self.rolls]
-        return np.concatenate([getattr(kind, name) for name in rows for kind in (state.pairs, state.walls)])
+    def _of_all(self, state: State, name: str) -> np.ndarray:
+        """(r (m + w),) an attribute that the contacts of a state have row by row."""
+        return np.hstack([getattr(kind, name)[: self.rows] for kind in (state.pairs, state.walls)]).ravel()
 
     def at(self, state: State) -> Trial:
         """The state itself, with the statuses that it says its contacts have."""
         known = self.start(state)
-        status = self._of_all(state, "status", "rolling_status")
-        force = self._of_all(state, "tangential_force", "rolling_force")
-        sense = self.coupled(signed_status(status, force))
+        sense = self.coupled(signed_status(self._of_all(state, "statuses"), self._of_all(state, "forces")))
         return self.trial(known, known.q, fixed=sense)
 
     def displaced(self, q: FloatArray, load_factor: float) -> FloatArray:
@@ -237,14 +228,14 @@ class Equations:
     ) -> Trial:
         """Forces at ``q``, one increment after ``known``; none on what is held, where the reaction balances all.
 
-        ``limits`` (m + w,) fixes the Coulomb limits in place of ``mu f_n``; ``fixed`` (m + w,) the statuses, as of
-        :func:`signed_status`, in place of the return map; both go on along the rolling where some contact resists it.
+        ``limits`` (r (m + w),) fixes the limits in place of ``mu f_n``; ``fixed`` (r (m + w),) the statuses, as of
+        :func:`signed_status`, in place of the return map.
         ``velocity`` (dof,), with ``fixed`` : rates at ``known``, by which displacements would have grown for a
         ``length`` of the load factor; the slip along the way that curves from there is counted. Walls do not turn.
         """
-        problem, count, listed = self.problem, len(self.friction), self.listed
-        force, rows = np.zeros(self.dof), count * (1 + self.rolls)
-        out = statics.Response(*np.empty((4, count)), *np.empty((3, rows)))
+        problem, count, listed = self.problem, len(self.listed.gap), self.listed
+        force = np.zeros(self.dof)
+        out = statics.Response(*np.empty((4, count)), *np.empty((3, self.rows * count)))
         if not (problem.pair_friction and problem.wall_friction):
             out.tangential[:], out.spring[:] = 0.0, 0.0
         step = statics.Increment(
@@ -255,13 +246,13 @@ class Equations:
             step, known.spring if problem.pair_friction else None, known.spring if problem.wall_friction else None,
             listed, self._room, out, force,
         )  # fmt: skip
-        if self.rolls:
+        if self.rows > 1:
             contradiction = max(contradiction, statics.along_rolling(step, step.fixed, listed, out, force))
         if self.held.size:
             force[self.held] = 0.0
 
         def tangent() -> FloatArray:
-            local = np.empty((count, 4 if self.rolls else 3, 3))
+            local = np.empty((count, 2 + self.rows, 3))
             statics.tangents(q, known.q, known.overlap, limits is None, listed, out, local)
             return local
 
@@ -318,16 +309,11 @@ class Equations:
         n = self.problem.n
         q = trial.configuration.q
         angle = self.angle0 + q[2 * n :] if self.problem.rotations else self.angle0
-        size = len(self.friction)
-        values: list[Any] = [trial.configuration.overlap, trial.normal]
-        for row in range(1 + self.rolls):
-            rows = slice(row * size, (row + 1) * size)
-            status = np.abs(trial.contacts.status[rows]).astype(np.int8)
-            values += [trial.contacts.tangential[rows], trial.configuration.spring[rows], status]
-        parts = zip(*map(self.split, values), strict=True)
-        first, second, disk = (index.astype(np.int32) for index in (self.first, self.second, self.wall_disk))
-        places = (first, second), (disk, self.wall)
-        pairs, walls = (Contacts(*place, *part) for place, part in zip(places, parts, strict=True))
+        rows = trial.contacts.tangential, trial.configuration.spring, np.abs(trial.contacts.status)
+        values = trial.configuration.overlap, trial.normal, *(one.reshape(self.rows, -1) for one in rows)
+        m = len(self.first)
+        pairs = Contacts.of(self.first, self.second, *(one[..., :m] for one in values))
+        walls = Contacts.of(self.wall_disk, self.wall, *(one[..., m:] for one in values))
         return State(
             position=self.reference + q[: 2 * n].reshape(2, n).T,
             angle=angle.copy(),

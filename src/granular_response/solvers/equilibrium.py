@@ -163,7 +163,7 @@ def unbalanced(problem: Problem, state: State) -> tuple[FloatArray, FloatArray]:
     tangential = np.concatenate([pairs.tangential_force, pairs.tangential_force, walls.tangential_force])
     turned = -radius[disk[n + len(load) :]] * tangential
     torque = np.asarray(np.bincount(disk, np.concatenate([np.zeros(n), load[:, 2], turned]), n), float)
-    if problem.rolls:
+    if len(problem.laws) > 1:
         couple = problem.pair_arms(pairs.first, pairs.second) * pairs.rolling_force
         np.add.at(torque, pairs.first, couple)
         np.add.at(torque, pairs.second, -couple)
@@ -192,16 +192,13 @@ def certify(
     n, held = problem.n, problem.held
     force, torque = unbalanced(problem, state)
     force[held.disk, held.axis] = problem.stiffness * held.shift(state.position, state.load_factor)
-    excess = beyond = 0.0
-    smallest = np.inf
-    for contacts, law, _, rolling in problem.kinds(state):
+    excess, smallest = [0.0, 0.0], np.inf
+    for contacts, laws, _ in problem.kinds(state):
         closed, normal = contacts.touching, contacts.normal_force
-        over = np.abs(contacts.tangential_force) - limit(law, np.abs(normal))
-        excess = max(excess, float(over[closed].max(initial=0.0)))
         smallest = min(smallest, float(normal[closed].min(initial=np.inf)))
-        if rolling is not None:
-            over = np.abs(contacts.rolling_force) - rolling.friction * np.abs(normal)
-            beyond = max(beyond, float(over[closed].max(initial=0.0)))
+        for row, (law, borne) in enumerate(zip(laws, contacts.forces, strict=False)):
+            over = np.abs(borne) - limit(law, np.abs(normal))
+            excess[row] = max(excess[row], float(over[closed].max(initial=0.0)))
     bears = np.maximum(problem.weight, state.largest_normal_force())
     turned = np.abs(torque) / problem.packing.radius if problem.rotations else np.zeros(n)
     energy = 0.5 * (problem.weight * (state.velocity**2).sum(axis=1)).sum()
@@ -209,13 +206,13 @@ def certify(
     return Certificate(
         force_residual=float(np.abs(force).max()),
         torque_residual=float(np.abs(torque).max()) if problem.rotations else 0.0,
-        coulomb_excess=excess,
+        coulomb_excess=excess[0],
         smallest_normal_force=smallest,
         kinetic_energy=float(energy) / n,
         negative_modes=modes,
         loose_disks=int((state.contact_count() < 2).sum()),
         unbalanced_part=float((np.maximum(np.abs(force).max(axis=1), turned) / bears).max()),
-        rolling_excess=beyond,
+        rolling_excess=excess[1],
         undetermined=undetermined,
     )
 

@@ -1,4 +1,4 @@
-"""Tangential and rolling springs that a user's own packing begins with."""
+"""Springs that a user's own packing begins with."""
 
 from __future__ import annotations
 
@@ -21,18 +21,19 @@ ROUNDED = 1e-9
 
 def given_springs(given: Sequence[GivenContact], kind: Kind, at_wall: bool) -> Contacts:
     """The contacts of one kind with the springs that were given. SceneError unless they are those of the packing."""
-    (c, law, _, rolling), key = kind, "wall" if at_wall else "contact"
+    (c, laws, _), key = kind, "wall" if at_wall else "contact"
+    law, rolls = laws[0], any(one.friction > 0.0 for one in laws[1:])
     known = {pair: k for k, pair in enumerate(zip(c.first.tolist(), c.second.tolist(), strict=True))}
     missing = (c.overlap > ROUNDED) & (law.friction > 0.0)
-    force, roll = np.zeros((2, len(c.first)))
+    force, roll = forces = np.zeros((2, len(c.first)))
     for one in (one for one in given if one.at_wall == at_wall):
         k, wrong = known.get((one.first, one.second)), ""
         if k is None or c.overlap[k] < -ROUNDED:
             wrong = "do not touch in this packing"
         elif one.tangential and not law.friction:
             wrong = f"bear a tangential force, {key}.friction must be greater than 0"
-        elif abs(one.rolling) > 0.0 if rolling is None else math.isnan(one.rolling):
-            wrong = f"have {'a' if rolling is None else 'no'} rolling force there, unlike {key}.rolling_friction"
+        elif math.isnan(one.rolling) if rolls else abs(one.rolling) > 0.0:
+            wrong = f"have {'no' if rolls else 'a'} rolling force there, unlike {key}.rolling_friction"
         require(not wrong, f"packing.springs: {one.place}: {one.words} {wrong}", SceneError)
         force[k], roll[k], missing[k] = one.tangential, one.rolling, False
     if missing.any():
@@ -42,6 +43,5 @@ def given_springs(given: Sequence[GivenContact], kind: Kind, at_wall: bool) -> C
     if len(over := np.flatnonzero(np.abs(force) > law.friction * (1.0 + ROUNDED))):
         most = f"{np.abs(force).max():.4g} of the normal force, {key}.friction is {law.friction:g}"
         warnings.warn(f"packing.springs: {len(over)} contacts bear up to {most}; they slip", stacklevel=2)
-    spring = -force * c.normal_force / (law.tangential_stiffness or 1.0)
-    turned = None if rolling is None else -roll * c.normal_force / rolling.stiffness
-    return spring_contacts(c.first, c.second, spring, turned)
+    stiffness = [[one.tangential_stiffness or 1.0] for one in laws]
+    return spring_contacts(c.first, c.second, -forces[: len(laws)] * c.normal_force / stiffness)

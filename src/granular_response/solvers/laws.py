@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from ..contact import LAWS, Law, without_friction
 from ..contact.consistent import contradiction
-from ..contact.rolling import Rolling
+from ..contact.rolling import FREE, Rolling
 from ..errors import GranularError, require
 from ..scene import Contact, Scene, SceneError
 from ..scene.base import Description
@@ -86,8 +87,8 @@ def law_class(name: str) -> type[Law]:
     return KNOWN_LAWS[name].law or LAWS[name]
 
 
-def laws_of(scene: Scene) -> tuple[Law, Law]:
-    """The laws of a scene between disks and at walls."""
+def laws_of(scene: Scene) -> tuple[tuple[Any, Any], ...]:
+    """Between disks and at walls: the laws of a scene, then their rolling resistance where one of them has any."""
     least = -np.inf if scene.protocol.tensile_dashpot else 0.0
 
     def law(m: Contact, reduced_radius: float) -> Law:
@@ -99,11 +100,8 @@ def laws_of(scene: Scene) -> tuple[Law, Law]:
 
     pair, wall = law(scene.contact, DISKS), law(scene.resolved_wall, AT_WALL)
     check_parameters(scene.contact.law, pair, wall)
-    return pair, wall
-
-
-def rolling_of(contact: Contact) -> Rolling | None:
-    """The rolling resistance of one kind of contact; None without."""
-    if not contact.rolls:
-        return None
-    return Rolling(contact.rolling_stiffness, contact.rolling_damping, contact.rolling_friction)
+    kinds = scene.contact, scene.resolved_wall
+    if not any(m.rolls for m in kinds):
+        return ((pair, wall),)
+    rolling = [Rolling(m.rolling_stiffness, m.rolling_damping, m.rolling_friction) if m.rolls else FREE for m in kinds]
+    return (pair, wall), (rolling[0], rolling[1])

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..contact import RULES, Law, without_friction
-from ..contact.rolling import Rolling, arms
+from ..contact.geometry import reduced_radii
 from ..scene import Packing, Scene, SceneError, resolve_disk
 from ..state import FloatArray, State
 from ..state.box import bodies
@@ -22,7 +23,7 @@ from .choice import Plan, plan
 from .close_pairs import close_pairs
 from .given_springs import given_springs
 from .held import NOTHING, Held
-from .laws import laws_of, rolling_of
+from .laws import laws_of
 from .overlaps import without_overlaps
 from .springs import Kind, carry_springs, spring_contacts, static_contacts
 
@@ -76,19 +77,17 @@ class Problem:
 
     ``load`` is (l, 3): force components and torque on the disks ``load_disk`` (l,), and ``held`` the coordinates that
     loads hold; all empty for gravity alone and until :meth:`with_loads` has chosen the loaded disks on the rest state.
+    ``laws`` are those between disks and at walls, row by row (``state.ROWS``); without friction a row bears nothing.
     """
 
     scene: Scene
     packing: Packing
-    pair_law: Law
-    wall_law: Law
+    laws: tuple[tuple[Any, Any], ...]
     rule: int
     plan: Plan
     load_disk: NDArray[np.int64]
     load: FloatArray
     held: Held = NOTHING
-    pair_rolling: Rolling | None = None
-    wall_rolling: Rolling | None = None
 
     @classmethod
     def from_scene(cls, scene: Scene, packing: Packing | None = None) -> Problem:
@@ -103,19 +102,25 @@ class Problem:
             removed = getattr(scene.packing, "overlaps", "kept") == "removed"
             _check_overlaps(start, 1.0 if removed else MOST_OVERLAP)
             start = without_overlaps(start) if removed else start
-        pair_law, wall_law = laws_of(scene)
+        laws = laws_of(scene)
+        pair_law, wall_law = laws[0]
         return cls(
             scene=scene,
             packing=start,
-            pair_law=pair_law,
-            wall_law=wall_law,
+            laws=laws,
             rule=RULES[scene.protocol.friction_law],
             plan=plan(scene, start, pair_law, rotations=max(pair_law.friction, wall_law.friction) > 0.0),
             load_disk=np.zeros(0, np.int64),
             load=np.zeros((0, 3)),
-            pair_rolling=rolling_of(scene.contact),
-            wall_rolling=rolling_of(scene.resolved_wall),
         )
+
+    @cached_property
+    def pair_law(self) -> Law:
+        return self.laws[0][0]
+
+    @cached_property
+    def wall_law(self) -> Law:
+        return self.laws[0][1]
 
     @cached_property
     def n(self) -> int:
@@ -149,11 +154,6 @@ class Problem:
     @cached_property
     def wall_friction(self) -> bool:
         return self.wall_law.friction > 0.0
-
-    @cached_property
-    def rolls(self) -> bool:
-        """Whether some contact resists rolling."""
-        return self.pair_rolling is not None or self.wall_rolling is not None
 
     @cached_property
     def rotations(self) -> bool:
@@ -196,7 +196,7 @@ class Problem:
         """The same packing with smooth disks and walls."""
         pair, wall = without_friction(self.pair_law), without_friction(self.wall_law)
         smooth = plan(self.scene, self.packing, pair, rotations=False)
-        return replace(self, pair_law=pair, wall_law=wall, pair_rolling=None, wall_rolling=None, plan=smooth)
+        return replace(self, laws=((pair, wall),), plan=smooth)
 
     @cached_property
     def load_size(self) -> float:
@@ -244,8 +244,7 @@ class Problem:
 
     def list_candidates(self, position: FloatArray, *, search: bool = False, stride: float = 0.0) -> Candidates:
         """Candidate contacts at ``position`` (n, 2), as :func:`.candidates.list_candidates` finds them."""
-        laws = self.pair_law, self.wall_law
-        return list_candidates(self.packing, laws, position, search=search, stride=stride)
+        return list_candidates(self.packing, self.laws[0], position, search=search, stride=stride)
 
     def pair_shapes(self, first, second) -> FloatArray | None:
         """(m,) what the contact law needs of the radii of pairs."""
@@ -259,11 +258,11 @@ class Problem:
     def pair_arms(self, first, second) -> FloatArray:
         """(m,) reduced radii of pairs."""
         radius = self.packing.radius
-        return arms(radius[first], radius[second])
+        return reduced_radii(radius[first], radius[second])
 
     def wall_arms(self, disk) -> FloatArray:
-        """(w,) arms at which disks roll on walls: their radii."""
-        return arms(self.packing.radius[disk])
+        """(w,) reduced radii of disks at walls: their own."""
+        return reduced_radii(self.packing.radius[disk])
 
     def bare_state(self) -> State:
         """The unloaded initial packing: no displacement, no motion, and no springs but those that were given.
@@ -288,8 +287,8 @@ class Problem:
             When a contact that carries a spring is not among the new candidates.
         """
         c = self.list_candidates(state.position)
-        pairs = spring_contacts(c.first, c.second, *carry_springs(self.n, state.pairs, c.first, c.second))
-        walls = spring_contacts(c.wall_disk, c.wall, *carry_springs(self.n, state.walls, c.wall_disk, c.wall))
+        pairs = spring_contacts(c.first, c.second, carry_springs(self.n, state.pairs, c.first, c.second))
+        walls = spring_contacts(c.wall_disk, c.wall, carry_springs(self.n, state.walls, c.wall_disk, c.wall))
         return self.with_static_forces(replace(state, pairs=pairs, walls=walls))
 
     def with_static_forces(self, state: State) -> State:
@@ -299,15 +298,16 @@ class Problem:
         gap = self.packing.box.wall_gap(state.position[k], radius[k], state.walls.second)
         overlaps = radius[state.pairs.first] + radius[state.pairs.second] - distance, -gap
         pairs, walls = (
-            static_contacts(one.first, one.second, overlap, one.spring, shape, law, rolling, one.rolling_spring)
-            for (one, law, shape, rolling), overlap in zip(self.kinds(state), overlaps, strict=True)
+            static_contacts(one.first, one.second, overlap, one.springs, shape, laws)
+            for (one, laws, shape), overlap in zip(self.kinds(state), overlaps, strict=True)
         )
         return replace(state, pairs=pairs, walls=walls)
 
     def kinds(self, state: State) -> tuple[Kind, Kind]:
         """The contacts of a state between disks, then those at walls, each with its laws."""
         pairs, walls = state.pairs, state.walls
+        of_pairs, of_walls = zip(*self.laws, strict=True)
         return (
-            Kind(pairs, self.pair_law, self.pair_shapes(pairs.first, pairs.second), self.pair_rolling),
-            Kind(walls, self.wall_law, self.wall_shapes(walls.first), self.wall_rolling),
+            Kind(pairs, of_pairs, self.pair_shapes(pairs.first, pairs.second)),
+            Kind(walls, of_walls, self.wall_shapes(walls.first)),
         )

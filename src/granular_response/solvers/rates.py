@@ -45,10 +45,7 @@ OPTIONS = RateOptions()
 
 @dataclass(frozen=True)
 class Changes:
-    """What each of m + w contacts does next; see :mod:`granular_response.kernels.transitions`.
-
-    Where there is rolling resistance, what they do along the rolling comes after that.
-    """
+    """What each of m + w contacts does next, row by row; see :mod:`granular_response.kernels.transitions`."""
 
     what: np.ndarray
     left: FloatArray  #: force until then (mean weights)

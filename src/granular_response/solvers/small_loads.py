@@ -21,11 +21,10 @@ from .system import StaticSystem, Trial
 def at_limit(problem: Problem, state: State) -> int:
     """How many closed contacts are at a limit of friction: what they answer depends on the direction of a load."""
     count = 0
-    for contacts, law, _, rolling in problem.kinds(state):
-        most = (1.0 - AT_LIMIT) * limit(law, contacts.normal_force)
-        count += int((contacts.touching & (np.abs(contacts.tangential_force) >= most) & (law.friction > 0.0)).sum())
-        if rolling is not None:
-            count += int(contacts.near_limit(rolling.friction, AT_LIMIT, rolling=True).sum())
+    for contacts, laws, _ in problem.kinds(state):
+        for law, force in zip(laws, contacts.forces, strict=False):
+            most = (1.0 - AT_LIMIT) * limit(law, contacts.normal_force)
+            count += int((contacts.touching & (np.abs(force) >= most) & (law.friction > 0.0)).sum())
     return count
 
 
@@ -67,9 +66,9 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
 
 def _loose(problem: Problem, state: State) -> np.ndarray:
     """(n, freedoms) which unknowns nothing holds."""
-    # one contact that resists rolling holds a disk alone
-    rolls, at_wall = state.pairs.rolling_status != OPEN, state.walls.rolling_status != OPEN
-    ties = state.contact_count() + state.contact_count(rolls, walls=at_wall)
+    # one contact that bears a couple too holds a disk alone
+    rows = zip(state.pairs.statuses != OPEN, state.walls.statuses != OPEN, strict=True)
+    ties = np.sum([state.contact_count(between, walls=at_wall) for between, at_wall in rows], axis=0)
     loose = np.repeat(ties[:, None] < 2, problem.freedoms, axis=1)
     loose[:, 0] |= problem.slides_freely
     loose[problem.held.disk, problem.held.axis] = False

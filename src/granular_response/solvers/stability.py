@@ -234,7 +234,7 @@ def diverging(spectrum: Spectrum) -> int | None:
 
 
 def _slides(trial: Trial) -> bool:
-    """Whether a contact is at a limit, along the tangent or the rolling."""
+    """Whether a contact is at a limit."""
     return bool((np.abs(trial.sense) == SLIDING).any())
 
 

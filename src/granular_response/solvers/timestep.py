@@ -34,7 +34,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..contact import Law
-from ..contact.rolling import Rolling
+from ..contact.rolling import FREE, Rolling
 from ..errors import SolveError
 from ..kernels.integrators import INTEGRATORS, amplification
 from ..scene.protocol import PAPERS_TIME_STEP
@@ -107,10 +107,10 @@ Motion = tuple[float, float, float]
 Constants = tuple[float, float, float, float, float, float]
 
 
-def _constants(law: Law, rolling: Rolling | None, force: float) -> Constants:
+def _constants(force: float, law: Law, rolling: Rolling = FREE) -> Constants:
     """Of a law at normal forces up to ``force``."""
-    rolls = (0.0, 0.0) if rolling is None else (rolling.stiffness, rolling.damping)
-    return law.stiffest(force), law.normal_damping, law.tangential_stiffness, law.tangential_damping, *rolls
+    tangential, along = ((one.tangential_stiffness, one.tangential_damping) for one in (law, rolling))
+    return law.stiffest(force), law.normal_damping, *tangential, *along
 
 
 def largest_force(problem: Problem) -> float:
@@ -124,7 +124,7 @@ def largest_force(problem: Problem) -> float:
     travel = largest * sum(math.hypot(*(part or 0.0 for part in load.displacement or ())) for load in loads)
     if travel > 0.0:
         one, law = np.ones(1), problem.pair_law
-        contact = static_contacts(one, one, travel * one, 0.0 * one, law.shapes(one, one), law)
+        contact = static_contacts(one, one, travel * one, np.zeros((1, 1)), law.shapes(one, one), (law,))
         force += float(contact.normal_force[0])
     return force
 
@@ -159,8 +159,7 @@ def stiffest_motions(problem: Problem, *, smallest: bool = False) -> list[Motion
     ``smallest`` : as if all disks had the smallest mass.
     """
     force = largest_force(problem)
-    pair = _constants(problem.pair_law, problem.pair_rolling, force)
-    wall = _constants(problem.wall_law, problem.wall_rolling, force)
+    pair, wall = (_constants(force, *laws) for laws in zip(*problem.laws, strict=True))
     kn, nun, kt, nut, kr, nur = pair
     small = float(problem.packing.radius.min())
     turn = 2.0 * NEIGHBOURS / MOMENT

@@ -30,32 +30,27 @@ def stored(problem: Problem, state: State, seen: FloatArray | None = None) -> fl
     there has a spring that makes up for the dashpot; of such a spring the part counts whose force is within the limit.
     """
     total = float(problem.weight @ state.position[:, 1])
-    rates: Any = ((0.0, 0.0, 0.0),) * 2 if seen is None else _rates(problem, state, seen)
-    cut = seen is not None and problem.rule == CUT
-    for (contacts, law, shape, rolling), (apart, slip, turn) in zip(problem.kinds(state), rates, strict=True):
+    rates: Any = ((0.0,) * 3,) * 2 if seen is None else _rates(problem, state, seen)
+    for (contacts, laws, shape), (apart, *slips) in zip(problem.kinds(state), rates, strict=True):
+        law = laws[0]
         total += statics.elastic_energy(contacts.overlap, shape, law)
         normal = np.abs(np.maximum(contacts.normal_force - law.normal_damping * apart, law.least_force))
-        if law.friction > 0.0:
-            spring, limit = contacts.spring, law.friction * normal
-            if cut:
-                spring = _within(spring, slip, limit, law.tangential_stiffness, law.tangential_damping)
-            total += 0.5 * law.tangential_stiffness * float(spring @ spring)
-        if rolling is not None:
-            spring, limit = contacts.rolling_spring, rolling.friction * normal
-            if seen is not None:
-                spring = _within(spring, turn, limit, rolling.stiffness, rolling.damping)
-            total += 0.5 * rolling.stiffness * float(spring @ spring)
+        for row, (one, spring, slip) in enumerate(zip(laws, contacts.springs, slips, strict=False)):
+            if one.friction > 0.0:
+                if seen is not None and (row > 0 or problem.rule == CUT):
+                    spring = _within(spring, slip, one.friction * normal, one)
+                total += 0.5 * one.tangential_stiffness * float(spring @ spring)
     return total
 
 
-def _within(spring, slip, limit, stiffness: float, damping: float) -> FloatArray:
+def _within(spring, slip, limit, law: Any) -> FloatArray:
     """(m,) springs, without those of contacts cut to their ``limit`` that only make up for what their dashpot pulls."""
-    pull = stiffness * spring + damping * slip
+    pull = law.tangential_stiffness * spring + law.tangential_damping * slip
     return np.where((np.abs(pull) >= (1.0 - CUT_LATELY) * limit) & (spring * pull < 0.0), 0.0, spring)
 
 
 def _rates(problem: Problem, state: State, v: FloatArray) -> tuple[tuple[FloatArray, FloatArray, FloatArray], ...]:
-    """Rates at which contacts between disks, and at walls, part, slip and turn, each (m,), at velocities ``v``."""
+    """Rates at which contacts between disks, and at walls, part, and slip in each row, each (m,), at velocities v."""
     n, radius, i, j, k = problem.n, problem.packing.radius, state.pairs.first, state.pairs.second, state.walls.first
     u, w = v[:n], v[n : 2 * n]
     spin = v[2 * n :] if problem.rotations else np.zeros(n)
@@ -87,7 +82,7 @@ def work(problem: Problem, before: State, after: State) -> float:
 
 @dataclass(frozen=True)
 class Slid:
-    """Energy that sliding, and rolling at its limit, took between two states.
+    """Energy that sliding took between two states, in all rows.
 
     Contact by contact, in the order of the states' candidates.
     """
@@ -116,24 +111,17 @@ def slid(problem: Problem, before: State, after: State) -> Slid:
     i, j, k = before.pairs.first, before.pairs.second, before.walls.first
     normal = wall_normals(before.walls.second)
     along = moved[k, 1] * normal[:, 0] - moved[k, 0] * normal[:, 1]
-    pairs = _lost(before.pairs, after.pairs, distance * turn - radius[i] * turned[i] - radius[j] * turned[j])
-    walls = _lost(before.walls, after.walls, along - radius[k] * turned[k])
-    if problem.pair_rolling is not None:
-        pairs += _lost(before.pairs, after.pairs, problem.pair_arms(i, j) * (turned[i] - turned[j]), "rolling_")
-    if problem.wall_rolling is not None:
-        walls += _lost(before.walls, after.walls, problem.wall_arms(k) * turned[k], "rolling_")
+    slip = distance * turn - radius[i] * turned[i] - radius[j] * turned[j]
+    pairs = _lost(before.pairs, after.pairs, slip, problem.pair_arms(i, j) * (turned[i] - turned[j]))
+    walls = _lost(before.walls, after.walls, along - radius[k] * turned[k], problem.wall_arms(k) * turned[k])
     return Slid(pairs, walls)
 
 
-def _lost(before: Contacts, after: Contacts, slip: FloatArray, way: str = "") -> FloatArray:
-    """(m,) mean tangential force times the part of ``slip`` (m,) that the springs have not taken up.
-
-    ``way`` : "rolling_" for what is lost along the rolling.
-    """
+def _lost(before: Contacts, after: Contacts, *slips: FloatArray) -> FloatArray:
+    """(m,) mean force in each row times the part of its slip (m,) that the springs have not taken up, in all."""
     closed = np.where(before.touching & after.touching, 1.0, 0.0)
     for one, other in ((before, after), (after, before)):
         half = one.touching & ~other.touching
         closed[half] = one.overlap[half] / (one.overlap[half] - other.overlap[half])
-    force, spring = (f"{way}force" if way else "tangential_force"), f"{way}spring"
-    mean = 0.5 * (getattr(before, force) + getattr(after, force))
-    return -mean * (closed * slip - (getattr(after, spring) - getattr(before, spring)))
+    mean = 0.5 * (before.forces + after.forces)
+    return (-mean * (closed * np.stack(slips) - (after.springs - before.springs))).sum(axis=0)

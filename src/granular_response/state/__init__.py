@@ -10,12 +10,13 @@ from .box import foot_points as foot_points
 from .box import wall_normals as wall_normals
 from .events import CONTACT_EVENTS as CONTACT_EVENTS
 from .events import LOST_EVENTS as LOST_EVENTS
-from .events import ROLLING_EVENTS as ROLLING_EVENTS
+from .events import ROW_EVENTS as ROW_EVENTS
 from .events import Event as Event
 from .index import StateIndexError as StateIndexError
 from .index import state_index as state_index
 from .state import AT_LIMIT as AT_LIMIT
 from .state import OPEN as OPEN
+from .state import ROWS as ROWS
 from .state import SLIDING as SLIDING
 from .state import STICKING as STICKING
 from .state import Certificate as Certificate

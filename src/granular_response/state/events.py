@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 from .box import bodies
 
-#: What a contact does at an event.
-CONTACT_EVENTS = ("opens", "closes", "slides", "sticks", "reverses")
-#: What it does along the rolling.
-ROLLING_EVENTS = ("rolls", "stops rolling", "rolls back")
+#: What a contact does at an event where it stays closed, along the tangent and along the rolling.
+ROW_EVENTS = (("slides", "sticks", "reverses"), ("rolls", "stops rolling", "rolls back"))
+#: What any contact does.
+CONTACT_EVENTS = ("opens", "closes", *ROW_EVENTS[0])
 #: What happens to an equilibrium that ends: a longer increment finds the next one nearby, the motion of the disks leads
 #: to it, or to one of several.
 LOST_EVENTS = ("stepped over", "jump", "bifurcation")

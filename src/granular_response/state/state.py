@@ -23,6 +23,9 @@ OPEN, STICKING, SLIDING = 0, 1, 2
 #: Their names, in order.
 MEANINGS = ("open", "sticking", "sliding")
 
+#: Names of force, spring and status in each row of a contact: along the tangent, and along the rolling.
+ROWS = (("tangential_force", "spring", "status"), ("rolling_force", "rolling_spring", "rolling_status"))
+
 #: Part of what a disk bears that may be out of balance.
 BALANCED = 1e-6
 
@@ -137,9 +140,31 @@ class Contacts:
     rolling_status: NDArray[np.int8] = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
-        for name, kind in (("rolling_force", float), ("rolling_spring", float), ("rolling_status", np.int8)):
+        for name, kind in zip(ROWS[1], (float, float, np.int8), strict=True):
             if getattr(self, name) is None:
                 object.__setattr__(self, name, np.zeros(len(self.first), kind))
+
+    @classmethod
+    def of(cls, first, second, overlap, normal_force, forces, springs, statuses) -> Contacts:
+        """From ``forces``, ``springs`` and ``statuses`` (r, m) of the first rows, with zeros in the others."""
+        rows = zip(forces, springs, np.asarray(statuses, np.int8), strict=True)
+        bodies = np.asarray(first, np.int32), np.asarray(second, np.int32)
+        return cls(*bodies, overlap, normal_force, *(part for row in rows for part in row))
+
+    @property
+    def forces(self) -> FloatArray:
+        """(2, m) forces in each row."""
+        return np.stack([self.tangential_force, self.rolling_force])
+
+    @property
+    def springs(self) -> FloatArray:
+        """(2, m) springs in each row."""
+        return np.stack([self.spring, self.rolling_spring])
+
+    @property
+    def statuses(self) -> NDArray[np.int8]:
+        """(2, m) statuses in each row."""
+        return np.stack([self.status, self.rolling_status])
 
     @property
     def touching(self) -> NDArray[np.bool_]:
@@ -152,18 +177,14 @@ class Contacts:
         return self.status == SLIDING
 
     @property
-    def resists_rolling(self) -> bool:
-        """Whether some contact rolls against a resistance."""
-        return bool((self.rolling_status != OPEN).any())
+    def rows(self) -> int:
+        """Rows of :data:`ROWS` that are in use: two where some contact rolls against a resistance."""
+        return 1 + bool((self.rolling_status != OPEN).any())
 
-    def near_limit(self, friction: float, margin: float, *, rolling: bool = False) -> NDArray[np.bool_]:
-        """(m,) whether the contact is closed with ``|f_t| >= (1 - margin) friction f_n``; none without friction.
-
-        Of the force along the ``rolling`` in place of the tangential one, if asked.
-        """
+    def near_limit(self, friction: float, margin: float) -> NDArray[np.bool_]:
+        """(m,) whether the contact is closed with ``|f_t| >= (1 - margin) friction f_n``; none without friction."""
         limit = (1.0 - margin) * friction * self.normal_force
-        force = self.rolling_force if rolling else self.tangential_force
-        return self.touching & (np.abs(force) >= limit) & (friction > 0.0)
+        return self.touching & (np.abs(self.tangential_force) >= limit) & (friction > 0.0)
 
     def same_candidates(self, other: Contacts) -> bool:
         """Whether both list the same candidates in the same order, so that they subtract contact by contact."""

@@ -27,20 +27,19 @@ from ..scene.material import KNOWN_LAWS
 from ..solvers.problem import Problem
 from ..solvers.solution import Solution
 from ..solvers.timestep import time_steps_taken
-from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Box, Certificate, Contacts, Event, Reached, State
+from ..state import CONTACT_EVENTS, LOST_EVENTS, ROW_EVENTS, ROWS, Box, Certificate, Contacts, Event, Reached, State
 from ..state.box import WALL_MEANINGS, FloatArray
 from ..state.state import MEANINGS
 from .variables import (
     CERTIFICATE,
-    CONTACT,
     EVENT_KINDS,
     EVENTS,
     NOT_DETERMINED,
     RADII,
     REACHED,
-    ROLLING,
     VARIABLES,
     WEIGHTS,
+    contact_names,
     described,
     flags,
     labelled,
@@ -79,7 +78,7 @@ def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Data
     for prefix, (kind, first, second) in CONTACTS.items():
         contacts: list[Contacts] = [getattr(state, kind) for state in states]
         data |= {first: described(first, contacts[0].first), second: described(second, contacts[0].second)}
-        for name in (*CONTACT, *(ROLLING if any(one.resists_rolling for one in contacts) else ())):
+        for name in contact_names(max(one.rows for one in contacts)):
             values = [getattr(one, name) for one in contacts]
             data[f"{prefix}_{name}"] = stacked(f"{prefix}_{name}", values)
     data["load_factor"] = stacked("state_load_factor", [state.load_factor for state in states])
@@ -88,10 +87,10 @@ def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Data
 
 def certificates_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
     """The certificates of states along ``dimension``."""
-    rolling = any(contacts.resists_rolling for state in states for contacts in (state.pairs, state.walls))
+    rolls = any(contacts.rows > 1 for state in states for contacts in (state.pairs, state.walls))
     found = {}
     for name in CERTIFICATE:
-        if name != "rolling_excess" or rolling:
+        if name != "rolling_excess" or rolls:
             values = [getattr(state.certificate, name) for state in states]
             numbers = [NOT_DETERMINED if value is None else value for value in values]
             found[f"certificate_{name}"] = described(f"certificate_{name}", numbers, along=dimension)
@@ -112,7 +111,7 @@ def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, xr.Variabl
         values: Any = [getattr(event, name) for _, event in found]
         attributes: dict[str, Any] = {}
         if name == "kind":
-            known = EVENT_KINDS if set(ROLLING_EVENTS) & set(values) else CONTACT_EVENTS + LOST_EVENTS
+            known = EVENT_KINDS if set(ROW_EVENTS[1]) & set(values) else CONTACT_EVENTS + LOST_EVENTS
             values = np.array([known.index(kind) for kind in values], np.int8)
             attributes = flags([kind.replace(" ", "_") for kind in known])
         elif name == "at_wall":
@@ -382,7 +381,7 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         certificate = Certificate(**numbers, undetermined=tuple(free))
 
     def contacts(prefix: str) -> Contacts:
-        found = stored_values(one, f"{prefix}_", (*CONTACT, *ROLLING))
+        found = stored_values(one, f"{prefix}_", contact_names())
         first, second = (one[name].values.astype(np.int32) for name in CONTACTS[prefix][1:])
         return Contacts(first, second, **found)
 
@@ -453,9 +452,9 @@ def contact_table(state: State, radius: FloatArray) -> Any:
         "tangential_force": joined("tangential_force"),
     }
     units = {"x": LENGTH, "z": LENGTH, "normal_force": FORCE, "tangential_force": FORCE}
-    if pairs.resists_rolling or walls.resists_rolling:
-        columns["rolling_force"], units["rolling_force"] = joined("rolling_force"), FORCE
-        columns["rolling_status"] = np.array([MEANINGS[code] for code in joined("rolling_status")], object)
+    for force, _, status in ROWS[1 : max(pairs.rows, walls.rows)]:
+        columns[force], units[force] = joined(force), FORCE
+        columns[status] = np.array([MEANINGS[code] for code in joined(status)], object)
     found = xr.Dataset({name: ("contact", values) for name, values in columns.items()}).to_dataframe()
     found.attrs["units"] = units
     return found

@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from ..inputs import read_text
-from ..state import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS
+from ..state import CONTACT_EVENTS, LOST_EVENTS, ROW_EVENTS, ROWS
 from ..state.box import WALL_MEANINGS
 from ..state.state import MEANINGS
 from .files import CHARACTERS, TEXT
@@ -25,12 +25,9 @@ from .files import CHARACTERS, TEXT
 RADII, WEIGHTS = "in mean disk radii", "in mean disk weights"
 #: Kinds of values, by the letters that numpy has for their types.
 REAL, WHOLE = "fiu", "iu"
-EVENT_KINDS = CONTACT_EVENTS + LOST_EVENTS + ROLLING_EVENTS
+EVENT_KINDS = CONTACT_EVENTS + LOST_EVENTS + ROW_EVENTS[1]
 #: Number of unstable directions in files where it was not determined, and other whole numbers that are not known.
 NOT_DETERMINED = -1
-#: Of every contact, and of those that resist rolling: what follows ``contact_`` and ``wall_`` in names of variables.
-CONTACT = ("overlap", "normal_force", "tangential_force", "spring", "status")
-ROLLING = ("rolling_force", "rolling_spring", "rolling_status")
 _KINDS = {"real": REAL, "whole": WHOLE, "text": TEXT}
 _CODES = {"status": MEANINGS, "wall": WALL_MEANINGS, "event": EVENT_KINDS, "no or yes": ("no", "yes")}
 
@@ -71,6 +68,11 @@ CERTIFICATE, REACHED = _after("certificate_"), _after("reached_")
 EVENTS = tuple(name for name in _after("event_") if name != "state")
 #: Where the name of the variable says too little.
 _NAMES = {"x": "x from the loaded disk", "load": "load factor", "state_load_factor": "load factor"}
+
+
+def contact_names(rows: int = len(ROWS)) -> tuple[str, ...]:
+    """What follows ``contact_`` and ``wall_`` in names of variables, where so many ``ROWS`` of contacts are in use."""
+    return ("overlap", "normal_force", *(name for row in ROWS[:rows] for name in row))
 
 
 def flags(meanings: Sequence[str], kind: Any = np.int8) -> dict[str, Any]:

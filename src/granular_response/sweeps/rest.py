@@ -78,10 +78,7 @@ def name(problem: Problem) -> str:
         )
     return key(
         packing,
-        problem.pair_law,
-        problem.wall_law,
-        problem.pair_rolling,
-        problem.wall_rolling,
+        problem.laws,
         problem.rule,
         preparation,
         method,

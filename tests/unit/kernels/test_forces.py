@@ -6,11 +6,11 @@ from reference_loop import Material, forces
 
 from granular_response.contact import CUT, LITERAL, RULES, UNLOADING, coulomb
 from granular_response.contact.law import normal_force
-from granular_response.contact.pair import frictional_pair, frictionless_pair
+from granular_response.contact.pair import frictional, frictionless
 from granular_response.contact.rolling import Rolling
 from granular_response.kernels import neighbours
 from granular_response.kernels.forces import SCRATCH, add_pair_forces, add_wall_forces
-from granular_response.kernels.model import Pairs, Rolls, Walls
+from granular_response.kernels.model import Motion, Pairs, Rolls, Walls
 from granular_response.scene import SlabPacking
 from granular_response.solvers.close_pairs import close_pairs
 
@@ -33,10 +33,10 @@ def run_kernel(position, velocity, spin, radius, first, second, springs, materia
     size = len(out)
     pairs = Pairs(
         runs, np.ascontiguousarray(d[0]), np.ascontiguousarray(d[1]), radius[i] + radius[j], None,
-        spring if friction else None, np.zeros(SCRATCH), material.law,
+        spring if friction else None, None, np.zeros(SCRATCH), material.law,
     )  # fmt: skip
     rim = radius * spin if friction else None
-    add_pair_forces(q[:size], v[:size], rim, out, n, pairs.spring, pairs.shape, pairs, None, rule, dt)
+    add_pair_forces(pairs.spring, None, pairs, Motion(n, q[:size], v[:size], rim, out, rule, dt))
     force = out[: 2 * n].reshape(2, n).T
     torque = -radius * out[2 * n :] if friction else np.zeros(n)
     return force, torque, spring[slot], spring, slot
@@ -134,23 +134,20 @@ def agrees_to_the_bit(runs, order, n, friction, rule, rolls):
     rolling = Rolls(rng.uniform(0.4, 0.6, slots), rng.normal(0, 1e-3, slots), Rolling(500.0, 10.0, 0.05), np.zeros(n))
     couple, turned = np.zeros(n), rolling.spring.copy()
     for i, j, s in order:
-        moved = dx[s] + (q[i] - q[j]), dz[s] + (q[n + i] - q[n + j]), v[i] - v[j], v[n + i] - v[n + j]
+        x, z, du, dw = dx[s] + (q[i] - q[j]), dz[s] + (q[n + i] - q[n + j]), v[i] - v[j], v[n + i] - v[n + j]
+        distance = np.sqrt(x * x + z * z)
+        overlap, nx, nz = reach[s] - distance, x * (1.0 / distance), z * (1.0 / distance)
+        fn = normal_force(overlap, None, du * nx + dw * nz, material.law)
         if rough:
-            px, pz, pt, springs[s] = frictional_pair(
-                *moved, rim[i] + rim[j], reach[s], None, spring[s], material.law, rule, dt
-            )  # fmt: skip
+            slip = dw * nx - du * nz - (rim[i] + rim[j])
+            px, pz, pt, springs[s] = frictional(overlap, nx, nz, fn, slip, spring[s], material.law, rule, dt)
             expected[2 * n + i] += pt
             expected[2 * n + j] += pt
         else:
-            px, pz = frictionless_pair(*moved, reach[s], None, material.law)
+            px, pz = frictionless(overlap, nx, nz, fn)
         if rolls:
-            dx_, dz_, du, dw = moved
-            distance = np.sqrt(dx_ * dx_ + dz_ * dz_)
-            overlap, inverse = reach[s] - distance, 1.0 / distance
-            fn = normal_force(overlap, None, du * (dx_ * inverse) + dw * (dz_ * inverse), material.law)
-            spin, (stiffness, damping, friction) = v[2 * n + i] - v[2 * n + j], rolling.rolling
-            most = friction * abs(fn)
-            force, new = coulomb.moved(turned[s], rolling.arm[s] * spin, most, stiffness, damping, dt)
+            slip = rolling.arm[s] * (v[2 * n + i] - v[2 * n + j])
+            force, new = coulomb.tangential(turned[s], slip, fn, rolling.law, CUT, dt)
             turned[s] = new if overlap > 0.0 else 0.0
             couple[i] += rolling.arm[s] * force if overlap > 0.0 else 0.0
             couple[j] -= rolling.arm[s] * force if overlap > 0.0 else 0.0
@@ -158,8 +155,11 @@ def agrees_to_the_bit(runs, order, n, friction, rule, rolls):
         expected[j] -= px
         expected[n + i] += pz
         expected[n + j] -= pz
-    pairs = Pairs(runs, dx, dz, reach, None, spring if rough else None, np.zeros(SCRATCH), material.law)
-    add_pair_forces(q, v, rim if rough else None, f, n, pairs.spring, None, pairs, rolling if rolls else None, rule, dt)
+    pairs = Pairs(
+        runs, dx, dz, reach, None, spring if rough else None, rolling if rolls else None, np.zeros(SCRATCH),
+        material.law,
+    )  # fmt: skip
+    add_pair_forces(pairs.spring, pairs.rolls, pairs, Motion(n, q, v, rim if rough else None, f, rule, dt))
     assert np.array_equal(f, expected)
     assert np.array_equal(spring, springs)
     assert np.array_equal(rolling.couple, couple)
@@ -179,8 +179,8 @@ def test_wall_by_hand(wall, rule):
     v = np.array([-0.3 * nx - along * nz, -0.3 * nz + along * nx, spin])
     q = np.array([-0.01 * nx, -0.01 * nz, 0.0])
     f, spring = np.zeros(3), np.array([1e-4])
-    walls = Walls(np.array([0]), np.array([[nx, nz]]), np.zeros(1), None, spring, material.law)
-    add_wall_forces(q, v, np.array([1.0 * spin]), f, 1, spring, None, walls, rule, dt)
+    walls = Walls(np.array([0]), np.array([[nx, nz]]), np.zeros(1), None, spring, None, material.law)
+    add_wall_forces(spring, walls, Motion(1, q, v, np.array([1.0 * spin]), f, rule, dt))
     fn = 10.0 + 3.0
     slip = along - spin
     ft = -(800.0 * (1e-4 + slip * dt) + 5.0 * slip)

@@ -9,7 +9,7 @@ from small_scenes import free_disks, pushed, scene, shaken, started
 from test_next_changes import added_to_tangent
 from test_statics import dense_tangent, numerical_tangent
 
-from granular_response.contact.coulomb import cut, limit, limit_slope, moved
+from granular_response.contact.coulomb import CUT, cut, limit, limit_slope, tangential
 from granular_response.contact.rolling import Rolling
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.dynamics import Dynamics
@@ -23,7 +23,7 @@ from granular_response.solvers.work import slid, stored, work
 from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response.store.result import state_from, to_dataset
 
-LAW = Rolling(stiffness=500.0, damping=10.0, friction=0.1)
+LAW = Rolling(tangential_stiffness=500.0, tangential_damping=10.0, friction=0.1)
 EVERYWHERE = {
     "contact__friction": 0.3,
     "contact__rolling_friction": 0.1,
@@ -36,12 +36,11 @@ FLOOR = {"wall__friction": 1.0, "wall__rolling_friction": 0.3, "wall__rolling_st
 
 def test_the_rolling_force_by_hand():
     """Within the limit spring and dashpot; beyond it the cut force, and the spring that it leaves after the dashpot."""
-    constants = LAW.stiffness, LAW.damping
-    assert moved(1e-3, 0.01, 1.0, *constants, 0.01) == pytest.approx((-0.65, 1.1e-3))
-    assert moved(3e-3, 0.01, 1.0, *constants, 0.0) == pytest.approx((-1.0, 0.9 / 500.0))
-    assert moved(-3e-3, 0.0, 1.0, *constants, 0.0) == pytest.approx((1.0, -1.0 / 500.0))
-    assert cut(3e-3, 0.0, 1.0, LAW.stiffness) == pytest.approx((-1.0, 2e-3, True))
-    assert cut(1e-3, 0.0, 1.0, LAW.stiffness) == pytest.approx((-0.5, 1e-3, False))
+    assert tangential(1e-3, 0.01, 10.0, LAW, CUT, 0.01) == pytest.approx((-0.65, 1.1e-3))
+    assert tangential(3e-3, 0.01, 10.0, LAW, CUT, 0.0) == pytest.approx((-1.0, 0.9 / 500.0))
+    assert tangential(-3e-3, 0.0, -10.0, LAW, CUT, 0.0) == pytest.approx((1.0, -1.0 / 500.0))
+    assert cut(3e-3, 0.0, 1.0, LAW.tangential_stiffness) == pytest.approx((-1.0, 2e-3, True))
+    assert cut(1e-3, 0.0, 1.0, LAW.tangential_stiffness) == pytest.approx((-0.5, 1e-3, False))
     assert limit(LAW, 10.0) == 1.0 and limit_slope(LAW, 10.0) == LAW.friction
 
 
@@ -71,7 +70,7 @@ def test_a_disk_on_the_floor_holds_a_couple_up_to_its_limit(torque):
     (state,) = follow(problem, rest, [1.0], record=record)
     assert not record.events and state.certificate.torque_residual < 1e-12
     assert state.walls.rolling_force[0] == pytest.approx(-torque)
-    assert state.angle[0] - rest.angle[0] == pytest.approx(torque / problem.wall_rolling.stiffness)
+    assert state.angle[0] - rest.angle[0] == pytest.approx(torque / problem.laws[1][1].tangential_stiffness)
 
 
 @pytest.mark.parametrize("body", ["disk", "floor"])
@@ -131,7 +130,7 @@ def test_forces_agree_with_dynamics_at_rest_and_the_tangent_is_their_derivative(
 def test_what_comes_next_along_the_rolling_falls_at_the_rate_that_is_said():
     problem, state = rolled(roll=1e-6)
     system = StaticSystem(problem, state)
-    known, count = system.start(state), len(system.friction)
+    known, count = system.start(state), len(system.listed.gap)
     sense = system.coupled(np.where(system.trial(known, known.q).sense == OPEN, OPEN, STICKING))
     here = system.trial(known, known.q, fixed=sense)
     v = np.random.default_rng(5).normal(size=system.dof)
@@ -144,7 +143,7 @@ def test_what_comes_next_along_the_rolling_falls_at_the_rate_that_is_said():
         side = np.sign(found.what[c])
 
         def left(trial, c=c - count, side=side):
-            return system.listed.rolling_friction[c] * trial.normal[c] - side * trial.contacts.tangential[count + c]
+            return system.limits(trial)[count + c] - side * trial.contacts.tangential[count + c]
 
         seen.add((int(side), bool(c - count < len(system.first))))
         assert found.left[c] == pytest.approx(left(here), abs=1e-12)
@@ -157,7 +156,7 @@ def test_what_comes_next_along_the_rolling_falls_at_the_rate_that_is_said():
 def test_a_changed_status_is_the_difference_of_tangents():
     problem, state = rolled()
     system = StaticSystem(problem, state)
-    known, count = system.start(state), len(system.friction)
+    known, count = system.start(state), len(system.listed.gap)
     here = system.trial(known, known.q)
     closed = np.flatnonzero(here.status != OPEN)
     for c in (closed[0], closed[len(closed) // 2], closed[-1]):

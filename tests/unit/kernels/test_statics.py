@@ -54,7 +54,7 @@ def test_pairs_have_the_bits_in_vectors_that_each_has_alone(law, size):
     free = system.trial(known, q)
     for fixed in (sense, None):
         trial = system.trial(known, q, fixed=fixed, velocity=rates, length=1e-3)
-        alone = Response.empty(len(sense))
+        alone = Response(*np.zeros((7, len(sense))))
         kept = None if fixed is None else fixed.astype(float)
         step = Increment(q, known.q, rates, 1e-3, known.overlap, known.spring, None, kept)
         for c in range(len(system.first)):

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...state import OPEN, ROLLING_EVENTS, SLIDING, STICKING, Event, FloatArray
+from ...state import OPEN, ROW_EVENTS, SLIDING, STICKING, Event, FloatArray
 from .points import Point
-
-#: What an event along the tangent is called along the rolling.
-ROLLING = dict(zip(("slides", "sticks", "reverses"), ROLLING_EVENTS, strict=True))
 
 
 def changes(point: Point, after: np.ndarray, until: float | None = None) -> list[Event]:
@@ -30,7 +27,7 @@ def changes(point: Point, after: np.ndarray, until: float | None = None) -> list
     return [
         Event(point.factor, kind, i, j, wall, x, z, until)
         for k, before, now, i, j, wall, (x, z) in zip(*(column.tolist() for column in columns), strict=True)
-        for kind in _kinds(before, now, rolls=k >= count)
+        for kind in _kinds(before, now, row=k // count)
     ]
 
 
@@ -47,11 +44,11 @@ def side(moved: FloatArray) -> str:
     return "right" if float(moved[:, 0].sum()) >= 0.0 else "left"
 
 
-def _kinds(before: int, after: int, *, rolls: bool) -> tuple[str, ...]:
-    """What a contact does between two signed statuses; if these are of its rolling, beside what it does anyway."""
-    if rolls and OPEN in (before, after):
+def _kinds(before: int, after: int, *, row: int) -> tuple[str, ...]:
+    """What a contact does between two signed statuses of a row; only the first says that it opens or closes."""
+    slides, sticks, reverses = ROW_EVENTS[row]
+    if OPEN not in (before, after):
+        return (sticks if after == STICKING else reverses if abs(before) == SLIDING else slides,)
+    if row > 0:
         return ()
-    if OPEN in (before, after):
-        return ("opens",) if after == OPEN else ("closes", "slides") if abs(after) == SLIDING else ("closes",)
-    kind = "sticks" if after == STICKING else "reverses" if abs(before) == SLIDING else "slides"
-    return (ROLLING[kind] if rolls else kind,)
+    return ("opens",) if after == OPEN else ("closes", slides) if abs(after) == SLIDING else ("closes",)

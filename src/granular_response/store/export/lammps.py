@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from ...contact import Hertz, Law, Linear
-from ...contact.rolling import Rolling
+from ...contact.rolling import FREE, Rolling
 from ...errors import GranularError
 from ...scene import Packing
 from ...scene.names import WALL_FIXES
@@ -41,7 +41,7 @@ class NoCounterpart(GranularError, ValueError):
     """A scene with something that LAMMPS has not. The message is one line."""
 
 
-def model(law: Law, rolling: Rolling | None = None) -> str:
+def model(law: Law, rolling: Rolling = FREE) -> str:
     """A contact law in the words of ``pair_style granular``, with its rolling resistance."""
     if isinstance(law, Hertz):
         kind, constant = "hertz", law.factor / math.sqrt(law.reduced_radius)
@@ -51,7 +51,7 @@ def model(law: Law, rolling: Rolling | None = None) -> str:
         raise NoCounterpart("contact.law: must be linear or hertz for LAMMPS")
     part = law.tangential_damping / law.normal_damping if law.normal_damping else 0.0
     tangential = f"linear_history {law.tangential_stiffness!r} " if law.friction else "linear_nohistory "
-    rolls = "" if rolling is None else f" rolling sds {rolling.stiffness!r} {rolling.damping!r} {rolling.friction!r}"
+    rolls = f" rolling sds {' '.join(map(repr, rolling))}" if rolling.friction > 0.0 else ""
     pulls = "" if law.least_force < 0.0 else " limit_damping"
     normal = f"{kind} {constant!r} {law.normal_damping!r}"
     return f"{normal} tangential {tangential}{part!r} {law.friction!r}{rolls} damping velocity{pulls}"
@@ -63,9 +63,9 @@ def _pair_style(problem: Problem) -> list[str]:
     Linear springs with friction are those of ``gran/hooke/history``, whose torques end at the rim, as ours do: in
     equilibrium the state of one is that of the other. Its dashpots are per effective mass, 1/2 of two mean disks.
     """
-    law, rolling = problem.pair_law, problem.pair_rolling
-    if not isinstance(law, Linear) or rolling or not 0.0 < law.friction <= MOST_XMU:
-        return ["pair_style granular", f"pair_coeff * * {model(law, rolling)}"]
+    law, *rolling = (between for between, _ in problem.laws)
+    if not isinstance(law, Linear) or any(one.friction > 0.0 for one in rolling) or not 0.0 < law.friction <= MOST_XMU:
+        return ["pair_style granular", f"pair_coeff * * {model(law, *rolling)}"]
     numbers = (law.normal_stiffness, law.tangential_stiffness, 2.0 * law.normal_damping, 2.0 * law.tangential_damping)
     pulls = "" if law.least_force < 0.0 else " limit_damping"
     return [f"pair_style gran/hooke/history {' '.join(map(repr, numbers))} {law.friction!r} 1{pulls}", "pair_coeff * *"]
@@ -109,7 +109,7 @@ def script(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
         given_mass=state["mass"].values,
     )  # fmt: skip
     problem = Problem.from_scene(scene, packing)
-    wall = model(problem.wall_law, problem.wall_rolling)
+    wall = model(*(at_wall for _, at_wall in problem.laws))
     first, last = float(state["state_load_factor"]), scene.protocol.load_factors[-1]
     moving = "loaded_disk" not in state  # of a motion, in which loads have begun to grow
     step = float(dataset.attrs["time_step"]) if moving else resolve_time_step(problem)

@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from ...observe.stress import coarse_grained_stress, load_forces
-from ...state import State
+from ...state import ROWS, State
 from ..result import CONTACTS, events_from, state_from
 from ..variables import EVENTS
 from .frames import contact_force_sums, in_plane
@@ -45,6 +45,8 @@ def _mesh(dataset: xr.Dataset, rest: State, index: int) -> bytes:
     position, box, n = state.position, state.box, len(state.position)
     moved = position - rest.position
     points, moves, ends, values = [position], [moved], [], []
+    further = [force for force, *_ in ROWS[1:] if any(f"{prefix}_{force}" in dataset for prefix in CONTACTS)]
+    names = (*_OF_CONTACTS, *further)
     for contacts, at_wall in ((state.pairs, False), (state.walls, True)):
         near, far = contacts.first[contacts.touching], contacts.second[contacts.touching].astype(np.int64)
         if at_wall:
@@ -58,7 +60,7 @@ def _mesh(dataset: xr.Dataset, rest: State, index: int) -> bytes:
         points.append(end[own])
         moves.append(way[own])
         ends.append(np.column_stack([near, far]))
-        of_contacts = {name: getattr(contacts, name)[contacts.touching] for name in _OF_CONTACTS}
+        of_contacts = {name: getattr(contacts, name)[contacts.touching] for name in names}
         values.append({**of_contacts, "wall": np.full(len(near), at_wall)})
     lines, centres = np.concatenate(ends), in_plane(np.concatenate(points))
     feet = len(centres) - n
@@ -79,8 +81,6 @@ def _mesh(dataset: xr.Dataset, rest: State, index: int) -> bytes:
         "offsets": np.concatenate([np.arange(1, n + 1), n + 2 * np.arange(1, len(lines) + 1)]).astype(np.int64),
         "types": np.repeat(np.array([_VERTEX, _LINE], np.uint8), [n, len(lines)]),
     }
-    rolls = any(f"{prefix}_rolling_force" in dataset for prefix in CONTACTS)
-    names = ("normal_force", "tangential_force", "overlap", "status", "wall", *(("rolling_force",) if rolls else ()))
     on_points: dict[str, np.ndarray] = {
         "radius": on_disks(dataset["radius"].values),
         "angle": on_disks(state.angle),
@@ -101,7 +101,7 @@ def _mesh(dataset: xr.Dataset, rest: State, index: int) -> bytes:
             *_section("Points", {"points": centres}),
             *_section("Cells", cells),
             *_section("PointData", on_points),
-            *_section("CellData", {name: on_lines(name) for name in names}),
+            *_section("CellData", {name: on_lines(name) for name in (*_OF_CONTACTS, "wall", *further)}),
             "</Piece>",
             "</UnstructuredGrid>",
             "</VTKFile>",
@@ -119,8 +119,8 @@ def _events(dataset: xr.Dataset, index: int) -> dict[str, np.ndarray]:
     return {name: array.astype(np.int32) if array.dtype.kind == "i" else array for name, array in arrays.items()}
 
 
-#: What lines have of their contacts.
-_OF_CONTACTS = ("normal_force", "tangential_force", "overlap", "status", "rolling_force")
+#: What lines have of their contacts, beside the forces of further rows.
+_OF_CONTACTS = ("normal_force", "tangential_force", "overlap", "status")
 #: VTK's numbers of the two kinds of cells.
 _VERTEX, _LINE = 1, 3
 _TYPES = {"f8": "Float64", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
