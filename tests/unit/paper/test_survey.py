@@ -1,6 +1,5 @@
 """The survey's parameters, and that its runs go on where they were."""
 
-
 import numpy as np
 import pytest
 import yaml
