@@ -91,8 +91,7 @@ def map_tasks(
         of a scene file too) or a ``Path`` in the item names. What else the function depends on is not known: data
         files that it opens by itself, modules that it finds by a name made at run time, other installed packages,
         environment variables, and a module that changed after it was imported. Of a lambda or a function of a notebook
-        nothing is kept. If None, the folder
-        of the resources in use; nothing is kept if there is none either.
+        nothing is kept. If None, the folder of the resources in use; nothing is kept if there is none either.
     parts : the sources that the results depend on, as :func:`.keys.sources` takes them; all if none is named.
     what : what the tasks are, for the progress line.
 
