@@ -1,5 +1,6 @@
 """Every kind of stored file read by other programs, again and again, in processes of their own: a crash is seen."""
 
+
 import numpy as np
 import pytest
 import xarray as xr

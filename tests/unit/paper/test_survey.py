@@ -1,5 +1,6 @@
 """The survey's parameters, and that its runs go on where they were."""
 
+
 import numpy as np
 import pytest
 import yaml

@@ -46,7 +46,9 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
-    contacts = f" (e), (f) Contacts before and after the loss, ramp of {parameters.protocols[0].ramp_time:g}."
+    contacts = (
+        f" (e), (f) Contacts before and after the loss, ramp of {parameters.protocols[0].ramp_time:g}."
+    )
     forces = sorted(set(datasets["runs"]["force"].values.tolist()))
     return of_group(
         "symmetry_breaking",
