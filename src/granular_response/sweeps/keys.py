@@ -170,13 +170,13 @@ class _Content:
             known = operator.attrgetter(value.__qualname__)(module) is value
         except AttributeError:
             known = False
-        file = getattr(module, "__file__", None)
+        file: str = getattr(module, "__file__", None) or ""
         main = value.__module__ in ("__main__", "__mp_main__")  # the second: in a worker
-        if not known or module is None or (main and (file is None or not Path(file).is_file())):
+        if not known or module is None or (main and not Path(file).is_file()):
             raise Indistinct(f"{kind} {value.__qualname__} stands in no module that can be imported")
         name = ["__main__" if main else value.__module__, value.__qualname__]
-        top, own = value.__module__.partition(".")[0], _own(Path(file or ""))
-        package = (file or "").endswith(".py") and top not in sys.stdlib_module_names  # installed: this module alone
+        top, own = value.__module__.partition(".")[0], _own(Path(file))
+        package = file.endswith(".py") and top not in sys.stdlib_module_names  # installed: this module alone
         if top in self.by_name or not (own or package):
             return name
         if value.__module__ not in self.code:
