@@ -228,6 +228,28 @@ def test_energy_never_rises_where_a_sliding_contact_is_damped(speed):
     assert np.diff(energy).max() < 1e-6 * energy[0]
 
 
+def test_energy_that_dashpots_wind_into_springs_is_said():
+    """A disk of a tenth of the mean mass, which dashpots overdamp: sliding cuts their pull, and the springs make up for
+    it. As in LAMMPS; kinetic energy never rises."""
+    rubs = {"loads": [], "motion": {"weightless": True}, "contact": {"friction": 0.5}, "wall": {"friction": 0.5}}
+    rubs["motion"] |= {"vx": [0.3, 0.0], "vz": [-1.0, 0.0], "spin": [-5.0, 0.0]}
+    light = gr.Scene.from_arrays([500.0, 600.0], [1.001, 50.0], 1.0, mass=[0.1, 1.9], width=1000.0, scene=rubs)
+    times = np.linspace(0.0009, 0.03, 300)
+    with pytest.warns(UserWarning, match=r"^the energy rises by up to .* mg R without a load: dashpots wind up"):
+        moved = gr.motion(light, times, progress=False)
+    kinetic = (moved["kinetic_energy"] + moved["rotational_energy"]).values
+    assert np.diff(kinetic).max() < 1e-3 * kinetic[0] and np.ptp(moved["energy"].values) > kinetic[0]
+
+
+def test_disks_that_overlap_at_the_start_part_with_the_energy_of_their_contact():
+    """By a 3/2 law, which is stiffer there than at any weight: each takes half of the energy, without dashpots."""
+    law = {"friction": 0.0, "normal_stiffness": 1e6, "law": "hertz", "damping_ratio": 0.0}
+    pressed = {"loads": [], "contact": law, "motion": {"weightless": True}}
+    two = gr.Scene.from_arrays([500.0, 501.6], [50.0, 50.0], 1.0, width=1000.0, scene=pressed)
+    moved = gr.motion(two, [0.0, 0.002], progress=False)
+    assert float(moved["velocity"][1, 1, 0]) == pytest.approx(math.sqrt(float(moved["energy"][0])), rel=1e-3)
+
+
 def test_bodies_do_not_pass_through_each_other():
     fast = {"loads": [], "motion": {"weightless": True}}
     two = gr.Scene.from_arrays([500.0, 504.0], [50.0, 50.0], 1.0, width=1000.0, vx=[200.0, -200.0], scene=fast)

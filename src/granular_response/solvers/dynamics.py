@@ -32,6 +32,7 @@ from ..kernels.neighbours import count_closed, mark_closed, rolling
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..state import FLOOR, FloatArray, Reached, State, wall_normals
 from .candidates import Candidates
+from .overlaps import overlap_at_start
 from .problem import Problem
 from .springs import carry_springs, spring_contacts
 from .system import OPTIONS as SYSTEM
@@ -254,7 +255,7 @@ class Dynamics:
         elif load > self.problem.stiffness:
             cure = f"the largest load, {load:.3g} mg, is more than the contacts bear: take a smaller one"
         else:
-            cure = "take a smaller protocol.time_step"
+            cure = overlap_at_start(self.problem) or "take a smaller protocol.time_step"
         return f"the motion blew up after {self.steps} steps with time_step {self.time_step:g}; {cure}"
 
     @property

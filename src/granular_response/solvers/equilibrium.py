@@ -18,8 +18,8 @@ import numpy as np
 from ..contact.coulomb import limit
 from ..errors import EquilibriumError
 from ..state import Certificate, FloatArray, State
-from ..state.box import bodies
 from .free import least_at_rest, solved_by, suspicious
+from .overlaps import too_deep
 from .problem import Problem
 from .stability import Spectrum
 from .system import OPTIONS as SYSTEM
@@ -49,10 +49,6 @@ class NewtonOptions:
 
 
 OPTIONS = NewtonOptions()
-
-#: Part of the smaller radius from which on an overlap at the start is named where disks do not stay where they were
-#: given: at the default stiffness its contact bears 30 mg and throws a disk up by 0.15 radii.
-OVERLAPS_OF_NOISE = 0.01
 
 
 class Rearranged(EquilibriumError):
@@ -217,35 +213,8 @@ def certify(
     )
 
 
-def too_deep(problem: Problem, state: State, part: float = 1.0) -> str:
-    """Which two bodies overlap most, where disks overlap by ``part`` of the smaller radius or more, or a disk and a
-    wall by that."""
-    radius, worst, said = problem.packing.radius, part, ""
-    for contacts, size, at_wall in (
-        (state.pairs, np.minimum(radius[state.pairs.first], radius[state.pairs.second]), False),
-        (state.walls, radius[state.walls.first], True),
-    ):
-        depth = contacts.overlap / size
-        if len(depth) and depth.max() >= worst:
-            k = int(depth.argmax())
-            two = bodies(contacts.first[k], contacts.second[k], at_wall)
-            worst, said = depth[k], f"{two} overlap by {contacts.overlap[k]:.3g} mean radii"
-    return said
-
-
-def overlap_at_start(problem: Problem) -> str:
-    """The largest overlap with which given disks begin that is one of :data:`OVERLAPS_OF_NOISE`, and what to do.
-
-    Disks that are given with the springs of their contacts overlap in equilibrium.
-    """
-    if problem.packing.given is None or problem.packing.contacts is not None:
-        return ""
-    deep = too_deep(problem, problem.bare_state(), OVERLAPS_OF_NOISE)
-    return deep and f"{deep} at the start, which packing.overlaps: removed takes out gently"
-
-
 def check_overlaps(problem: Problem, state: State) -> None:
-    """Refuse a state whose contacts mean nothing any more: raises EquilibriumError where some are :func:`too_deep`."""
+    """Refuse a state whose contacts mean nothing any more: raises EquilibriumError where some are too deep."""
     if deep := too_deep(problem, state):
         cure = "a smaller load or a larger contact.normal_stiffness"
         if state.load_factor == 0.0:  # no load does this, whatever the scene has

@@ -74,13 +74,6 @@ def without_bare(system: StaticSystem, trial: Trial) -> Trial | None:
     return system.trial(trial.configuration, trial.configuration.q, fixed=system.coupled(sense))
 
 
-def touched(system: StaticSystem, trial: Trial) -> bool:
-    """Whether each disk has a closed contact."""
-    closed, at_wall = system.split(trial.status != OPEN)
-    ties = np.concatenate([system.first[closed], system.second[closed], system.wall_disk[at_wall]])
-    return bool(np.bincount(ties, minlength=system.problem.n).all())
-
-
 def solved_by(system: StaticSystem, factor: Factor) -> Callable[[FloatArray], FloatArray]:
     """What solves for displacements (dof,) by a factorisation."""
     return lambda force: system.deinterleave(factor.solve(system.interleave(force)))

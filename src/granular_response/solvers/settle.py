@@ -16,7 +16,8 @@ from ..state import FloatArray, Reached, State
 from .dynamics import OPTIONS as MOTION
 from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
-from .equilibrium import OPTIONS, finish, overlap_at_start
+from .equilibrium import OPTIONS, finish
+from .overlaps import overlap_at_start
 from .problem import Problem
 from .stability import Spectrum
 from .system import StaticSystem

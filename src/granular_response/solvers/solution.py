@@ -19,8 +19,9 @@ from ..state import FloatArray, State
 from .choice import Choice
 from .dynamics import Dynamics, Stop, half_swing, relax
 from .energy import minimise
-from .equilibrium import certify, check_overlaps, finish, overlap_at_start, reaction
+from .equilibrium import certify, check_overlaps, finish, reaction
 from .idle import idle_settings
+from .overlaps import overlap_at_start
 from .path import follow
 from .path.events import lost, side
 from .problem import Problem

@@ -27,7 +27,7 @@ from ..kernels.transitions import SLIDES, STICKS
 from ..linalg.lowest import Eigenpair, followed, lowest_real
 from ..state import SLIDING, STICKING, FloatArray
 from .free import OPTIONS as FREE
-from .free import free_disks, touched, without_bare
+from .free import free_disks, without_bare
 from .rates import next_changes
 from .system import OPTIONS as SYSTEM
 from .system import StaticSystem, Trial
@@ -74,7 +74,7 @@ class Spectrum:
 
     def __init__(self, system: StaticSystem, trial: Trial, near: Eigenpair | None = None):
         self.system, self.trial = system, trial
-        self._matrix, self._scale = _scaled(system, trial)
+        self._matrix, self._scale, self._idle = _scaled(system, trial)
         system.forget()
         self._followed = None if near is None else followed(self._inverse, near)
 
@@ -100,7 +100,8 @@ class Spectrum:
     def undetermined(self) -> tuple[int, ...]:
         """Disks that a motion moves which nothing resists."""
         opened = without_bare(self.system, self.trial)
-        if opened is None and touched(self.system, self.trial) and self.stiff:
+        places = self._idle.reshape(-1, self.system.problem.freedoms)[:, :2]  # of disks that touch nothing, or a wall
+        if opened is None and not places.any() and self.stiff:
             return ()
         return free_disks(self.system, opened or self.trial)
 
@@ -249,12 +250,12 @@ def _too_light(system: StaticSystem, trial: Trial) -> bool:
     return bool(((stiffness > 0.0) & (stiffness < ROUNDING * system.problem.stiffness)).any())
 
 
-def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArray]:
+def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArray, np.ndarray]:
     """``S K S`` with ``S = M^-1/2``, shifted by ``OPTIONS.neutral``, and the diagonal of S in the order of the tangent.
 
-    Unknowns that change no force, such as the angle of a sliding disk, are left out: each of them is an eigenvector of
-    eigenvalue 0, and the rest has all other eigenvalues. Their rows, which are not zero, would make the symmetric part
-    indefinite whatever the rest is.
+    Unknowns that change no force, such as the angle of a sliding disk, come third and are left out: each of them is an
+    eigenvector of eigenvalue 0, and the rest has all other eigenvalues. Their rows, which are not zero, would make the
+    symmetric part indefinite whatever the rest is.
     """
     matrix = system.tangent(trial)
     idle = system.pattern.without_effect(matrix)
@@ -265,4 +266,4 @@ def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArra
     matrix.data *= scale[matrix.indices] * np.repeat(scale, np.diff(matrix.indptr))
     k = system.problem.stiffness
     matrix.data[system.pattern.diagonal] += np.where(idle, k, np.maximum(OPTIONS.neutral, ROUNDING * k / mass))
-    return matrix, scale
+    return matrix, scale, idle

@@ -227,16 +227,17 @@ def resolve_time_step(problem: Problem) -> float:
     return step
 
 
-def motion_step(problem: Problem, energy: float) -> float:
+def motion_step(problem: Problem, energy: float, force: float = 0.0) -> float:
     """The time step of a motion: that of the scene, or without one a step that resolves its collisions too.
 
-    ``energy`` : with which the disks hit each other, at most (mg R): with laws that stiffen it makes collisions short.
+    ``energy``, ``force`` : with which the disks hit each other (mg R), and press at the start, at most: with laws that
+    stiffen they make collisions short.
     """
     step, mass = resolve_time_step(problem), float(problem.packing.mass.min())
     if problem.scene.protocol.time_step is not None:
         return step
     for law, moving in ((problem.pair_law, 0.5 * mass), (problem.wall_law, mass)):
-        force = least = largest_force(problem)
+        force = least = max(largest_force(problem), force)
         for _ in range(20):
             force = max(least, math.sqrt(2.0 * energy * law.stiffest(force)))
         elastic = law.normal_damping == 0.0 and not problem.rotations

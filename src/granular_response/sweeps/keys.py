@@ -1,12 +1,13 @@
 """Keys made from content: equal values have equal keys in every process, others have others.
 
 A key is the digest of a value written as canonical JSON: a scene by its keys, the files that it names and its law from
-outside, a dataclass by its fields, an array by its bytes, a ``Path`` by its name and what the file holds. A function or
-class goes by its name, the module it stands in and every module of the user's own that this one imports, directly or
-not: at its top, inside a function, by a relative import, or by ``import_module`` with a name that is written there. The
-user's own are those outside the standard library and the folders of installed packages. What stands under its name in
-no file (a lambda, a function of a notebook) has no key: nothing is kept under it, and nothing of another value is
-found.
+outside, also where mappings or the name of its file describe it, a dataclass by its fields, an array by its bytes, a
+``Path`` by its name and what the file holds, and what a class of the user's own derives from these by its further
+attributes. A function or class goes by its name, the module it stands in with the packages around it, and every module
+of the user's own that this one imports, directly or not: at its top, inside a function, by a relative import, by any
+call with its name as a text, or from a place of its own. The user's own are those outside the standard library and the
+folders of installed packages. What stands under its name in no file (a lambda, a function of a notebook) has no key:
+nothing is kept under it, and nothing of another value is found.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import hashlib
 import itertools
 import json
 import operator
+import os
 import sys
 import sysconfig
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -33,10 +35,14 @@ import numpy as np
 
 from ..errors import GranularError
 from ..inputs import read_bytes
+from ..scene import Scene
 from ..scene.base import Description, PackingDescription
 from ..scene.material import KNOWN_LAWS, Contact
 
 _PACKAGE = Path(__file__).parents[1]
+
+#: What the name of a scene file may end with.
+_SCENE_FILES = (".yaml", ".yml")
 
 #: Folders of what is installed.
 _INSTALLED = tuple({sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")})
@@ -53,7 +59,7 @@ def key(*values: Any, packages: Collection[str] = (), code: dict[str, str] | Non
     ``code`` holds the digests of modules that were read for other keys, which are then not read again. Raises
     Indistinct for values of another kind than those above, and a file that cannot be read.
     """
-    by_name = {__name__.partition(".")[0], "numpy", *packages, *sys.stdlib_module_names} - {"__main__"}
+    by_name = {__name__.partition(".")[0], "numpy", *packages}
     return _sha256(json.dumps(_Content(by_name, {} if code is None else code).plain(values)).encode())[:32]
 
 
@@ -93,10 +99,11 @@ class _Content:
     def plain(self, value: Any) -> Any:
         """Numbers, truth values and text as they are, others as a list with their class first."""
         if value is None or type(value) in (bool, int, float, str):
-            return value
+            scene = isinstance(value, str) and value.endswith(_SCENE_FILES) and os.path.isfile(value)
+            return ["file", *self.plain(Path(value))] if scene else value
         if isinstance(value, type) or (callable(value) and hasattr(value, "__qualname__")):
             return ["named", *self.named(value)]
-        return [*self.named(type(value)), *self.parts(value)]
+        return [*self.named(type(value)), *self.parts(value), *self.beside(value)]
 
     def parts(self, value: Any) -> list[Any]:
         """What tells a value from others of its class."""
@@ -106,10 +113,12 @@ class _Content:
 
         if isinstance(value, (bytes, bytearray)):
             return [_sha256(value)]
-        if isinstance(value, (np.ndarray, np.generic)) and not value.dtype.hasobject:
+        array = isinstance(value, (np.ndarray, np.generic)) and not isinstance(value, np.ma.MaskedArray)
+        if array and not value.dtype.hasobject:
             return [repr(value.dtype.descr), value.shape, _sha256(value.tobytes())]
         if isinstance(value, Path):
-            return [str(value), *([_content(value)] if value.is_file() else [])]
+            scene = self.described(value) if value.name.endswith(_SCENE_FILES) else []
+            return [str(value), *([_content(value), *scene] if value.is_file() else [])]
         if isinstance(value, range):
             return [str(value)]
         if isinstance(value, Enum):
@@ -117,7 +126,8 @@ class _Content:
         if isinstance(value, (list, tuple)):
             return plain(value)
         if isinstance(value, (Mapping, set, frozenset)):
-            return sorted(plain(value.items() if isinstance(value, Mapping) else value), key=json.dumps)
+            scene = self.described(value) if isinstance(value, Mapping) and "packing" in value else []
+            return [*sorted(plain(value.items() if isinstance(value, Mapping) else value), key=json.dumps), *scene]
         if isinstance(value, functools.partial):
             return plain((value.func, value.args, value.keywords))
         if isinstance(value, Description):
@@ -130,6 +140,28 @@ class _Content:
             return plain(getattr(value, field.name) for field in dataclasses.fields(value))
         raise Indistinct(f"a value of class {type(value).__qualname__} cannot be told from others by its content")
 
+    def described(self, value: Path | Mapping[str, Any]) -> list[Any]:
+        """The scene that a file or mappings describe, if they do."""
+        try:
+            scene = Scene.from_dict(value) if isinstance(value, Mapping) else Scene.from_yaml(value)
+        except GranularError:
+            return []
+        return [self.plain(scene)]
+
+    def beside(self, value: Any) -> list[Any]:
+        """Attributes that a class of the user's own has beside what it is derived from; values it has cached do not
+        count."""
+        kind = type(value)
+        if kind.__module__.partition(".")[0] in self.by_name or isinstance(value, (Description, Enum, Path)):
+            return []
+        known = {one.name for one in dataclasses.fields(value)} if dataclasses.is_dataclass(value) else set()
+        more = {
+            name: one
+            for name, one in getattr(value, "__dict__", {}).items()
+            if name not in known and not isinstance(getattr(kind, name, None), functools.cached_property)
+        }
+        return [self.plain(more)] if more else []
+
     def named(self, value: Any) -> list[Any]:
         """Module and name of a function or class, and its code where it is not one of the packages ``by_name``."""
         kind = "class" if isinstance(value, type) else "function"
@@ -138,12 +170,14 @@ class _Content:
             known = operator.attrgetter(value.__qualname__)(module) is value
         except AttributeError:
             known = False
-        file = getattr(module, "__file__", None)
+        file: str = getattr(module, "__file__", None) or ""
         main = value.__module__ in ("__main__", "__mp_main__")  # the second: in a worker
-        if not known or module is None or (main and (file is None or not Path(file).is_file())):
+        if not known or module is None or (main and not Path(file).is_file()):
             raise Indistinct(f"{kind} {value.__qualname__} stands in no module that can be imported")
         name = ["__main__" if main else value.__module__, value.__qualname__]
-        if value.__module__.partition(".")[0] in self.by_name or not (file and file.endswith(".py")):
+        top, own = value.__module__.partition(".")[0], _own(Path(file))
+        package = file.endswith(".py") and top not in sys.stdlib_module_names  # installed: this module alone
+        if top in self.by_name or not (own or package):
             return name
         if value.__module__ not in self.code:
             self.code[value.__module__] = self._code(module, Path(file))
@@ -151,20 +185,23 @@ class _Content:
 
     def _code(self, module: ModuleType, file: Path) -> str:
         """Digest of a module and of all of the user's own that it imports."""
-        package = module.__package__ or ""
-        waiting, found = [(module.__name__, package, file)], dict[str, str]()
+        waiting: list[tuple[str, str, Path, ModuleType | None]] = [
+            (module.__name__, module.__package__ or "", file, module)
+        ]
+        found = dict[str, str]()
         while waiting:
-            name, package, path = waiting.pop()
-            data = read_bytes(path)
+            name, package, path, loaded = waiting.pop()
+            data = _read(path)
             found[name] = _sha256(data)
-            for imported in _imports(data, package) if path.suffix == ".py" else ():
-                ancestors = list(itertools.accumulate(imported.split("."), "{}.{}".format))
-                if ancestors[0] in self.by_name:
-                    continue
-                for one in ancestors:
-                    spec = None if one in found else _spec(one)
-                    if spec and spec.origin and _own(origin := Path(spec.origin)):
-                        waiting.append((one, spec.parent or "", origin))
+            imported = _imports(data, package) if path.suffix == ".py" else frozenset()
+            for name in {above for one in (package, *imported) for above in _ancestors(one)} - {*found}:
+                spec = None if name.partition(".")[0] in self.by_name else _spec(name)
+                if spec and spec.origin and _own(origin := Path(spec.origin)):
+                    waiting.append((name, spec.parent or "", origin, sys.modules.get(name)))
+            for one in list(vars(loaded).values()) if loaded else ():  # also from a place where no import looks
+                origin = Path((isinstance(one, ModuleType) and getattr(one, "__file__", None)) or "")
+                if _own(origin) and not {one.__name__, one.__name__.partition(".")[0]} & {*found, *self.by_name}:
+                    waiting.append((one.__name__, one.__package__ or "", origin, one))
         return _sha256(json.dumps(sorted(found.items())).encode())
 
 
@@ -182,11 +219,15 @@ def _imports(code: bytes, package: str) -> frozenset[str]:
         elif isinstance(node, ast.ImportFrom):
             base = "." * node.level + (node.module or "")
             found |= {base, *(f"{base}{'' if base.endswith('.') else '.'}{one.name}" for one in node.names)}
-        elif isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
-            called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
-            if called in ("import_module", "__import__") and isinstance(node.args[0].value, str):
-                found.add(node.args[0].value)
+        elif isinstance(node, ast.Call):  # import_module, under whatever name
+            given = (getattr(one, "value", None) for one in (*node.args, *(word.value for word in node.keywords)))
+            found |= {one for one in given if isinstance(one, str) and one.replace(".", "").isidentifier()}
     return frozenset(filter(None, (_absolute(name, package) for name in found)))
+
+
+def _ancestors(name: str) -> Iterator[str]:
+    """A module and the packages around it."""
+    return itertools.accumulate(name.split("."), "{}.{}".format) if name else iter(())
 
 
 def _absolute(name: str, package: str) -> str:
@@ -211,14 +252,18 @@ def _spec(name: str) -> ModuleSpec | None:
 
 
 def _own(file: Path) -> bool:
-    """Whether a module is the user's own."""
+    """Whether a module is the user's own: also one of an archive, which cannot be read."""
     installed = {"site-packages", "dist-packages"} & set(file.parts) or str(file).startswith(_INSTALLED)
-    return file.is_file() and not installed
+    return bool(file.suffix) and not installed
 
 
 def _content(file: Path) -> str:
+    return _sha256(_read(file))
+
+
+def _read(file: Path) -> bytes:
     try:
-        return _sha256(read_bytes(file))
+        return read_bytes(file)
     except OSError as error:
         raise Indistinct(f"{file} cannot be read: {error.strerror}") from None
 

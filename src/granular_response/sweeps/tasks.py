@@ -87,11 +87,11 @@ def map_tasks(
         takes it from there. **It must be a folder of your own**: kept results are pickles, which run code as they are
         read. Files of another owner and files that fail their checksum are computed again. A result is taken if
         function, item, this package, the installed numba, numpy, scipy and xarray, and every module of your own that
-        the function's module imports, directly or not, are the same; so are files that a scene or a ``Path`` in the
-        item names. What else the function depends on is not known: data files that it opens by itself, modules that
-        it finds by a name made at run time, other installed packages, environment variables, and values of a module
-        that were changed while it ran. Of a lambda or a function of a notebook nothing is kept. If None, the folder
-        of the resources in use; nothing is kept if there is none either.
+        the function's module imports, directly or not, are the same; so are files that a scene (mappings and the name
+        of a scene file too) or a ``Path`` in the item names. What else the function depends on is not known: data
+        files that it opens by itself, modules that it finds by a name made at run time, other installed packages,
+        environment variables, and a module that changed after it was imported. Of a lambda or a function of a notebook
+        nothing is kept. If None, the folder of the resources in use; nothing is kept if there is none either.
     parts : the sources that the results depend on, as :func:`.keys.sources` takes them; all if none is named.
     what : what the tasks are, for the progress line.
 

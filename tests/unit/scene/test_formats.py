@@ -3,8 +3,10 @@
 import bz2
 import gzip
 import lzma
+import pickle
 import re
 import warnings
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -358,13 +360,24 @@ def test_what_is_said_twice_alike_is_taken(tmp_path):
 FRAMES = "x,z,radius,{}\n1,1,1,8\n3,1,1,8\n2,2.7,1,8\n7,1,1,10\n9,1,1,10\n8,2.7,1,10\n5,1,1,9\n"
 
 
-@pytest.mark.parametrize("column", ["frame", "Frame No.", "time", "t [s]", "STEP", "timestep", "POSITION_T"])
+@pytest.mark.parametrize(
+    "column",
+    ["frame", "Frame No.", "time", "t_s", "STEP", "timestep", "POSITION_T", "frame#", "snapshot", "tap", "run"],
+)
 def test_of_a_table_of_frames_the_last_one_is_taken_and_said(tmp_path, column):
     """Both frames were one packing."""
     with pytest.warns(UserWarning, match=r"a\.csv: has several frames; taken is 3 of 3, .* 10$"):
         packing = build(tmp_path / "a.csv", FRAMES.format(column), width=12.0)
     np.testing.assert_allclose(packing.position, [[7, 1], [9, 1], [8, 2.7]])
     assert packing.frame.startswith("3 of 3, ")
+
+
+def test_of_several_runs_of_frames_one_packing_is_taken(tmp_path):
+    """The last frames of all runs were one packing; a time of each disk is none of a frame."""
+    rows = "".join(f"{x + run},1,1,{frame},{run},{x}\n" for run in (0, 10) for frame in (5, 6) for x in (1, 3))
+    with pytest.warns(UserWarning, match="taken is 2 of 2, run 10; of these 2 of 2, frame 6$"):
+        packing = build(tmp_path / "a.csv", f"x,z,radius,frame,run,t\n{rows}", width=20.0)
+    np.testing.assert_allclose(packing.position, [[11, 1], [13, 1]])
 
 
 @pytest.mark.filterwarnings("error")
@@ -395,7 +408,10 @@ def test_packed_files_are_named_as_what_they_are(tmp_path, name):
         "UTF-16": DUMP.encode("utf-16"), "netCDF": b"\x89HDF\r\n\x1a\n", "zip archive,": b"PK\x05\x06" + bytes(18),
         "RAR": b"Rar!\x1a\x07\x01\x00", "Git LFS": b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\n",
         "web page": b"<!DOCTYPE html>\n<title>404</title>\n", "Parquet": b"PAR1\x15\x04",
-        "MATLAB": b"MATLAB 5.0 MAT-file", "SQLite": b"SQLite format 3\x00",
+        "MATLAB": b"MATLAB 5.0 MAT-file", "SQLite": b"SQLite format 3\x00", "JSON": b'{"x": [1, 3]}',
+        "(lzma)": lzma.compress(DUMP.encode(), format=lzma.FORMAT_ALONE), "(zlib)": zlib.compress(DUMP.encode()),
+        "pickle": pickle.dumps([1, 3]), "binary": DUMP.encode("utf-16-le"), "style xyz": b"2\nAtoms. Timestep: 0\n",
+        "style yaml": b"# poured\ntimestep: 0\nnatoms: 2\n", "style cfg": b"Number of particles = 2\n",
     }  # fmt: skip
     for said, content in packed.items():
         (tmp_path / name).write_bytes(content)

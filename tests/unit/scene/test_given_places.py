@@ -67,6 +67,9 @@ def test_an_overlap_that_shoots_disks_away_is_named(x, z, named):
         gr.solve(pressed.updated({"contact.normal_stiffness": 3e4}), progress=False)
     with pytest.raises(gr.SolveError, match=rf"did not come to rest under gravity.*; {named} at the start"):
         gr.solve(pressed.updated({"protocol.maximum_steps": 200}), progress=False)
+    stiff = {"contact.normal_stiffness": 1e6, "contact.law": "hertz"}
+    with pytest.raises(gr.SolveError, match=rf"^the motion blew up after .*; {named} at the start"):
+        gr.solve(pressed.updated(stiff), progress=False)
 
 
 def test_without_their_overlaps_they_stay_where_they_were_measured():

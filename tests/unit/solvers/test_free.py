@@ -60,6 +60,10 @@ def test_disks_that_roll_freely_are_named_and_those_that_do_not_are_not():
     )  # fmt: skip
     result = gr.solve(scene, progress=False)
     assert 3 in result.certificate.undetermined
+    for friction in (0.0, 0.3):  # on a smooth floor, with and without rotations
+        alone = {"loads": [], "contact": {"friction": friction}, "wall": {"friction": 0.0}}
+        smooth = gr.Scene.from_arrays([5.0, 10.0], [1.0, 1.0], 1.0, width=20.0, scene=alone)
+        assert gr.solve(smooth, progress=False).certificate.undetermined == (0, 1)
     slab = gr.Scene(packing=gr.Slab(layers=4, disks_per_row=9), contact=gr.Contact(friction=0.2))
     assert [one.undetermined for one in gr.solve(slab, progress=False).certificates] == [(), ()]
 

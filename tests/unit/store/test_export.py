@@ -403,3 +403,21 @@ def test_the_times_of_a_series_are_its_loads_where_these_grow(tmp_path, factors,
     assert [float(entry.get("timestep")) for entry in series.iter("DataSet")] == times
     for entry, factor in zip(series.iter("DataSet"), [0.0, *factors], strict=True):
         assert read_vtu(tmp_path / entry.get("file"))["load_factor"].tolist() == [factor]
+
+
+def test_a_script_never_replaces_the_disks_that_its_scene_reads(tmp_path, monkeypatch):
+    """``in.lammps`` has an ``in.data`` beside it."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in.csv").write_text("x,z,radius\n2,1,1\n5,1,1\n")
+    scene = {"packing": {"kind": "file", "path": "in.csv", "width": 10}, "contact": {"friction": 0.0}, "loads": []}
+    export(gr.solve(scene, progress=False), "in.data")
+    disks = (tmp_path / "in.data").read_bytes()
+    scene["packing"]["path"] = "in.data"
+    scene["packing"].pop("width")
+    result = gr.solve(scene, progress=False)
+    result.save("result.nc")
+    for one in (result, "result.nc", result.to_dataset()):
+        refuses(
+            gr.ExportError, "in.lammps: cannot be written: is read by the same command", gr.export, one, "in.lammps"
+        )
+    assert (tmp_path / "in.data").read_bytes() == disks

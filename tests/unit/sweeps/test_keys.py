@@ -164,3 +164,67 @@ def test_a_module_that_a_law_imports_counts(tmp_path, monkeypatch):
     assert (key(scene), key(of_problem)) == before
     (tmp_path / "constants_of_mine.py").write_text("PART = 2.0\n")
     assert not {*before} & {key(scene), key(of_problem)}
+
+
+#: Ways to a module that neither an import statement nor ``import_module("name")`` shows: that with the task, the other.
+WAYS = {
+    "by_word": ("import importlib\nmine = importlib.import_module(name='factor_by_word')\n", "factor_by_word.py"),
+    "by_alias": ("from importlib import import_module as load\nmine = load('factor_by_alias')\n", "factor_by_alias.py"),
+    "by_file": (
+        "from importlib import util\nspec = util.spec_from_file_location('mine', 'elsewhere/factor.py')\n"
+        "mine = util.module_from_spec(spec)\nspec.loader.exec_module(mine)\n",
+        "elsewhere/factor.py",
+    ),
+    "by_name_of_the_library": ("import tabnanny as mine\n", "tabnanny.py"),
+    "of_package.task": ("import of_package as mine\n".replace("import", "mine = None  #"), "of_package/__init__.py"),
+}
+
+
+@pytest.mark.parametrize("module", WAYS)
+def test_modules_count_whatever_the_way_to_them(tmp_path, monkeypatch, module):
+    text, other = WAYS[module]
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    for folder in ("elsewhere", "of_package"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / other).write_text("FACTOR = 1\n")
+    (tmp_path / f"{module.replace('.', '/')}.py").write_text(f"{text}def task(x): return mine.FACTOR * x\n")
+    task = importlib.import_module(module).task
+    before = key(task)
+    assert key(task) == before
+    (tmp_path / other).write_text("FACTOR = 2\n")
+    assert key(task) != before
+    (tmp_path / other).unlink()
+    (tmp_path / other).mkdir()  # as one in an archive
+    refuses(Indistinct, "cannot be read", key, task)
+
+
+class Listed(list):
+    pass
+
+
+class Factor(Task):
+    def __init__(self, factor):
+        super().__init__(0.1, np.ones(2))
+        object.__setattr__(self, "factor", factor)
+
+
+def test_attributes_beside_a_value_count():
+    one, other = Listed([1]), Listed([1])
+    one.unit, other.unit = "mm", "m"
+    assert key(one) != key(other) != key(Listed([1]))
+    assert key(Factor(1.0)) == key(Factor(1.0)) != key(Factor(2.0))
+    refuses(Indistinct, "MaskedArray", key, np.ma.array([1.0, 2.0], mask=[False, True]))
+
+
+def test_a_scene_of_mappings_or_by_its_file_counts_with_its_table(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = "packing: {kind: file, path: disks.csv, width: 10}\nloads: []\n"
+    (tmp_path / "scene.yaml").write_text(text)
+    keys = []
+    for radius in (1.0, 0.9, 1.0):
+        table(tmp_path, radius)
+        mapped = {"packing": {"kind": "file", "path": "disks.csv", "width": 10}}
+        keys.append([key(one) for one in (mapped, {"scene": mapped}, "scene.yaml", Path("scene.yaml"))])
+    assert keys[0] == keys[2] and not {*keys[0]} & {*keys[1]}
+    assert key("none.yaml") == key("none.yaml") and key({"packing": 1}) != key({"packing": 2})

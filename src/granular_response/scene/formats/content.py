@@ -12,6 +12,11 @@ _BEGINNINGS = {
     b"\x28\xb5\x2f\xfd": "is compressed (zstd), must be unpacked first",
     b"\x04\x22\x4d\x18": "is compressed (lz4), must be unpacked first",
     b"\x1f\x9d": "is compressed (compress), must be unpacked first",
+    b"\x5d\x00\x00": "is compressed (lzma), must be unpacked first",
+    **dict.fromkeys((b"x\x01", b"x\x9c", b"x\xda"), "is compressed (zlib), must be unpacked first"),
+    **dict.fromkeys((b"\x80\x04", b"\x80\x05"), "is a pickle of Python; gr.Scene.from_arrays takes arrays"),
+    **dict.fromkeys((b"{", b"["), "is JSON or the like, must be a table in CSV"),
+    b"Number of particles =": "is a LAMMPS dump of style cfg, must be one of style custom",
     b"PK\x03\x04": "is a zip archive (.zip, .xlsx, .npz), must be unpacked or saved as text first",
     **dict.fromkeys((b"PK\x05\x06", b"PK\x07\x08"), "is a zip archive, must be unpacked first"),
     b"7z\xbc\xaf\x27\x1c": "is a 7z archive, must be unpacked first",
@@ -52,12 +57,14 @@ def foreign(data: bytes) -> str:
     if data[at : at + len(mark)] == mark:
         return "is a tar archive, must be unpacked first"
     first, second, *_ = [*_lines(start), "", ""]
-    if any(line.startswith("creator: LAMMPS") for line in _lines(start)) or (
-        first == "---" and second.partition(":")[0] in ("time", "timestep", "natoms")
-    ):
+    if any(line.startswith(("creator: LAMMPS", "timestep:", "natoms:")) for line in _lines(start)):
         return "is a LAMMPS dump of style yaml, must be one of style custom"
     if first.isdecimal() and ("Lattice=" in second or "Properties=" in second):
         return "is a file of extended XYZ, which is written and not read (.dump, .data and .csv are)"
+    if first.isdecimal() and second.startswith("Atoms"):
+        return "is a LAMMPS dump of style xyz, must be one of style custom"
+    if b"\0" in data[:_HEAD] and not data.startswith(_GSD):
+        return "is a binary file, or text in UTF-16, and none that is read"
     return ""
 
 

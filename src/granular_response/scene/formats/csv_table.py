@@ -8,7 +8,8 @@ Further columns are ignored, and so are empty lines and lines that begin with ``
 Each disk has a line of its own.
 
 Programs that track disks write all frames to one table, where a column numbers them; as of a dump, the last frame is
-read. Beside such columns ``mass`` is a brightness, unless it has a unit or ``columns`` names it.
+read, of several runs that of the last one. Beside such columns ``mass`` is a brightness, unless it has a unit or
+``columns`` names it.
 """
 
 from __future__ import annotations
@@ -42,16 +43,17 @@ REFUSED = {
     "cohesion": "contact.law",
 }
 _NUMBER = "(_?(no|nr|number|id|index))?"
-#: Columns that number frames, the first of which a table has counts, and those that number disks.
+#: Columns that number experiments, frames, the first of which a table has counts, and disks.
+RUNS = (re.compile(f"(run|trial|movie|sample|experiment|config(uration)?|reali[sz]ation){_NUMBER}"),)
 FRAMES = (
-    re.compile(f"(frame|image|img|slice){_NUMBER}"),
-    re.compile("(time_?)?step|time_?(point|frame)"),
-    re.compile("(position_)?t|time(_?(s|ms|sec))?"),
+    re.compile(f"((video_)?frames?|image|img|slice|snap(shot)?|pic(ture)?|photo){_NUMBER}"),
+    re.compile(f"((time_?)?step|time_?(point|frame|stamp)|iteration|tap){_NUMBER}"),
+    re.compile("(position_)?t(_?(s|ms|sec))?|time(_?(s|ms|sec))?"),
 )
 TRACKS = (re.compile(f"(particle|track|trajectory|traj){_NUMBER}"), re.compile("id"))
-#: Columns by which a table is known as one of tracked disks, beside those of frames and tracks; and any ``intensity``.
-_OF_TRACKERS = {"ecc", "ep", "signal", "raw_mass", "quality"}
-_PIXELS = ("px", "pixel", "pixels")
+#: Columns by which a table is known as one of tracked disks, beside those of frames and tracks; and any of light.
+_OF_TRACKERS = {"ecc", "ep", "signal", "raw_mass", "quality", "snr", "rg", "npscore", "circularity"}
+_PIXELS = ("px", "pix", "pxl", "pixel", "pixels")
 _SIZES = frozenset({"radius", "diameter"})
 #: Other words for mass and density.
 _OTHER_WORDS = {"m": "mass", "rmass": "mass", "weight": "mass", "rho": "density", "ρ": "density"}
@@ -97,7 +99,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
             chosen, turned = _chosen(header, titles, columns or {})
             unit = titles[chosen["x"]][1]
             others = [title for k, title in enumerate(titles) if k not in chosen.values()]
-            for name in (*MOTION, *_like((*FRAMES, *TRACKS), others)):
+            for name in (*MOTION, *_like((*RUNS, *FRAMES, *TRACKS), others)):
                 if (times := [one for one, _ in titles].count(name)) > 1:
                     raise FormatError(f"column {name} is given {times} times, must be given once", place)
             motion = {name: titles.index((name, "")) for name in MOTION if (name, "") in titles}
@@ -140,7 +142,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
 
 def _like(patterns: Sequence[re.Pattern[str]], titles: Sequence[tuple[str, str]]) -> list[str]:
     """The names of columns that are spelled so, those of the first pattern first."""
-    words = {name: re.sub(r"[\s.\-]+", "_", name).strip("_") for name, _ in titles}
+    words = {name: re.sub(r"[\s.#\-]+", "_", name).strip("_") for name, _ in titles}
     return [name for pattern in patterns for name, word in words.items() if pattern.fullmatch(word)]
 
 
@@ -148,7 +150,8 @@ def _tracker(titles: Sequence[tuple[str, str]], chosen: Mapping[str, int]) -> st
     """A column by which a table is known as one of tracked disks; nothing where it has none."""
     known = {*_like((*FRAMES, *TRACKS), titles), *_OF_TRACKERS} - {"id"}
     others = [name for k, (name, _) in enumerate(titles) if k not in chosen.values()]
-    return next((name for name in others if name in known or "intensity" in name), "")
+    light = re.compile("intensity|brightness|contrast")
+    return next((name for name in others if name in known or light.search(name)), "")
 
 
 def _last_frame(
@@ -160,16 +163,18 @@ def _last_frame(
     """
     names = [name for name, _ in titles]
     kept, frame = list(range(len(rows))), ""
-    if name := next(iter(_like(FRAMES, titles)), ""):
-        cells = [row[names.index(name)].strip() for row in rows]
-        if len(set(cells)) > 1:
-            numbered = [number(cell, name, place) for cell, place in zip(cells, places, strict=True)]
-            several = sorted(set(numbered))
+    runs = _like(RUNS, titles)
+    for name in (*runs, *_like(FRAMES, titles)[:1]):
+        cells = {k: rows[k][names.index(name)].strip() for k in kept}
+        if 1 < len(set(cells.values())) < len(kept) + (name not in runs):
+            numbered = {k: number(cell, name, places[k]) for k, cell in cells.items()}
+            several = sorted(set(numbered.values()))
             rule = f"column {name}: each disk has another one; a table must have the disks of one frame"
-            must(len(several) != len(rows), rule)
+            must(len(several) != len(kept), rule)
             kept = [k for k in kept if numbered[k] == several[-1]]
             if len(several) > 1:
-                frame = f"{len(several)} of {len(several)}, {name} {cells[kept[0]]}"
+                said = f"{len(several)} of {len(several)}, {name} {cells[kept[0]]}"
+                frame = f"{frame}; of these {said}" if frame else said
     for name in _like(TRACKS, titles):
         once = Once()
         for k in kept:

@@ -11,6 +11,7 @@ Units are those of the result: mean disk radius, mean disk mass, g.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import warnings
@@ -22,10 +23,10 @@ import numpy as np
 import xarray as xr
 
 from ...errors import GranularError, require
-from ...scene import formats
+from ...scene import Scene, formats
 from .. import atomic
 from ..checked import read_result
-from ..result import CONTACTS, chosen_states
+from ..result import CONTACTS, chosen_states, scene_of
 from . import gsd_file, lammps, text, vtk
 from .frames import contact_force_sums
 
@@ -73,9 +74,9 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
     to write, or of the time of a motion; if None all, or the last one in a file of one state. Of a motion there are
     disks for LAMMPS with their velocities (``.data``, and ``in.lammps`` with a script), and ``.csv``.
 
-    Raises ExportError for what is none of these, another ending, a name that cannot stand in a script, a state that
-    does not exist or of a series of all, or a missing library, StoreError if the result cannot be read, ResultError if
-    it is none.
+    Raises ExportError for what is none of these, another ending, a name that cannot stand in a script, a file that the
+    result or its packing is read from, a state that does not exist or of a series of all, or a missing library,
+    StoreError if the result cannot be read, ResultError if it is none.
 
     Warns (UserWarning) of what a format that can be read again as a packing does not carry: the tangential springs of
     contacts, from which friction goes on.
@@ -96,6 +97,7 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
     require(not pattern or pattern.fullmatch(output.name), rule, ExportError)
     rule = "is a series of all states, must be left out (.vtu holds one state)"
     require(states != "every" or state is None, f"state = {state}: {output} {rule}", ExportError)
+    scene = getattr(result, "scene", None)
     if not isinstance(result, (str, os.PathLike, xr.Dataset)):
         result = result.to_dataset() if hasattr(result, "to_dataset") else xr.Dataset()
     read = [] if isinstance(result, xr.Dataset) else [result]
@@ -113,6 +115,9 @@ def export(result: Any, output: str | os.PathLike[str], *, state: int | None = N
     # the first state stays: what a load adds is the difference from it
     chosen = chosen_states(dataset, [0, -1 if state is None else state]) if states == "one" else dataset
     only = {} if states != "frames" or state is None else {"only": state % count}
+    if "scene" in dataset.attrs:  # disks that its packing is read from may have the name of a file beside a script
+        with contextlib.suppress(GranularError):
+            read += (scene if isinstance(scene, Scene) else scene_of(dataset)).files
     try:
         atomic.make_folder(output)
         atomic.check_writable(output, read)
