@@ -70,7 +70,7 @@ def test_a_limit_of_ones_own_is_that_of_dynamics_statics_rates_and_tangents():
     assert system.limits(here) == pytest.approx(limits)
     # rates: what is left until contacts slide, and the forces of those that do, fall as differences say
     sense = np.where(here.status == OPEN, OPEN, STICKING)
-    rates, h = RateProblem(system, 1.0, force=0.0, negligible=0.0), 1e-8
+    rates, h = RateProblem(system, 1.0, force=0.0), 1e-8
     v = np.random.default_rng(5).normal(size=system.dof)
     there, back = (system.trial(known, known.q + s * h * v, fixed=sense) for s in (1.0, -1.0))
     kept, seen = system.trial(known, known.q, fixed=sense), 0

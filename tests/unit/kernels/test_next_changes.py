@@ -66,7 +66,7 @@ def test_what_is_left_falls_at_the_rate_that_is_said(law):
     for seed in range(4):
         velocity = np.random.default_rng(seed).normal(size=system.dof)
         found = next_changes(system, here, velocity, sense, 0.0, 0.0)
-        rates = RateProblem(system, 1.0, force=0.0, negligible=0.0)
+        rates = RateProblem(system, 1.0, force=0.0)
         h = 1e-8
         there, back = (system.trial(known, known.q + s * h * velocity, fixed=sense) for s in (1.0, -1.0))
         for c in np.flatnonzero(found.rate > 0.0):

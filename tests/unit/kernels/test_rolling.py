@@ -148,7 +148,7 @@ def test_what_comes_next_along_the_rolling_falls_at_the_rate_that_is_said():
         seen.add((int(side), bool(c - count < len(system.first))))
         assert found.left[c] == pytest.approx(left(here), abs=1e-12)
         assert found.rate[c] == pytest.approx((left(back) - left(there)) / (2.0 * h), rel=1e-4, abs=1e-2)
-        until = RateProblem(system, 1.0, force=0.0, negligible=0.0).until(here, c, int(found.what[c]), v)
+        until = RateProblem(system, 1.0, force=0.0).until(here, c, int(found.what[c]), v)
         assert until == pytest.approx((found.left[c], found.rate[c]))
     assert seen == {(1, True), (-1, True), (1, False), (-1, False)}
 
