@@ -32,7 +32,10 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     "pile_dip": [({"dip_height": -1.0}, r"dip_height = -1\.0: must be a number greater than 0")],
     "polydisperse_averages": [({"cases": [ENSEMBLE | {"forces": [2.0, 1.0]}]}, r"cases\[0\].forces = .*: must be")],
     "slab_comparison": [({"cases": [{"friction": 0.2}]}, r"cases\[0\]\.floor: missing")],
-    "theory": [({"ray_angle": 90.0}, "ray_angle = .*: must be less than 90")],
+    "theory": [
+        ({"ray_angle": 90.0}, "ray_angle = .*: must be less than 90"),
+        ({"points": 4}, "points = 4: must be odd"),
+    ],
     "torque": [({"torques": [1.0, 2.0]}, r"torques = \[1\.0, 2\.0\]: must begin with 0")],
 }
 
