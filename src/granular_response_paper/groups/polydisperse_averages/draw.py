@@ -130,7 +130,8 @@ def _findings(datasets: Datasets) -> dict[str, str]:
     data = datasets["linear_range"]
     shorter, compared = 0, 0
     for friction in different(data["friction"]):
-        ends = data["linear_until"].values[data["friction"].values == friction]  # the lattice first
+        same = data.isel(path=data["friction"].values == friction).sortby("polydispersity")  # the lattice first
+        ends = same["linear_until"].values
         compared += len(ends) > 1
         shorter += bool(ends[-1] < ends[0])
     shown = _shown(packings)
