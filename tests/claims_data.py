@@ -417,12 +417,14 @@ def superposition_study():
     rng = np.random.default_rng(0)
     error = np.array([0.01, 0.1]) * rng.uniform(0.8, 1.2, (8, 2, 1))
     rows = np.array([0.1, 0.05, 0.02]) * rng.uniform(0.9, 1.1, (8, 2, 2, 1))
+    ends = over("realization", linear_until=np.linspace(0.35, 0.4, 8), nonlinear_from=np.linspace(0.4, 0.45, 8))
     return {
         "errors": dataset(
             {"force": [0.2, 1.0], "distance": [2.0, 8.0], "gap": [1.0, 3.0, 5.0]},
             **over("realization distance force", floor_error_largest=error, contact_error_largest=error),
             row_error=("realization distance force gap", rows),
         ),
+        "linear_range": dataset(**ends),
     }
 
 

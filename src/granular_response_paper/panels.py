@@ -122,9 +122,11 @@ def forces(
     """Forces as lines along them, as long and as wide as they are large, as in Figs. 2, 13 and 17 of the paper.
 
     ``vector`` (m, 2) is in units of choice; ``largest`` has the full width, and the length ``longest`` in mean radii.
-    Of the contacts those ``shown`` (m,) are drawn. Lines are dark where the force presses
+    Of the contacts those ``shown`` (m,) are drawn, none where ``largest`` is 0. Lines are dark where the force presses
     together, pale where it takes compression away.
     """
+    if not largest > 0.0:
+        return
     here = slice(None) if shown is None else shown
     scale = {"length_per_force": longest / largest, "width_per_force": WIDEST / largest, "smallest": LEAST * largest}
     network.draw_forces(axes, contacts.point[here], vector[here], contacts.normal[here], **scale)
@@ -134,6 +136,8 @@ def force_key(
     axes: Axes, at: tuple[float, float], size: float, largest: float, unit: str, *, longest: float = LONGEST
 ) -> None:
     """A line that stands for a force of ``size`` in :func:`forces`, its middle at ``at`` (data), and its value."""
+    if not largest > 0.0:
+        return
     along = np.array([[1.0, 0.0]])
     forces(axes, ContactLines(np.array([at]), along), size * along, largest, longest=longest)
     end = at[0] + 0.5 * longest * size / largest, at[1]

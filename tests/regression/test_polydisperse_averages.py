@@ -5,6 +5,7 @@ import reduced
 
 from granular_response_paper import ensembles
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED, realizations
+from granular_response_paper.groups.polydisperse_averages import draw
 from granular_response_paper.groups.polydisperse_averages import simulate as study
 
 PARAMETERS = reduced.parameters("polydisperse_averages")
@@ -40,3 +41,13 @@ def test_collapse_and_failure_are_reported() -> None:
     failed = realizations.realize(scene.updated({"protocol.maximum_steps": 100}), (1.0, 2.0), 1e-3)
     assert failed.outcome.tolist() == [FAILED, NOT_REACHED]
     assert failed.message.startswith("gravity: ")
+
+
+def test_the_caption_counts_the_frictions_at_which_disorder_shortens_the_linear_range(datasets) -> None:
+    data = datasets["linear_range"]
+    lattice = data["polydispersity"] == 0.0
+    for until, times in ((1.0, data["friction"].to_index().nunique()), (9.0, 0)):
+        other = data.assign(linear_until=lattice * 5.0 + ~lattice * until)
+        parameters = study.Parameters(**PARAMETERS)
+        caption = draw.captions({**datasets, "linear_range": other}, parameters)["fig20_disordered_linear_range"]
+        assert f"shorter than that of the lattice at {times} of" in str(caption)

@@ -33,6 +33,9 @@ PARTS = {
     "extension": "questions beyond the paper",
 }
 
+#: What a stored table lists of each claim.
+LISTED = {"id", "group", "part", "row", "verdict", "star", "here", "paper", "short", "tests"}
+
 #: Sections of the paper, in order.
 SECTIONS = ("abstract", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "beyond")
 
@@ -188,8 +191,12 @@ def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
     except (OSError, ValueError) as error:
         problem = getattr(error, "strerror", None) or " ".join(str(error).split())
         raise ClaimsError(f"{path}: {problem}; make it with granular-response-paper claims") from None
-    if not isinstance(found, dict) or "table" not in found:
-        raise ClaimsError(f"{path}: is not a table of claims; make it with granular-response-paper claims")
+    try:
+        whole = bool(quoted(found)) and all(set(row) >= LISTED for row in found["table"])
+    except (AttributeError, KeyError, TypeError, ValueError):
+        whole = False
+    if not whole:
+        raise ClaimsError(f"{path}: is not a whole table of claims; make it with granular-response-paper claims")
     return found
 
 

@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 from pydantic import AfterValidator, Field
 
-from granular_response.scene import Scene
+from granular_response.errors import require
+from granular_response.scene import Scene, SceneError
 from granular_response.scene.base import Description, Positive, Ratio, Sides
 from granular_response.scene.errors import must
 from granular_response.state import FloatArray
@@ -56,8 +57,11 @@ class Series(Description):
 
     @property
     def varied(self) -> str:
-        """The quantity that has several entries."""
-        return next(name for name in VARIED if self._several(name))
+        """The quantity that has several entries. Raises SceneError without one."""
+        found = [name for name in VARIED if self._several(name)]
+        rule = f"series {self.name}: must have several entries in one of {', '.join(VARIED)}"
+        require(len(found) == 1, rule, SceneError)
+        return found[0]
 
     @property
     def heights(self) -> tuple[int, ...]:

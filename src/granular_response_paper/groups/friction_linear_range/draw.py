@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.state import OPEN, SLIDING
-from granular_response.studies import linear_end
 from granular_response_paper.captions import RADIUS, WEIGHT, Caption, Datasets, Value, of_group, of_scene
 from granular_response_paper.panels import among, contact_networks, family, grey_limit, label_ends, note, titles, zero
 
@@ -93,9 +92,8 @@ def _findings(datasets: Datasets) -> dict[str, str]:
     response, axis, large = (datasets[name] for name in ("response", "friction_axis", "large_forces"))
     longest = []
     for part in (LINEAR, 0.05):
-        curves = response["response_at_centre"].values
-        ends = [linear_end(response["force"], curve, part).low for curve in curves]
-        best = float(response["friction"][int(np.argmax(ends))])
+        ends = {mu: _linear_until(response.sel(friction=mu), part) for mu in response["friction"].values.tolist()}
+        best = max(ends, key=lambda mu: ends[mu])
         longest.append(f"µ = {best:g} for {100.0 * part:g} %")
     two = axis["friction"].values[axis["peak_count"].values >= 2]
     found = {
@@ -131,6 +129,13 @@ def _findings(datasets: Datasets) -> dict[str, str]:
         ]
     ).strip()  # fmt: skip
     return found
+
+
+def _linear_until(one: xr.Dataset, part: float) -> float:
+    """The last force up to which the response at x = 0 differs by less than a ``part`` from that to the smallest."""
+    curve = one["response_at_centre"].dropna("force")
+    off = np.abs(curve.values / curve.values[0] - 1.0) > part
+    return float(curve["force"][max(int(np.argmax(off)) - 1, 0)]) if off.any() else float(curve["force"][-1])
 
 
 def _symmetric(dynamic: xr.Dataset) -> tuple[list[float], list[float]]:
