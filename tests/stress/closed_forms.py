@@ -26,7 +26,7 @@ def mechanical_energy(dynamics: Dynamics, gravity: float = 1.0) -> float:
     """Kinetic energy, elastic energy of normal and tangential springs, and that of the weight."""
     problem, state = dynamics.problem, dynamics.state()
     total = dynamics.kinetic_energy() * problem.n + gravity * float(problem.weight @ state.position[:, 1])
-    for contacts, (law, _), shape in problem.kinds(state):
+    for contacts, (law, *_), shape in problem.kinds(state):
         total += elastic_energy(contacts.overlap, shape, law)
         total += 0.5 * law.tangential_stiffness * float((contacts.spring[contacts.touching] ** 2).sum())
     return total
