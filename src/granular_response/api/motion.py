@@ -95,7 +95,7 @@ def motion(
     data["load_factor"] = variables.described("state_load_factor", factors, along="time")
     moved = variables.labelled(xr.Dataset(data))
     sums = found.sums()
-    moving = sum(sums[f"{name}_energy"] for name in ("kinetic", "rotational", "elastic"))
+    moving = sums["kinetic_energy"] + sums["rotational_energy"] + sums["elastic_energy"]
     rise = float((sums["energy"] - np.minimum.accumulate(sums["energy"])).max())
     if not asked.loads and rise > MOST_RISE * moving.max():
         warnings.warn(
