@@ -174,10 +174,14 @@ def large(found: Stored) -> str:
 
 def costs(found: Stored) -> str:
     """The table of costs of the user guide: whole solutions, and where a default fall ends beside the paper's step."""
-    slabs = (row for row in found["fall"]["scenes"] if row["scene"].startswith("slab, "))
+    slabs = [row for row in found["fall"]["scenes"] if row["scene"].startswith("slab, ")]
     errors = {row["disks"]: row.get("floor_error") for row in slabs}
+    whole = found["fall"]["whole"]
+    known = {row["disks"] for row in whole}  # of larger ones only the fall was measured
+    alone = [row | {"scene": "default, without the load", "changes": {}} for row in slabs if row["disks"] not in known]
+    default = [row for row in whole if not row["changes"]]
     rows: list[dict[str, Any]] = []
-    for row in found["fall"]["whole"]:
+    for row in [*default, *alone, *(row for row in whole if row["changes"])]:
         key = ", ".join(f"`{name}: {value}`" for name, value in row["changes"].items())
         error = None if key else errors.get(row["disks"])
         made = {**row, "key": key or None, "error": error, "size": f"{row['disks']:,}", "time": seconds(row["seconds"]),
