@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -102,7 +103,8 @@ def claims(
 ) -> None:
     """Compare the claims with the stored datasets.
 
-    The stored table of the extensions comes with the summary of other preparations, which the claims of the paper read.
+    A table with verdicts on groups whose datasets are not here is not overwritten. The stored table of the extensions
+    comes with the summary of other preparations, which the claims of the paper read.
     """
     from .claims import preparations as kept
     from .claims import table
@@ -116,6 +118,7 @@ def claims(
     if not every:
         checkout.check(one)
         kept.check()
+        _keep_verdicts(output, [group for group in table.groups_read(one) if not (data / f"{group}.nc").exists()])
     found = table.read(output) if every else table.write(output, data, kept.OUTPUT, collection=one)
     if summarised:
         typer.echo(str(kept.write(source, one.here / kept.OUTPUT.name)))
@@ -130,6 +133,23 @@ def claims(
         for text in filter(None, (row["cases"], *elsewhere)):
             typer.echo(f"{'':20} {text}")
     typer.echo(f"{output}: {table.quoted(found)}")
+
+
+def _keep_verdicts(output: Path, absent: list[str]) -> None:
+    """Raises ClaimsError if a table has verdicts on groups whose datasets are ``absent``: they would be lost."""
+    from .claims import table
+    from .claims.claim import ClaimsError
+
+    rows = []
+    with suppress(ClaimsError):  # what is no table has none
+        rows = table.read(output)["table"]
+    judged = {row["group"] for row in rows if row["verdict"] != "not measured"}
+    if lost := [group for group in absent if group in judged]:
+        some = ", ".join(lost[:3]) + (f" and {len(lost) - 3} more" if len(lost) > 3 else "")
+        raise ClaimsError(
+            f"{output}: has verdicts on groups without datasets here ({some}) and stays as it is; make these with make "
+            "reproduce, or give another --output"
+        )
 
 
 @commands.command("reproduce", "reproduce --collection extensions", "reproduce --force")

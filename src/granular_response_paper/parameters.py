@@ -8,10 +8,11 @@ name is that of the group's own base, so one key of it can be tried alone
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import reduce
 from itertools import pairwise
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Self, TypeVar
 
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from granular_response.scene import Scene, SceneError
 from granular_response.scene.base import Count, Description, Positive, Ratio, allowed
@@ -19,6 +20,16 @@ from granular_response.scene.errors import NotAllowed, must
 from granular_response.scene.protocol import Method
 
 Entry = TypeVar("Entry")
+
+
+def _some(values: tuple[Entry, ...]) -> tuple[Entry, ...]:
+    must(values, "must have at least one entry")
+    return values
+
+
+def _several(values: tuple[Entry, ...]) -> tuple[Entry, ...]:
+    must(len(values) > 1, "must have at least two entries, to compare")
+    return values
 
 
 def _different(values: tuple[Entry, ...]) -> tuple[Entry, ...]:
@@ -31,11 +42,12 @@ def _growing(values: tuple[float, ...]) -> tuple[float, ...]:
     return values
 
 
-#: Lists with an entry or more, with different ones, with growing numbers, and with two of these, as a curve needs.
-Some = Annotated[tuple[Entry, ...], Field(min_length=1)]
+#: Lists with an entry or more, with two or more, with different ones, with growing numbers, and curves of two or more.
+Some = Annotated[tuple[Entry, ...], AfterValidator(_some)]
+Several = Annotated[tuple[Entry, ...], AfterValidator(_several)]
 Different = Annotated[Some[Entry], AfterValidator(_different)]
 Growing = Annotated[Some[Positive], AfterValidator(_growing)]
-Curve = Annotated[tuple[Entry, ...], Field(min_length=2), AfterValidator(_growing)]
+Curve = Annotated[Several[Entry], AfterValidator(_growing)]
 Positives = Different[Positive]
 #: Coefficients of friction, ratios.
 Coefficients = Different[Ratio]
@@ -45,7 +57,37 @@ Rows = Annotated[int, Field(strict=True, ge=2), allowed("must be a whole number 
 Path = Annotated[str, Field(strict=True, min_length=1), allowed("must be the path of a file")]
 
 
-class Common(Description):
+#: Of parameters that must agree: the dotted key that a message names, whether all is well, else what is allowed.
+Checks = Iterator[tuple[str, object, str]]
+
+
+class Checked(Description):
+    """A description whose parameters must agree."""
+
+    def checks(self) -> Checks:
+        """In turn; the first that fails is the mistake."""
+        yield from ()
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for key, holds, rule in self.checks():
+            path = [int(part) if part.isdigit() else part for part in key.split(".")]
+            must(holds, rule, key=path, value=None if holds else _shown(reduce(_part, path, self)))
+        return self
+
+
+def _part(of: Any, name: str | int) -> Any:
+    return of[name] if isinstance(name, int) else getattr(of, name)
+
+
+def _shown(value: Any) -> Any:
+    """A parameter as its file has it."""
+    if isinstance(value, tuple):
+        return [_shown(one) for one in value]
+    return value.model_dump() if isinstance(value, Description) else value
+
+
+class Common(Checked):
     """What ``common`` holds for every group that solves scenes; a group's own section may have it too."""
 
     method: Method = Field(description="protocol.method of the scenes.")

@@ -151,7 +151,9 @@ def measured(measures: Measures, states: Sequence[State]) -> xr.Dataset:
         interior=("floor_disk", measures.interior.astype(np.int8), "1 for disks away from the side walls"),
         margin=("margin", MARGINS, "fraction below the Coulomb limit"),
     )
-    return data.assign(certificates_dataset(states).variables).assign(further).assign_coords(coordinates)
+    # without the disks that nothing determines: few states have any, and the states of a grid have the same variables
+    certificates = certificates_dataset(states).drop_vars("undetermined", errors="ignore")
+    return data.assign(certificates.variables).assign(further).assign_coords(coordinates)
 
 
 def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, xr.Dataset]], shape: tuple) -> xr.Dataset:

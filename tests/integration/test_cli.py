@@ -135,11 +135,21 @@ def test_claims_without_datasets_leave_the_table_alone(tmp_path):
     assert "none.json: No such file or directory" in said
 
 
-def test_a_claim_whose_datasets_are_not_here_is_not_measured(tmp_path):
+def test_claims_without_some_datasets_keep_the_verdicts_on_them(tmp_path):
+    """A clone has the whole table, and the datasets alone that somebody has made."""
     store.write(tmp_path / "data" / "pile_dip.nc", pile_study(), PILE)
-    succeeded("claims", "-o", "own.json", folder=tmp_path)
-    verdicts = {row["group"]: row["verdict"] for row in json.loads((tmp_path / "own.json").read_text())["table"]}
-    assert verdicts["torque"] == "not measured" != verdicts["pile_dip"]
+    succeeded("claims", folder=tmp_path)
+    table = tmp_path / "figures" / "claims.json"
+    before = table.read_bytes()
+    succeeded("claims", folder=tmp_path)  # verdicts on nothing else are lost
+    assert table.read_bytes() == before
+    shutil.copytree(tmp_path / "data", tmp_path / "elsewhere")
+    (tmp_path / "elsewhere" / "pile_dip.nc").rename(tmp_path / "elsewhere" / "torque.nc")
+    said = refused("claims", "--data", "elsewhere", folder=tmp_path)
+    assert "figures/claims.json: has verdicts on groups without datasets here (pile_dip)" in said
+    assert table.read_bytes() == before
+    succeeded("claims", "--data", "elsewhere", "-o", "other.json", folder=tmp_path)
+    assert all(row["verdict"] == "not measured" for row in json.loads((tmp_path / "other.json").read_text())["table"])
 
 
 def test_datasets_of_another_group_are_not_drawn(solved):

@@ -39,18 +39,18 @@ def padded(right: FloatArray, b: int) -> FloatArray:
 
 
 @kernel(forceinline=True)
-def _four_from_two(a, like, i, j, p0, p1, p2, p3, f0, f1, f2, f3, g0, g1, g2, g3):
+def _four_from_two(a, like, i, j, pivots, f, g):
     """Subtract multiples of four pivot rows from two rows, which stay in registers while pivot rows pass."""
     first, second = take(a, i, like), take(a, j, like)
-    pivot = take(a, p0, like)
-    first, second = less_product(first, f0, pivot), less_product(second, g0, pivot)
-    pivot = take(a, p1, like)
-    first, second = less_product(first, f1, pivot), less_product(second, g1, pivot)
-    pivot = take(a, p2, like)
-    first, second = less_product(first, f2, pivot), less_product(second, g2, pivot)
-    pivot = take(a, p3, like)
-    put(a, i, less_product(first, f3, pivot))
-    put(a, j, less_product(second, g3, pivot))
+    pivot = take(a, pivots[0], like)
+    first, second = less_product(first, f[0], pivot), less_product(second, g[0], pivot)
+    pivot = take(a, pivots[1], like)
+    first, second = less_product(first, f[1], pivot), less_product(second, g[1], pivot)
+    pivot = take(a, pivots[2], like)
+    first, second = less_product(first, f[2], pivot), less_product(second, g[2], pivot)
+    pivot = take(a, pivots[3], like)
+    put(a, i, less_product(first, f[3], pivot))
+    put(a, j, less_product(second, g[3], pivot))
 
 
 @kernel(forceinline=True)
@@ -99,16 +99,17 @@ def _eliminate(a, b, k, first, last):
 
 
 @kernel(forceinline=True)
-def _multiples(a, at, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23):
+def _multiples(a, at, inverse, above):
     """By which four pivot rows are subtracted from the row whose first unknown of the four is at ``at``: L, kept there.
 
-    ``i0 ...`` : inverses of the pivots; ``u01 ...`` : what stands above the diagonal among the four, over the pivot of
-    its column, so that each multiple waits for one operation after the one before.
+    ``inverse`` : of the pivots; ``above`` : what stands above the diagonal among the four, row by row, over the pivot
+    of its column, so that each multiple waits for one operation after the one before.
     """
-    f0 = a[at] * i0
-    f1 = less_product(a[at + 1] * i1, f0, u01)
-    f2 = less_product(less_product(a[at + 2] * i2, f0, u02), f1, u12)
-    f3 = less_product(less_product(less_product(a[at + 3] * i3, f0, u03), f1, u13), f2, u23)
+    u01, u02, u03, u12, u13, u23 = above
+    f0 = a[at] * inverse[0]
+    f1 = less_product(a[at + 1] * inverse[1], f0, u01)
+    f2 = less_product(less_product(a[at + 2] * inverse[2], f0, u02), f1, u12)
+    f3 = less_product(less_product(less_product(a[at + 3] * inverse[3], f0, u03), f1, u13), f2, u23)
     a[at], a[at + 1], a[at + 2], a[at + 3] = f0, f1, f2, f3
     return f0, f1, f2, f3
 
@@ -122,20 +123,17 @@ def _eliminate_four(a, n, b, k):
     d0 = step * k + b
     d1, d2, d3 = d0 + step, d0 + 2 * step, d0 + 3 * step
     i0, i1, i2, i3 = 1.0 / a[d0], 1.0 / a[d1], 1.0 / a[d2], 1.0 / a[d3]
-    u01, u02, u03 = a[d0 + 1] * i1, a[d0 + 2] * i2, a[d0 + 3] * i3
-    u12, u13, u23 = a[d1 + 1] * i2, a[d1 + 2] * i3, a[d2 + 1] * i3
-    p0, p1, p2, p3 = d0 + 4, d1 + 3, d2 + 2, d3 + 1
+    inverse = (i0, i1, i2, i3)
+    above = (a[d0 + 1] * i1, a[d0 + 2] * i2, a[d0 + 3] * i3, a[d1 + 1] * i2, a[d1 + 2] * i3, a[d2 + 1] * i3)
     last = min(k + 3 + b, n - 1)
     like = spread(0.0)
     for i in range(k + 4, last, 2):
         x = step * i + b - (i - k)
         y = x + step - 1
-        f0, f1, f2, f3 = _multiples(a, x, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
-        g0, g1, g2, g3 = _multiples(a, y, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
+        f = _multiples(a, x, inverse, above)
+        g = _multiples(a, y, inverse, above)
         for c in range(0, b, WIDTH):
-            _four_from_two(
-                a, like, x + 4 + c, y + 4 + c, p0 + c, p1 + c, p2 + c, p3 + c, f0, f1, f2, f3, g0, g1, g2, g3
-            )  # fmt: skip
+            _four_from_two(a, like, x + 4 + c, y + 4 + c, (d0 + 4 + c, d1 + 3 + c, d2 + 2 + c, d3 + 1 + c), f, g)
     if (last - k) % 2 == 0:  # a row is left
         for m in range(4):
             _eliminate(a, b, k + m, last, last)

@@ -53,6 +53,15 @@ class Store(NamedTuple):
     place: NDArray[Any]  #: (n,) for the places of a boundary
 
 
+class Factors(NamedTuple):
+    """Factorised fronts."""
+
+    at: NDArray[Any]  #: (f,) where the blocks of each are
+    values: NDArray[Any]
+    pivots: NDArray[Any]  #: (n,) int32
+    whole: bool  #: whether of a matrix that is not symmetric
+
+
 @kernel
 def mark(front_of, data, known, change, changed):
     """Mark the fronts, ``front_of`` (e,), of entries (e,) that differ by more than ``change`` from the known ones."""
@@ -219,11 +228,12 @@ def eliminate(lapack, tree, first, last, matrix, store, info):
 
 
 @kernel(nogil=True)
-def forward(lapack, tree, first, last, at_front, values, pivots, whole, x, below, outside, gathered, line):
+def forward(lapack, tree, factors, first, last, x, below, outside, gathered, line):
     """Solve with L in the fronts ``first ... last``.
 
     ``gathered`` : what is left for unknowns from ``below`` on, which are ``outside`` (sorted); ``line`` : (b,) room.
     """
+    at_front, values, pivots, whole = factors
     none, one = x.dtype.type(0.0), x.dtype.type(1.0)
     for front in range(first, last):
         start = tree.start[front]
@@ -252,8 +262,9 @@ def forward(lapack, tree, first, last, at_front, values, pivots, whole, x, below
 
 
 @kernel(nogil=True)
-def backward(lapack, tree, first, last, at_front, values, pivots, whole, x, line, product):
+def backward(lapack, tree, factors, first, last, x, line, product):
     """Solve with U, or L^T, in the fronts ``first ... last``, the last one first."""
+    at_front, values, _, whole = factors
     none, one = x.dtype.type(0.0), x.dtype.type(1.0)
     for front in range(last - 1, first - 1, -1):
         start = tree.start[front]

@@ -380,20 +380,16 @@ class Multifactor:
         lapack = addresses(kind)
         room = int(pattern.outer.max(initial=0))
         nowhere = np.zeros(0, np.int64)
+        factors = frontal.Factors(fronts.at, fronts.values, fronts.pivots, self.whole)
 
         def down(first: int, last: int, below: int, outside: np.ndarray) -> FloatArray:
             gathered = np.zeros(len(outside), kind)
-            frontal.forward(
-                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, self.whole,
-                x, below, outside, gathered, np.empty(room, kind),
-            )  # fmt: skip
+            frontal.forward(lapack, tree, factors, first, last, x, below, outside, gathered, np.empty(room, kind))
             return gathered
 
         def up(first: int, last: int) -> None:
-            frontal.backward(
-                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, self.whole,
-                x, np.empty(room, kind), np.empty(int(pattern.own.max()), kind),
-            )  # fmt: skip
+            product = np.empty(int(pattern.own.max()), kind)
+            frontal.backward(lapack, tree, factors, first, last, x, np.empty(room, kind), product)
 
         with threads.mapping(pattern.large) as spread:
             gathered = spread(lambda s: down(s.first, s.last, s.below, s.outside), pattern.ranges)

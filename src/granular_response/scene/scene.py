@@ -185,7 +185,7 @@ class Scene(Sparse):
             raise refused(error) from None
 
     @classmethod
-    def from_arrays(
+    def from_arrays(  # noqa: PLR0913, one keyword for each column
         cls,
         x: ArrayLike,
         z: ArrayLike,

@@ -158,7 +158,9 @@ class Dynamics:
         pair_laws, wall_laws = zip(*problem.laws, strict=True)
         springs = [in_slots(c, row) for row in carry_springs(problem.n, state.pairs, c.first, c.second)]
         wall_springs = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
-        arm, couple = in_slots(c, problem.pair_arms(c.first, c.second)), aligned_zeros(problem.n)
+        rolls = len(problem.laws) > 1
+        arm = in_slots(c, problem.pair_arms(c.first, c.second)) if rolls else aligned_zeros(0)
+        couple = aligned_zeros(problem.n if rolls else 0)
         self.model = Model(
             problem.n, problem.weight, self._inverse_mass, problem.packing.radius, self.rim,
             problem.load, problem.load_disk,

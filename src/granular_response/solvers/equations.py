@@ -133,7 +133,9 @@ class Equations:
         loaded = np.zeros(problem.n, np.int64)
         loaded[problem.load_disk] = LOADED
         shape, wall_shape = problem.pair_shapes(self.first, self.second), problem.wall_shapes(self.wall_disk)
-        arms = problem.pair_arms(self.first, self.second), problem.wall_arms(self.wall_disk)
+        arms = [np.zeros(0)]
+        if self.rows > 1:
+            arms = [problem.pair_arms(self.first, self.second), problem.wall_arms(self.wall_disk)]
         _, (pair_rolling, wall_rolling) = (*problem.laws, (FREE, FREE))[:2]
         return statics.Listed(
             disks=np.stack([np.r_[self.first, self.wall_disk], np.r_[self.second, np.full(w, -1)]], axis=1),
@@ -145,7 +147,7 @@ class Equations:
             shape=None if shape is None or wall_shape is None else np.concatenate([shape, wall_shape]),
             pair_law=problem.pair_law,
             wall_law=problem.wall_law,
-            arm=np.concatenate(arms) if self.rows > 1 else np.zeros(0),
+            arm=np.concatenate(arms),
             pair_rolling=pair_rolling,
             wall_rolling=wall_rolling,
             radius=problem.packing.radius,

@@ -107,8 +107,7 @@ def trajectory(
         raise SceneError("start: a state under load, must be one without where a load displaces a disk, from there")
     load: Ramp = (state.load_factor, 1.0, protocol.ramp_time) if scene.loads else (0.0, 0.0, 0.0)
     g = 0.0 if scene.motion.weightless else 1.0
-    pressed = max(float(contacts.normal_force.max(initial=0.0)) for contacts in (state.pairs, state.walls))
-    step = motion_step(problem, _largest_energy(problem, state), pressed)
+    step = motion_step(problem, _largest_energy(problem, state), float(state.largest_normal_force().max()))
     if wanted[-1] > step * protocol.maximum_steps:
         raise SceneError(
             f"times: {wanted[-1]:g} is {wanted[-1] / step:.3g} steps of {step:g}, must be at most "

@@ -30,6 +30,8 @@ def carry_springs(n: int, contacts: Contacts, first, second) -> FloatArray:
     if np.array_equal(contacts.first, first) and np.array_equal(contacts.second, second):
         return contacts.springs
     held = np.flatnonzero((contacts.springs != 0.0).any(axis=0))
+    if not len(held):
+        return np.zeros((len(contacts.springs), len(first)))
     key = np.asarray(first, np.int64) + n * np.asarray(second, np.int64)
     by = np.argsort(key)
     wanted = contacts.first[held].astype(np.int64) + n * contacts.second[held].astype(np.int64)

@@ -56,6 +56,11 @@ def claims_in(collection: Collection) -> tuple[Claim, ...]:
     return tuple(sorted(found, key=_place))
 
 
+def groups_read(collection: Collection) -> list[str]:
+    """The figure groups whose datasets the claims of a collection read."""
+    return sorted({claim.group for claim in claims_in(collection)})
+
+
 #: Where the study of what moves the events of ordered slabs is kept.
 MOVES = Path("survey") / "data" / f"{ROBUSTNESS}.nc"
 
@@ -85,7 +90,7 @@ def flat(parameters: Mapping[str, Any], above: str = "") -> dict[str, Any]:
 
 
 def _paths(folder: str | os.PathLike[str], collection: Collection) -> list[Path]:
-    return [Path(folder) / f"{group}.nc" for group in sorted({claim.group for claim in claims_in(collection)})]
+    return [Path(folder) / f"{group}.nc" for group in groups_read(collection)]
 
 
 def document(entries: Sequence[Verdict], data: Data | None = None) -> dict[str, Any]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+from copy import deepcopy
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +35,7 @@ def parameters(group: str, path: Path = PARAMETERS) -> tuple[dict[str, Any], Des
     """
     kind: type[Description] = group_member(group, "parameters", "Parameters")
     try:
-        sections = text.read(read_text(path))
+        sections = deepcopy(_read(read_text(path)))
         of = collection_of(group)
         hint = f"; {group} is a figure group of {of.title}, run it in the folder {of.folder}"
         common, own = _section(sections, "common", path), _section(sections, group, path, hint)
@@ -46,6 +48,11 @@ def parameters(group: str, path: Path = PARAMETERS) -> tuple[dict[str, Any], Des
         raise GroupError(f"{path}: {unreadable(error)}") from None
     except OSError as error:
         raise GroupError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+@lru_cache(maxsize=4)  # the report and tests ask for one group after another
+def _read(content: str) -> Any:
+    return text.read(content)
 
 
 def _section(sections: Any, name: str, path: Path, hint: str = "") -> dict[str, Any]:

@@ -204,6 +204,16 @@ def test_a_stage_that_fails_is_shown_and_ends_the_run(tmp_path):
     assert said[0].split()[:4] == ["1", "of", "2", "claims"] and "the reason" in said[-1]
 
 
+def test_the_first_picture_waits_for_no_simulation(tmp_path, monkeypatch):
+    """A stage that DVC would run before it, in the order of their names, runs after it."""
+    assert reproduce._FIRST in reproduce.stage_names(PAPER, ROOT)
+    in_pipeline(tmp_path, "stages: {a_simulation: {cmd: 'true'}, picture: {cmd: 'true'}}\n")
+    monkeypatch.setattr(reproduce, "_FIRST", "picture")
+    said = []
+    assert reproduce.reproduce(EMPTY, tmp_path, say=said.append) == 0
+    assert [line.split()[3] for line in said[:2]] == ["picture", "a_simulation"]
+
+
 @pytest.mark.parametrize(
     ("number", "deaf"),
     [(signal.SIGTERM, ""), (signal.SIGKILL, ""), (signal.SIGINT, ""), (signal.SIGINT, "trap : INT; ")],

@@ -8,13 +8,12 @@ import numpy as np
 import xarray as xr
 from pydantic import AfterValidator, Field
 
-from granular_response.errors import require
-from granular_response.scene import Scene, SceneError
-from granular_response.scene.base import Description, Positive, Ratio, Sides
+from granular_response.scene import Scene
+from granular_response.scene.base import Positive, Ratio, Sides
 from granular_response.scene.errors import must
 from granular_response.state import FloatArray
 from granular_response_extensions.parameters import SurveyedGroup
-from granular_response_paper.parameters import SIZE, UNIT_LOAD, Growing, Some, over
+from granular_response_paper.parameters import SIZE, UNIT_LOAD, Checked, Checks, Growing, Some, over
 
 #: Rest without friction is found by statics at every size, and is the same preparation for all.
 _SLAB = UNIT_LOAD.updated({"preparation.gravity": "frictionless", "contact.stiffness_ratio": 0.8})
@@ -35,7 +34,7 @@ def _odd(layers: int) -> int:
 Layers = Annotated[int, Field(strict=True, ge=5), AfterValidator(_odd)]
 
 
-class Series(Description):
+class Series(Checked):
     """Slabs that differ in one quantity: the list that has several entries."""
 
     name: str
@@ -55,13 +54,15 @@ class Series(Description):
         "constant", description="as weight: this force is that of 15 layers, and in proportion to layers."
     )
 
+    def checks(self) -> Checks:
+        yield "surveyed", self.heights == tuple(sorted({*self.heights})), "must be growing numbers, after layers"
+        several = sum(map(self._several, VARIED))
+        yield "name", several == 1, f"must have several entries in one of {', '.join(VARIED)}"
+
     @property
     def varied(self) -> str:
-        """The quantity that has several entries. Raises SceneError without one."""
-        found = [name for name in VARIED if self._several(name)]
-        rule = f"series {self.name}: must have several entries in one of {', '.join(VARIED)}"
-        require(len(found) == 1, rule, SceneError)
-        return found[0]
+        """The quantity that has several entries."""
+        return next(name for name in VARIED if self._several(name))
 
     @property
     def heights(self) -> tuple[int, ...]:
@@ -86,7 +87,15 @@ class Parameters(SurveyedGroup):
     series: Some[Series] = Field(description="Slabs that are compared.")
     visible: Positive = Field(description="Dip of the floor response at x = 0, per largest value, that is two peaks.")
     first_force: Positive = Field(description="Least force, over the force of horizontal contacts at rest.")
-    factor: float = Field(gt=1, le=2, description="Each force over the one before.")
-    most_forces: int = Field(ge=5, description="Forces after which a slab is given up.")
+    factor: float = Field(strict=True, gt=1, le=2, description="Each force over the one before.")
+    most_forces: int = Field(strict=True, ge=5, description="Forces after which a slab is given up.")
     tolerance: Positive = Field(description="Width of brackets without friction, per force.")
     extrapolated: Positive = Field(description="Layers to which crossovers are extrapolated.")
+
+    @property
+    def surveyed(self) -> bool:
+        return any(one.surveyed for one in self.series)
+
+    def checks(self) -> Checks:
+        yield from super().checks()
+        yield "series", len({one.name for one in self.series}) == len(self.series), "must have different names"

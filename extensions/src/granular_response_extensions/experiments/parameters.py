@@ -10,7 +10,7 @@ from pydantic import Field
 from granular_response.scene import Load, PouredPacking, Scene, SlabPacking
 from granular_response.scene.base import Count, Description, Index, Positive
 from granular_response.state import FloatArray
-from granular_response_paper.parameters import UNIT_LOAD, SceneGroup, Some, over
+from granular_response_paper.parameters import UNIT_LOAD, Checks, SceneGroup, Some, over
 
 AnyPacking = Annotated[SlabPacking | PouredPacking, Field(discriminator="kind")]
 Ends = tuple[Positive, Positive]
@@ -46,6 +46,13 @@ class Parameters(SceneGroup):
     draws: Count = Field(description="Of the bootstrap.")
     seed: Index = Field(description="Of the draws.")
     pictures: tuple[Index, ...] = Field(description="Cases of which the first packing that holds is drawn.")
+
+    def checks(self) -> Checks:
+        for k, case in enumerate(self.cases):
+            known = case.packing in self.packings
+            yield f"cases.{k}.packing", known, f"must be one of packings ({', '.join(self.packings)})"
+        below = max(self.pictures, default=0) < len(self.cases)
+        yield "pictures", below, f"must be below {len(self.cases)}"
 
     @property
     def x(self) -> FloatArray:

@@ -9,7 +9,7 @@ from pydantic import Field
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Part, Positive
 from granular_response_extensions.parameters import Material, SurveyedGroup
-from granular_response_paper.parameters import UNIT_LOAD, Growing, Some, over
+from granular_response_paper.parameters import UNIT_LOAD, Checks, Growing, Some, over
 
 #: Keys of the scenes that cases decide.
 OF_CASES = ("packing.polydispersity", "packing.realization", "contact.friction", "loads")
@@ -36,6 +36,15 @@ class Parameters(SurveyedGroup):
     )
     width: Positive = Field(description="w of the Gaussian at x = 0 under disordered packings, in radii.")
     tolerance: Part = Field(description="Width of the bracket of the reversible range, as a part of the force.")
+
+    @property
+    def surveyed(self) -> bool:
+        return any(case.surveyed for case in self.cases)
+
+    def checks(self) -> Checks:
+        yield from super().checks()
+        materials = {(case.polydispersity, case.friction) for case in self.cases}
+        yield "cases", len(materials) == len(self.cases), "must have each material once"
 
     def of(self, case: CycledMaterial, realization: int) -> Scene:
         """The scene of one packing."""

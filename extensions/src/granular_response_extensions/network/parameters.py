@@ -6,7 +6,7 @@ from pydantic import Field
 
 from granular_response.scene.base import Count, Part, Positive
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
-from granular_response_paper.parameters import Coefficients
+from granular_response_paper.parameters import Checks, Coefficients
 
 #: Contacts are those that lie at least this far from the floor and from the highest disk, in radii.
 VERTICAL_MARGIN = 4.0
@@ -28,3 +28,9 @@ class Parameters(EnsembleGroup):
             for d, delta in enumerate(self.polydispersities)
             for m, friction in enumerate(self.frictions)
         }
+
+    def checks(self) -> Checks:
+        yield "polydispersities", min(self.polydispersities) > 0.0, "must be above 0: a lattice has one realization"
+        high = bool(self.scene.packing.build().position[:, 1].max() > 2.0 * VERTICAL_MARGIN)
+        rule = f"must be more: contacts nearer than {VERTICAL_MARGIN:g} radii to floor or top are left out"
+        yield "scene.packing.layers", high, rule

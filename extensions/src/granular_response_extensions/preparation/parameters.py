@@ -7,16 +7,23 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from granular_response.scene import Scene
+from granular_response.scene import Scene, SceneError
 from granular_response.scene.base import Count, Description, Fraction, Positive, Ratio
-from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, Some, over
+from granular_response.scene.errors import NotAllowed
+from granular_response_paper.parameters import UNIT_LOAD, Checked, Checks, Growing, SceneGroup, Some, over
+
+#: Keys of a scene that say how it came to rest.
+PREPARES = ("preparation.gravity", "preparation.ramp_time", "contact.damping_ratio")
 
 
-class Way(Description):
+class Way(Checked):
     """A way to prepare the slab."""
 
     name: str
     changes: dict[str, Any] = Field(description="To the base scene, by dotted key.")
+
+    def checks(self) -> Checks:
+        yield "changes", set(self.changes) <= set(PREPARES), f"must have keys among {', '.join(PREPARES)}"
 
 
 class TapSeries(Description):
@@ -54,3 +61,18 @@ class Parameters(SceneGroup):
     forces: Growing = Field(description="In mean disk weights.")
     parts: Some[SlabFamily] = Field(description="The first one is ordered and untapped.")
     asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
+
+    def checks(self) -> Checks:
+        names = [way.name for way in self.ways]
+        yield "ways", len(set(names)) == len(names), "must have different names"
+        for k, way in enumerate(self.ways):
+            try:
+                self.scene.updated(way.changes)
+            except SceneError as error:
+                raise NotAllowed(str(error), key=("ways", k)) from None
+        yield "parts.0.polydispersity", not self.parts[0].polydispersity, "must be 0"
+        yield "parts.0.taps", self.parts[0].taps is None, "must be left out"
+        for k, part in enumerate(self.parts):
+            known = set(part.ways) <= set(names)
+            yield f"parts.{k}.ways", known, f"must be among the names in ways ({', '.join(names)})"
+            yield f"parts.{k}.to", part.to >= self.forces[0], "must not be below the first of forces"

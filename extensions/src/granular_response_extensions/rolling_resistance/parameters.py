@@ -8,7 +8,7 @@ from pydantic import Field
 
 from granular_response.scene import PilePacking, Scene
 from granular_response.scene.base import NonNegative, Positive
-from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Rows, SceneGroup, Some, over
+from granular_response_paper.parameters import UNIT_LOAD, Checks, Coefficients, Rows, SceneGroup, Some, over
 
 _ROLLING = ("contact.rolling_friction", "wall.rolling_friction")
 _PILE = Scene(packing=PilePacking(), loads=())
@@ -34,3 +34,7 @@ class Parameters(SceneGroup):
         "large one."
     )
     stress_width: Positive = Field(description="w of the Gaussian, in radii.")
+
+    def checks(self) -> Checks:
+        least = self.least_friction
+        yield "most_friction", self.most_friction > least, f"must be above least_friction = {least:g}"

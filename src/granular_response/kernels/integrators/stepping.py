@@ -94,8 +94,9 @@ def _write(row, k, value):
 
 
 @kernel
-def _begin(integrator, q, v, a, b, c, seen, dt):
+def _begin(integrator, q, v, memory, dt):
     """Begin a step."""
+    a, b, c, _, seen = memory
     for k in range(q.size):
         x, v[k], a[k], y, seen[k] = predict(integrator, q[k], v[k], a[k], _read(b, k, 0.0), _read(c, k, 0.0), dt)
         q[k] = x
@@ -103,7 +104,8 @@ def _begin(integrator, q, v, a, b, c, seen, dt):
 
 
 @kernel(forceinline=True)
-def _corrected(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt):
+def _corrected(k, like, integrator, q, v, memory, inverse_mass, dt):
+    a, b, c, force, _ = memory
     a_new = take(force, k, like) * take(inverse_mass, k, like)
     return correct(
         integrator, take(q, k, like), take(v, k, like), take(a, k, like), _read(b, k, like), _read(c, k, like),
@@ -112,45 +114,45 @@ def _corrected(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt):
 
 
 @kernel(forceinline=True)
-def _end_at(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt):
-    x, u, w, y, z = _corrected(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt)
+def _end_at(k, like, integrator, q, v, memory, inverse_mass, dt):
+    x, u, w, y, z = _corrected(k, like, integrator, q, v, memory, inverse_mass, dt)
     put(q, k, x)
     put(v, k, u)
-    put(a, k, w)
-    _write(b, k, y)
-    _write(c, k, z)
+    put(memory.a, k, w)
+    _write(memory.b, k, y)
+    _write(memory.c, k, z)
 
 
 @kernel(forceinline=True)
-def _end_and_begin_at(k, like, integrator, q, v, a, b, c, force, inverse_mass, seen, dt):
-    x, u, w, y, z = _corrected(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt)
-    _write(c, k, z)
+def _end_and_begin_at(k, like, integrator, q, v, memory, inverse_mass, dt):
+    x, u, w, y, z = _corrected(k, like, integrator, q, v, memory, inverse_mass, dt)
+    _write(memory.c, k, z)
     x, u, w, y, s = predict(integrator, x, u, w, y, z, dt)
-    put(seen, k, s)
+    put(memory.seen, k, s)
     put(q, k, x)
     put(v, k, u)
-    put(a, k, w)
-    _write(b, k, y)
+    put(memory.a, k, w)
+    _write(memory.b, k, y)
 
 
 @kernel
-def _end(integrator, q, v, a, b, c, force, inverse_mass, dt):
+def _end(integrator, q, v, memory, inverse_mass, dt):
     """End a step."""
     whole = q.size - q.size % WIDTH
     for k in range(0, whole, WIDTH):
-        _end_at(k, spread(0.0), integrator, q, v, a, b, c, force, inverse_mass, dt)
+        _end_at(k, spread(0.0), integrator, q, v, memory, inverse_mass, dt)
     for k in range(whole, q.size):
-        _end_at(k, 0.0, integrator, q, v, a, b, c, force, inverse_mass, dt)
+        _end_at(k, 0.0, integrator, q, v, memory, inverse_mass, dt)
 
 
 @kernel
-def end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt):
+def _end_and_begin(integrator, q, v, memory, inverse_mass, dt):
     """End a step and begin the next while its numbers are at hand."""
     whole = q.size - q.size % WIDTH
     for k in range(0, whole, WIDTH):
-        _end_and_begin_at(k, spread(0.0), integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
+        _end_and_begin_at(k, spread(0.0), integrator, q, v, memory, inverse_mass, dt)
     for k in range(whole, q.size):
-        _end_and_begin_at(k, 0.0, integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
+        _end_and_begin_at(k, 0.0, integrator, q, v, memory, inverse_mass, dt)
 
 
 @kernel(nogil=True)
@@ -162,7 +164,6 @@ def advance(integrator, steps, dt, schedule, limit, q, v, memory, model, taken=0
     displacements and velocities; ``memory`` : :class:`Memory`; ``model`` : ``model.Model``. ``taken`` : steps since
     ``schedule.time``: with it disks are looked at before the same steps wherever a motion is cut.
     """
-    a, b, c, force, seen = memory
     n = model.n
     inverse_mass = model.inverse_mass
     begun = False
@@ -171,16 +172,16 @@ def advance(integrator, steps, dt, schedule, limit, q, v, memory, model, taken=0
             look = (taken + step) % LOOK_EVERY == 0 and limit < np.inf
             if look and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
                 return step
-            _begin(integrator, q, v, a, b, c, seen, dt)
+            _begin(integrator, q, v, memory, dt)
         now = schedule.time + (taken + step + 1) * dt
         gravity = ramp(now, schedule.gravity_from, schedule.gravity_to, schedule.gravity_time)
         load = ramp(now, schedule.load_from, schedule.load_to, schedule.load_time)
-        forces(q, seen, force, gravity, load, dt, model)
+        forces(q, memory.seen, memory.force, gravity, load, dt, model)
         begun = goes_on(taken + step + 1, taken + steps, limit)
         if begun:
-            end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
+            _end_and_begin(integrator, q, v, memory, inverse_mass, dt)
         else:
-            _end(integrator, q, v, a, b, c, force, inverse_mass, dt)
+            _end(integrator, q, v, memory, inverse_mass, dt)
     return steps
 
 

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Description, Positive
-from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Positives, SceneGroup, over
+from granular_response_paper.parameters import UNIT_LOAD, Checks, Coefficients, Positives, SceneGroup, over
 
 
 class Profiles(Description):
@@ -27,3 +27,8 @@ class Parameters(SceneGroup):
     stress_spacing: Positive = Field(description="Of the grid, in radii.")
     stress_half_width: Positive = Field(description="Of the grid, in radii.")
     profiles: Profiles
+
+    def checks(self) -> Checks:
+        every, spacing = list(self.frictions), self.stress_spacing
+        yield "profiles.frictions", set(self.profiles.frictions) <= set(every), f"must be among frictions = {every}"
+        yield "stress_half_width", self.stress_half_width >= spacing, f"must be at least stress_spacing = {spacing:g}"

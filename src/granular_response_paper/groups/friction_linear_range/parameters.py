@@ -8,7 +8,16 @@ from pydantic import Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Description, NonNegative, Positive, Ratio
-from granular_response_paper.parameters import UNIT_LOAD, Coefficients, EqualRows, Growing, Loading, SceneGroup, over
+from granular_response_paper.parameters import (
+    UNIT_LOAD,
+    Checks,
+    Coefficients,
+    EqualRows,
+    Growing,
+    Loading,
+    SceneGroup,
+    over,
+)
 
 
 class End(Description):
@@ -51,3 +60,7 @@ class Parameters(SceneGroup):
     friction_axis: FrictionAxis
     dynamics: LargeForces
     equal_rows: EqualRowsPaths
+
+    def checks(self) -> Checks:
+        every = list(self.frictions)
+        yield "dynamics.friction", self.dynamics.friction in every, f"must be one of frictions = {every}"

@@ -7,13 +7,13 @@ from typing import Annotated
 from pydantic import Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Positive
-from granular_response_paper.parameters import UNIT_LOAD, Growing, Rows, SceneGroup, Some, over
+from granular_response.scene.base import Count, Positive, allowed
+from granular_response_paper.parameters import UNIT_LOAD, Checks, Growing, Rows, SceneGroup, Some, over
 
 _FRICTIONLESS = UNIT_LOAD.updated({"contact.friction": 0.0})
 
 #: Layers and disks in the lowest row.
-Shapes = Some[tuple[Rows, Rows]]
+Shapes = Some[tuple[Rows, Annotated[int, Field(strict=True, ge=7), allowed("must be a whole number from 7 on")]]]
 
 
 class Parameters(SceneGroup):
@@ -31,3 +31,7 @@ class Parameters(SceneGroup):
     region_forces: Growing = Field(description="On these, at which it is.")
     stiffnesses: Growing = Field(description="Normal stiffnesses of the first slab.")
     stiffness_forces: Growing = Field(description="On it at each of them.")
+
+    def checks(self) -> Checks:
+        least = min(layers for layers, _ in self.sizes)
+        yield "region_layers", self.region_layers >= least, f"must be at least {least}, the fewest layers of sizes"

@@ -9,7 +9,7 @@ from pydantic import Field
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Positive, Ratio
 from granular_response.scene.protocol import Integrator
-from granular_response_paper.parameters import Coefficients, Positives, Some, over
+from granular_response_paper.parameters import Checked, Checks, Coefficients, Positives, Several, over
 
 
 class Damping(Description):
@@ -20,11 +20,14 @@ class Damping(Description):
     stop_kinetic_energy: Positive
 
 
-class Swing(Description):
+class Swing(Checked):
     """What a run that has stopped would do next, with friction ``friction``."""
 
     steps: Count = Field(description="Time steps of the paper's size after the stop, about one slow oscillation.")
     read_every: Count = Field(description="Time steps between two readings.")
+
+    def checks(self) -> Checks:
+        yield "read_every", self.read_every <= self.steps, f"must be at most steps = {self.steps}"
 
 
 class Disorder(Description):
@@ -45,8 +48,8 @@ class Parameters(Description):
     frictions: Coefficients = Field(description="Of stop_energies.")
     stop_energies: Positives = Field(description="Kinetic energies per disk at which the dynamics stops.")
     friction: Ratio = Field(description="Of what follows.")
-    time_steps: Some[Positive] = Field(description="The first one is the paper's.")
-    integrators: Some[Integrator]
+    time_steps: Several[Positive] = Field(description="The first one is the paper's.")
+    integrators: Several[Integrator]
     integrator_time_step: Positive
     damping: Damping
     swing: Swing

@@ -7,7 +7,7 @@ from pydantic import Field
 from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio
 from granular_response.scene.lattice import LatticeConstant
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
-from granular_response_paper.parameters import Coefficients, Growing, Positives, Some
+from granular_response_paper.parameters import Checks, Coefficients, Growing, Positives, Some
 
 
 class Cases(Description):
@@ -78,3 +78,23 @@ class Parameters(EnsembleGroup):
         """The initial lattice of its first case, which the figures show; that of the scene without a case."""
         same = (case.lattice_constant for case in self.columns if case.polydispersity == polydispersity)
         return next(same, self.lattice_constant)
+
+    @property
+    def pictured(self) -> list[int]:
+        """The cases that have the realization and the force of Fig. 2."""
+        picture = self.forces_picture
+        return [
+            c
+            for c, case in enumerate(self.columns)
+            if (case.polydispersity, case.friction) == (picture.polydispersity, picture.friction)
+            and picture.realization < case.realizations
+            and picture.force in case.forces
+        ]
+
+    def checks(self) -> Checks:
+        cases, shown = self.columns, self.individual
+        yield "cases", any(case.polydispersity for case in cases), "must have a polydispersity above 0"
+        yield "forces_picture", self.pictured, "must be a realization and a force of one of the cases"
+        alike = [case for case in cases if case.polydispersity == shown.polydispersity and shown.force in case.forces]
+        there = any(case.friction in shown.frictions for case in alike)
+        yield "individual", there, "must be a polydispersity, frictions and a force of the cases"

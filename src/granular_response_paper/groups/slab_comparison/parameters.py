@@ -7,12 +7,12 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Description, Positive, Ratio
+from granular_response.scene.base import Positive, Ratio
 from granular_response.theory.slab import Floor
-from granular_response_paper.parameters import SIZE, UNIT_LOAD, Rows, SceneGroup, Some, over
+from granular_response_paper.parameters import SIZE, UNIT_LOAD, Checked, Checks, Rows, SceneGroup, Some, over
 
 
-class DepthSeries(Description):
+class DepthSeries(Checked):
     """One material and shape, at several depths."""
 
     friction: Ratio = Field(description="Between disks.")
@@ -21,6 +21,10 @@ class DepthSeries(Description):
     disks_per_layer: Rows = Field(description="Disks of a row over number of rows.")
     layers: Some[Rows] = Field(description="Numbers of rows.")
 
+    def checks(self) -> Checks:
+        holds = self.floor == "smooth" or self.friction > 0.0
+        yield "floor", holds, "must be smooth, or rough with friction above 0"
+
 
 class Parameters(SceneGroup):
     scene: Annotated[
@@ -28,3 +32,6 @@ class Parameters(SceneGroup):
     ] = Field(description="Base scene; contact.stiffness_ratio is that of packings with friction.")
     force: Positive = Field(description="Small, in mean disk weights.")
     cases: Some[DepthSeries] = Field(description="Materials and shapes.")
+
+    def checks(self) -> Checks:
+        yield "scene.contact.stiffness_ratio", self.scene.contact.stiffness_ratio > 0.0, "must be above 0"

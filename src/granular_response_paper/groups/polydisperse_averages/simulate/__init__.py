@@ -63,10 +63,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     tasks: dict[tuple[str, int, int], partial[Realization]] = {
         ("ensembles", *place): ensemble_task(asked, cases[place[0]], place[1]) for place in datasets.places(cases)
     }
-    material = picture.polydispersity, picture.friction
-    alike = [c for c, one in enumerate(cases) if (one.polydispersity, one.friction) == material]
-    place = [c for c in alike if picture.force in cases[c].forces][0]  # noqa: RUF015, what is missing is no traceback
-    shown = "ensembles", place, picture.realization
+    shown = "ensembles", asked.pictured[0], picture.realization
     tasks[shown] = partial(tasks[shown], keep=(picture.force,))
     grid = [(delta, mu) for delta in linear.polydispersities for mu in linear.frictions]
     for k, (delta, mu) in enumerate(grid):

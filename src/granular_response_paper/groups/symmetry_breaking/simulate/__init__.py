@@ -11,7 +11,7 @@ Forces are in mean disk weights, lengths in mean radii, times in sqrt(R/g).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -73,7 +73,7 @@ def bracket(
     event = narrowed(asked, path, protocol, time_step, first)
     forces = tuple(sorted(path.known))
     ends = tuple(path.known[force] for force in (event.low, event.high) if force in path.known)
-    found = measured(studies.Measures(path), path.through(forces))
+    found = slab.measured(studies.Measures(path), path.through(forces))
     return BracketResult(protocol.ramp_time, time_step, event, forces, found, ends if len(ends) == 2 else ())
 
 
@@ -119,14 +119,9 @@ def held(asked: Parameters, rest: State) -> xr.Dataset:
         dynamics = Dynamics(problem, start, problem.scene.protocol.integrator, resolve_time_step(problem))
         after = relax(dynamics, HELD_STOP, load=(state.load_factor, state.load_factor, 0.0))
         settled.append(replace(after, reached=after.reached.after(state.reached)))
-    found = slab.measured_along("force", [measured(measures, settled)])
+    found = slab.measured_along("force", [slab.measured(measures, settled)])
     found["displacement"] = variable((), given.displacement, f"largest random displacement {RADII}")
     return found.assign_coords(axes(force=(given.forces, APPLIED)))
-
-
-def measured(measures: studies.Measures, states: Sequence[State]) -> xr.Dataset:
-    """Everything measured on loaded states, without the disks that nothing determines, of which few states have any."""
-    return slab.measured(measures, states).drop_vars("undetermined", errors="ignore")
 
 
 def copies_of(given: Copies, packing: Packing) -> dict[str, Packing]:
@@ -151,7 +146,7 @@ def random_shift(shape: tuple[int, ...], size: float, seed: int) -> FloatArray:
 def copied(scene: Scene, packing: Packing, force: float) -> xr.Dataset:
     """What is measured under one force on one copy of the packing, settled under gravity anew."""
     path = studies.LoadPath.of(scene, packing=packing)
-    return measured(studies.Measures(path), [path.at(force)])
+    return slab.measured(studies.Measures(path), [path.at(force)])
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
