@@ -161,6 +161,13 @@ def factorised(monkeypatch):
 RIGHT = np.random.default_rng(2).normal(size=23 * 31 * 3)
 
 
+def test_an_lu_that_becomes_singular_as_it_is_renewed_is_an_error(factorised):
+    _, _, factor, changed = factorised
+    changed.data[changed.indptr[0] : changed.indptr[9]] = 0.0
+    with pytest.raises(RuntimeError, match="singular"):
+        factor.renew(changed, 1e-3, 1.0)
+
+
 def test_an_lu_is_renewed_where_entries_have_changed_to_the_bits_of_a_new_one(factorised, monkeypatch):
     fronts, matrix, factor, changed = factorised
     eliminated = []

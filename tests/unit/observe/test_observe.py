@@ -90,6 +90,7 @@ def test_rows_and_the_contacts_between_them_are_told_apart():
     x, _ = force_profile(REST, REST, TOP, 0.0)
     np.testing.assert_allclose(x, [-3.0, -1.0, 1.0, 3.0], atol=1e-12)
     assert force_profile(REST, REST, TOP, 20.0)[0].size == 0
+    assert row_depth(14) == pytest.approx(14 * np.sqrt(3.0), rel=1e-12)
 
 
 def test_magnitude_of_the_vector_difference():

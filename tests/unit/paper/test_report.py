@@ -339,7 +339,7 @@ def test_explorer_data_are_those_of_the_states():
     data = explorer.payload(friction_study(), {"crossovers": crossovers()})
     assert [slab["friction"] for slab in data["slabs"]] == [0.0, 0.2, 1.0]
     assert all(slab["forces"] == [1.0, 4.0, 90.0] for slab in data["slabs"])  # at rest nothing is added
-    smooth, _, rough = unpacked(data)
+    smooth, slight, rough = unpacked(data)
     opened = (smooth[1] == explorer.OPENED).sum(axis=1).tolist()
     assert opened == [0, *[int((states(0.0)["contact_status"].values[2] == 0).sum())] * 2] and opened[1] > 0
     # every closed contact gets as much as the applied force; tangential forces add as a vector
@@ -347,8 +347,8 @@ def test_explorer_data_are_those_of_the_states():
     assert data["strongest"] == pytest.approx(strongest, rel=1e-6)
     assert set(smooth[1][0]) == {round(explorer.FULL * np.sqrt(1.0 / strongest))}
     assert set(rough[1][0]) == {explorer.FULL}
-    # at friction 1 the tangential forces are the normal ones, the Coulomb limit; without friction nothing slides
-    assert rough[2][0].all() and not smooth[2].any()
+    # with friction the tangential forces are at the Coulomb limit; without it nothing slides
+    assert slight[2][0].all() and rough[2][0].all() and not smooth[2].any()
     assert data["slabs"][0]["response"] == [[0.1429] * 7] * 3 and data["slabs"][0]["peaks"] == [2, 2, 2]
     assert data["slabs"][0]["about"] == "ordered packing, µ = 0, µ_wall = 0, k_N = 3000 mg/R"
     assert [one["friction"] for one in data["range"]] == [0.0, 0.2, 1.0]

@@ -8,6 +8,7 @@ from stress.random_scenes import write_table
 
 import granular_response as gr
 from granular_response.scene import FilePacking
+from granular_response.scene.packing import exact_mean
 
 PYRAMID = {"x": [1.0, 3.0, 5.0, 2.0, 4.0], "z": [1.0, 1.0, 1.0, 2.75, 2.75], "radius": 1.0}
 QUIET = {"loads": [], "contact": {"friction": 0.0}}
@@ -70,3 +71,9 @@ def test_the_lightest_disk_that_is_allowed_is_stable_in_a_frictionless_stack(lig
     mass[light] = 1e-8
     said = "must be at least 1e-06, a millionth of the largest"
     refuses(gr.SceneError, said, gr.Scene.from_arrays, **stack, mass=mass)
+
+
+def test_a_mean_is_rounded_once_and_does_not_overflow():
+    many = [0.1] * 10
+    assert exact_mean(np.array(many)) == 0.1 != sum(many) / 10
+    assert exact_mean(np.array([1e308, 1.5e308])) == pytest.approx(1.25e308, rel=1e-15)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -252,3 +253,9 @@ def test_two_peaks_have_a_prominence_that_is_asked_for():
     assert measures.dip(path.at(by[1e-2].high)) > 0.0099
     assert "0.01" in gr.studies.two_peaks(measures, prominence=0.01).definition
     refuses(ValueError, "prominence", gr.studies.two_peaks, measures, prominence=0.0)
+
+
+def test_one_open_contact_is_a_first_opening():
+    for opened in range(3):
+        measures = SimpleNamespace(opened=lambda state, anywhere, opened=opened: opened)
+        assert first_opening(measures).happened(None) == (opened > 0)

@@ -14,7 +14,7 @@ from refusals import refuses
 
 from granular_response.scene import Scene
 from granular_response.scene.material import KNOWN_LAWS, KnownLaw
-from granular_response.sweeps.keys import Indistinct, key
+from granular_response.sweeps.keys import Indistinct, _imports, key
 
 
 @dataclasses.dataclass(frozen=True)
@@ -228,3 +228,8 @@ def test_a_scene_of_mappings_or_by_its_file_counts_with_its_table(tmp_path, monk
         keys.append([key(one) for one in (mapped, {"scene": mapped}, "scene.yaml", Path("scene.yaml"))])
     assert keys[0] == keys[2] and not {*keys[0]} & {*keys[1]}
     assert key("none.yaml") == key("none.yaml") and key({"packing": 1}) != key({"packing": 2})
+
+
+def test_a_script_in_another_language_imports_nothing():
+    assert _imports(b"import numpy\n", "mine") == {"numpy"}
+    assert not _imports(b"print 'hello'\n", "mine") and not _imports(b"import a\0", "mine")
