@@ -1,7 +1,7 @@
 """How far the events of the ordered slab move with what the text leaves open, and with what should not matter.
 
 Each event of Secs. V.A, V.B and V.E is looked for with the paper's protocol and with one thing changed: the *protocol*
-(dashpots halved and doubled, another integrator, a smaller time step, three copies of the packing displaced by 1e-9 R,
+(dashpots halved and doubled, another integrator, a smaller time step, ten copies of the packing displaced by 1e-9 R,
 the duration of the load ramp), the *width* of the slab, or the *stiffness* of its disks. At large forces and friction 1
 ten displaced copies under each force tell which way the response leans, and the same with friction 10, at which no
 contact reaches its limit, whether sliding or opening breaks the symmetry.
@@ -53,8 +53,8 @@ LAST = {0.0: 10.0, 0.05: 20.0, 0.1: 30.0, 0.2: 50.0, 0.5: 50.0, 1.0: 90.0}
 #: control, which a stable symmetric branch forgets.
 DISPLACEMENT, KICK = 1e-9, 1e-4
 
-#: Copies at each force beyond the loss of symmetry, and of each load path, which is followed through all its events.
-COPIES, PATH_COPIES = 10, 3
+#: Copies of each load path, which is followed through all its events, and at each force beyond the loss of symmetry.
+COPIES = 10
 
 #: Asymmetry of the response from which symmetry is lost, as in Fig. 16; forces between which it is lost.
 ASYMMETRY, BETWEEN = 0.2, (70.0, 110.0)
@@ -96,7 +96,7 @@ def variants() -> Iterator[Variant]:
     yield Variant("protocol", "velocity Verlet", {"protocol.integrator": "verlet"})
     yield Variant("protocol", "half of the time step", {"protocol.time_step": 2.5e-4})
     yield Variant("protocol", "a quarter of the time step", {"protocol.time_step": 1.25e-4})
-    for seed in range(1, PATH_COPIES + 1):
+    for seed in range(1, COPIES + 1):
         yield Variant("protocol", f"displaced copy {seed}", {}, seed)
     for disks in (121, 241):
         yield Variant("width", f"{disks} disks a row", {"packing.disks_per_row": disks})
