@@ -183,7 +183,7 @@ def costs(found: Stored) -> str:
     rows: list[dict[str, Any]] = []
     for row in [*default, *alone, *(row for row in whole if row["changes"])]:
         key = ", ".join(f"`{name}: {value}`" for name, value in row["changes"].items())
-        error = None if key else errors.get(row["disks"])
+        error = None if key or not errors.get(row["disks"]) else f"{errors[row['disks']]:.2g}"
         made = {**row, "key": key or None, "error": error, "size": f"{row['disks']:,}", "time": seconds(row["seconds"]),
                 "memory": f"{row['peak_gibibytes']:.2g} GiB"}  # fmt: skip
         if rows and rows[-1]["scene"] == row["scene"]:
@@ -192,7 +192,7 @@ def costs(found: Stored) -> str:
         rows.append(made)
     return table(rows, scene="scene", key="key that differs", size="disks", time="processor time, one thread",
                  memory="memory", exponent="exponent of the time in disks",
-                 error="floor forces beside the paper's step to its end [mg]")  # fmt: skip
+                 error="largest change of a floor force against the paper's step [mg]")  # fmt: skip
 
 
 def main() -> None:

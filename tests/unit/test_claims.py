@@ -651,7 +651,7 @@ def test_the_counts_in_words(good, entries):
     )
     assert disorder.endswith("are supported.") and "beyond the paper" in extension
     checks = sum(claim.row == "check" for claim in EVERY)
-    assert f"Not counted: checks of the code, which can hardly fail ({checks})." in rest
+    assert f"Not counted: statements that can hardly fail ({checks})." in rest
 
 
 def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path, good):

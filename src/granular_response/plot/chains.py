@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.ticker import MaxNLocator
 
-from ..observe.peaks import is_double_peaked
+from ..observe.peaks import find_peaks
 from ..state import OPEN, FloatArray
 from . import network, style
 from .shown import Shown
@@ -84,8 +84,9 @@ def draw_response(
 
 
 def draw_peaks(axes: Axes, x: FloatArray, response: FloatArray) -> None:
-    """Whether a response has one peak or two (:mod:`granular_response.observe.peaks`), in its upper left corner."""
-    text = "2 peaks" if is_double_peaked(x, response) else "1 peak"
+    """How many peaks a response has (:mod:`granular_response.observe.peaks`), in its upper left corner."""
+    number = len(find_peaks(x, response))
+    text = f"{number} peak{'s' if number != 1 else ''}"
     axes.text(0.03, 0.95, text, transform=axes.transAxes, va="top", weight="bold", color=style.INCREASED)
 
 

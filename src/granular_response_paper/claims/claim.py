@@ -65,7 +65,7 @@ MEANINGS: dict[Kind, str] = {
 #: What a row is: only statements are counted.
 ROWS = {
     "statement": "statements",
-    "check": "checks of the code, which can hardly fail",
+    "check": "statements that can hardly fail",
 }
 
 

@@ -130,10 +130,12 @@ def _row(entry: Verdict) -> dict[str, Any]:
 
 
 def _held(found: Mapping[str, str]) -> dict[str, Any]:
-    """In how many preparations a sentence holds, of how many in which that can be told, and the words for it."""
+    """In how many preparations a sentence holds, of how many that were tried, and the words for it."""
     holds, of = sum(one == "yes" for one in found.values()), len(found)
     by_outcome = {name: [case for case, one in found.items() if one == name] for name in ("yes", "no", "cannot tell")}
-    return {"holds": holds, "of": of, "text": f"holds in {holds} of {of}" if of else "not tried", **by_outcome}
+    open_in = len(by_outcome["cannot tell"])
+    said = "open in all" if open_in == of else f"holds in {holds}" + (f", open in {open_in}" if open_in else "")
+    return {"holds": holds, "of": of, "text": f"{said} of {of}" if of else "not tried", **by_outcome}
 
 
 def _tested(test: Test) -> dict[str, Any]:

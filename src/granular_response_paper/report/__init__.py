@@ -150,7 +150,7 @@ def files(root: Path, collection: Collection = PAPER) -> dict[str, bytes]:
         "chapters": [_chapter(one, shown, rows, told) for one in SAID["chapters"] if own],
         "questions": [] if own else _asked(answers(checkout / ANSWERS), shown, rows),
         "failing": failing,
-        "moved": [row for row in statements if row["gravity"]["of"] and not row["gravity"]["holds"]],
+        "moved": [row for row in statements if row["gravity"]["no"] and not row["gravity"]["holds"]],
         "told": told,
         "linked": lambda picture: _linked(picture, checkout, folder),
         # JSON that cannot end the script element it stands in

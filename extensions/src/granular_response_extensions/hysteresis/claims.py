@@ -31,15 +31,15 @@ def ranges(data: Data) -> Numbers:
 
 
 @claim(
-    "B3", "beyond the paper, IV", Ask("fraction of the work dissipated again", at_most("visible"), "%"),
-    Ask("change of the response", at_most("visible"), "%"), primary="polydispersity 0, friction 0", modal=True
+    "B3", "beyond the paper, IV", Ask("part of the work dissipated again", at_most("visible"), "part"),
+    Ask("change of the response", at_most("visible"), "part"), primary="polydispersity 0, friction 0", modal=True
 )  # fmt: skip
 def repeated(data: Data) -> Numbers:
     """If the particle positions do not change significantly, so that only the contact network is modified in response
     to the applied stress, the behavior can possibly be modeled as "incrementally elastic".
     Short: The behavior can possibly be modeled as incrementally elastic
-    Here: In the lattice without friction {0} of the work is dissipated in the second loading, and the response changes
-    by {1}.
+    Here: Of the work on the lattice without friction the second loading dissipates {0}, and it changes {1} of the
+    response.
     Remark: From the largest force to none and back. Elastic is taken as dissipating less than 1 % of the work"""
     for name, case in materials(data.get("hysteresis", "loops")):
         one = case.isel(turn=int(np.flatnonzero(np.isfinite(case["force"].values))[-1]))

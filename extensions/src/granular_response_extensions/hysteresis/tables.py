@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from granular_response.state import FloatArray
+from granular_response_paper.claims.numbers import digits, shown
 from granular_response_paper.report.markdown import table
 
 #: Parts of a work or a force that count as none.
@@ -19,7 +20,8 @@ BALANCED = 1e-4
 def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
     """A line for each packing of the group ``hysteresis``, of disorder median, least and largest; and the balance."""
     measured, events = datasets["loops"], datasets["events"]
-    heads = ["packing", "first opening", "linear up to", "reversible up to", "F", "residual floor forces"]
+    heads = ["packing", *(f"{name} (mg)" for name in ("first opening", "linear up to", "reversible up to", "F"))]
+    heads += ["residual floor forces"]
     heads += ["dissipation, first loop", "second loop"]
     rows = []
     off: dict[str, list[FloatArray]] = {"lattices": [], "disorder": []}
@@ -53,10 +55,11 @@ def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
     for name, found in off.items():
         every = np.concatenate(found) if found else np.zeros(0)
         if every.size:
-            close = (every < BALANCED).mean()
+            close = float((every < BALANCED).mean())
+            most = f", in {shown(close, 'part')} of them within {digits(BALANCED, 1)}" if close < 1.0 else ""
             lines.append(
-                f"Work, stored energy and dissipation balance within {every.max():.0e} of the work of the first "
-                f"loading in all loops of {name}, in {100.0 * close:.0f} % of them within {BALANCED:.0e}."
+                f"Work, stored energy and dissipation balance within {digits(max(every.max(), BALANCED), 1)} of the "
+                f"work of the first loading in all loops of {name}{most}."
             )
     return "\n".join(lines)
 

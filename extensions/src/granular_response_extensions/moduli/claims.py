@@ -44,7 +44,7 @@ def elastic(data: Data) -> Numbers:
 )  # fmt: skip
 def isotropic(data: Data) -> Numbers:
     """As B4.
-    Short: ... and isotropic ones
+    Short: Large systems under small forces are isotropic
     Here: At friction 0.2 and polydispersity 0.01 the response differs from that of the nearest isotropic slab by {0} of
     the largest pressure.
     Remark: Mean over the small loads on the top disks of a packing, smoothed with w = 3, in the highest packings; no
@@ -112,7 +112,7 @@ def incrementally_elastic(data: Data) -> Numbers:
 def peaks(data: Data) -> Numbers:
     """As B28.
     Short: The behavior can possibly be modeled as incrementally elastic
-    Here: Without friction the number of forces under which the elastic slab has another number of peaks is {0}.
+    Here: Without friction the elastic slab has another number of peaks under {0} of the forces.
     Remark: Ranges over the averages and the loads to which moduli are fitted"""
     for name, slab in _slabs(data).items():
         needs(slab[["predicted_two_peaks", "two_peaks"]].to_array().notnull().all(), f"{name}: no number of peaks")

@@ -76,7 +76,7 @@ def _finding(events: xr.Dataset) -> str:
         one = events.isel(event=(events["name"].values == name) & np.isfinite(events["high"].values))
         table = one[["wall_friction", "friction", "high"]].to_dataframe().groupby(["wall_friction", "friction"])["high"]
         if len(table):
-            said.append(f"{text} {float((table.max() / table.min()).max()):.2g}")
+            said.append(f"{text} {float(f'{(table.max() / table.min()).max():.2g}'):g}")
     return f"The preparation of a slab shifts onset forces by factors of up to: {', '.join(said)}."
 
 

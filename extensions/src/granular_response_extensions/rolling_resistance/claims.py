@@ -51,8 +51,8 @@ def no_dip(data: Data) -> Numbers:
     """In particular, as shown in Figs. 17(c),(d), the pile of frictionless disks exhibits a dip in the stress under the
     apex, but the pile of frictional disks does not.
     Short: Piles with friction have no dip
-    Here: In the pile of 11 layers that rolling resistance holds, with the friction of Fig. 17, the dip of the floor
-    force is {0}."""
+    Here: In the pile of 11 layers that rolling resistance holds, with the friction of Fig. 17, the floor force under
+    the apex is less than the largest beside it by {0} (below 0: it is largest there)."""
     piles = data.get(GROUP, "piles").sel(case="resisting")
     for size in piles["layers"]:
         yield f"friction of Fig. 17, {int(size)} layers", float(piles["floor_dip"].sel(layers=size))

@@ -86,8 +86,8 @@ def range_grows(data: Data) -> Numbers:
     """The larger the coefficient of static friction, the more extended is the range of forces for which the response is
     elastic and the smaller the anisotropy.
     Short: The elastic range grows with friction
-    Here: Over the frictions 0, 0.2 and 1 the smaller of the two steps of the linear range is a factor of {0} (above 1:
-    it grows at both), that of the force of the first opening {first opening, frictions 0, 0.2 and 1|0}.
+    Here: From friction 0 to 0.2 and from 0.2 to 1 the linear range changes by a factor of {0} at least, the force of
+    the first opening by {first opening, frictions 0, 0.2 and 1|0}. Below 1 it shrinks.
     Remark: The range at x = 0 is longest near friction 0.2 to 0.5. At friction 1 it is still some eight times that
     without friction. The paper's number is that of its first openings"""
     every = np.unique(data.get(GROUP, "response")["friction"].values).tolist()

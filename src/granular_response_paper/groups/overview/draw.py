@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.animation import FuncAnimation
 from matplotlib.figure import Figure
 
-from granular_response.observe.peaks import is_double_peaked
+from granular_response.observe.peaks import find_peaks, is_double_peaked
 from granular_response.plot import style
 from granular_response.plot.animation import FULL, Frames, animate
 from granular_response.plot.chains import draw_chains, draw_key, draw_peaks, draw_response
@@ -15,6 +15,8 @@ from granular_response.plot.shown import Shown
 from granular_response_paper.captions import WEIGHT, Caption, Datasets, of_group, of_scene, values
 
 from .parameters import Parameters
+
+PEAKS = {1: "one peak", 2: "two peaks", 3: "three peaks"}
 
 #: Mean radii of slabs to each side of the load.
 HALF_WIDTH = 30.0
@@ -41,8 +43,9 @@ def _findings(slabs: Datasets) -> dict[str, str]:
     last, first = [], []
     for slab in slabs.values():
         x, force = slab["x"].values, np.atleast_1d(slab["total_force"].values)
-        two = [is_double_peaked(x, curve) for curve in np.atleast_2d(slab["floor_response"].values)]
-        last.append(f"{'two peaks' if two[-1] else 'one peak'} at µ = {float(slab['friction']):g}")
+        curves = np.atleast_2d(slab["floor_response"].values)
+        two, number = [is_double_peaked(x, curve) for curve in curves], len(find_peaks(x, curves[-1]))
+        last.append(f"{PEAKS.get(number, f'{number} peaks')} at µ = {float(slab['friction']):g}")
         begun = f"from {force[int(np.argmax(two))]:.3g} {WEIGHT}" if any(two) else "not"
         first.append(f"{begun} at µ = {float(slab['friction']):g}")
     return {

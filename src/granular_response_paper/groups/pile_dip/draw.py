@@ -44,9 +44,7 @@ def _finding(stress: xr.Dataset) -> str:
     """Whether the vertical stress has a dip under the apex, in each pile."""
     said = []
     for case, name in NAMES.items():
-        profile = stress["profile_zz"].sel(case=case)
-        middle, largest = float(profile[int(np.abs(stress["x"].values).argmin())]), float(profile.max())
-        dip = 1.0 - middle / largest
+        dip = float(stress["dip"].sel(case=case))
         said.append(f"{name} " + ("it is largest there" if dip < LEAST_DIP else f"it has a dip of {100.0 * dip:.2g} %"))
     height = f"{float(stress['dip_height']):g} {RADIUS}"
     return f"Vertical stress under the apex, at the height {height}: {' and '.join(said)}."
