@@ -97,7 +97,7 @@ class Result:
 
     @property
     def certificate(self) -> Certificate:
-        """That of the last state."""
+        """Certificate of the last state."""
         return self.certificates[-1]
 
     @property

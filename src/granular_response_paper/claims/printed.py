@@ -25,9 +25,9 @@ class Printed(NamedTuple):
 
 
 QUANTITIES = (
-    Printed("first opening of a contact, friction 0", 0.75, "mg", "F1"),
-    Printed("first opening of a contact, friction 0.2", 4.0, "mg", "F1", 1),
-    Printed("first opening of a contact, friction 1", 6.0, "mg", "F1", 2),
+    Printed("first opening, friction 0", 0.75, "mg", "F1"),
+    Printed("first opening, friction 0.2", 4.0, "mg", "F1", 1),
+    Printed("first opening, friction 1", 6.0, "mg", "F1", 2),
     Printed("two peaks, friction 0 (Fig. 3)", 3.0, "mg", "F4a"),
     Printed("two peaks, friction 0.2", 20.0, "mg", "R3a"),
     Printed("open region at the floor, friction 0.2", 20.0, "mg", "R3b"),
@@ -35,7 +35,7 @@ QUANTITIES = (
     Printed("loss of symmetry, friction 1", 91.0, "mg", "R5a"),
     Printed("linear range, friction 0.2 over 0", 10.0, "", "R1"),
     Printed("linear range, friction 1 over 0", 10.0, "", "R1", 1),
-    Printed("ratio of stiffnesses between two peaks and one", 0.3, "", "K1a"),
+    Printed("k_T/k_N between two peaks and one", 0.3, "", "K1a"),
     Printed("the same for a half plane", 0.2915, "", "K6", digits=4),
     Printed("contacts per disk, δ = 0.01, friction 0", 4.25, "", "D7a"),
     Printed("change of the response with k_N", 0.02, "%", "F8"),

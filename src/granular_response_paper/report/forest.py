@@ -39,7 +39,7 @@ def forest(quantities: Quantities) -> Figure:
     figure, panels = style.figure(width=WIDTH, height=AROUND + ROW * len(quantities))
     axes = panels[0, 0]
     axes.set(xscale="log", xlim=ENDS, ylim=(len(quantities) - 0.4, -1.1))
-    axes.axvline(1.0, color=style.PAPER, linewidth=1.2, linestyle="-", zorder=0.5)
+    axes.plot([1.0, 1.0], [-0.55, len(quantities) - 0.4], color=style.PAPER, linewidth=1.2, linestyle="-", zorder=0.5)
     for row, one in enumerate(quantities):
         for other in one["others"]:
             _point(axes, row, other, one["paper"], PALE[other["prepared"]], 3.2 if other["prepared"] else 2.2)
@@ -72,7 +72,7 @@ def _columns(axes: Axes, quantities: Quantities) -> None:
 
 
 def _name(what: str) -> str:
-    return textwrap.fill(what.replace("friction ", "µ\u00a0=\u00a0"), width=31).replace("k_N", "$k_N$")
+    return textwrap.fill(what.replace("friction ", "µ\u00a0=\u00a0"), width=36).replace("k_T/k_N", "$k_T/k_N$").replace("with k_N", "with $k_N$")
 
 
 def _point(axes: Axes, row: int, found: Mapping[str, Any], paper: float, colour: str, size: float) -> None:
