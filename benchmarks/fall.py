@@ -4,7 +4,7 @@
 kinetic energy of 1e-15 mg R per disk. Differences of the two equilibria are the largest of a force on the floor and of
 a tangential force, in mg, and the number of contacts that are closed in one of them only. Each scene runs in a process
 of its own, whose peak memory is that of the default fall. The rows of `whole` are of `gr.solve` from scene to result,
-with a load of 1 mg, on one thread. Kernels are compiled before. Rows that are not asked for are kept.
+on one thread. Kernels are compiled before. Rows that are not asked for are kept.
 """
 
 from __future__ import annotations
@@ -58,11 +58,13 @@ SCENES: dict[str, dict[str, Any]] = {
     "disorder 0.1, 15 layers": slab(15, 61, packing__polydispersity=0.1),
 }
 
-#: Whole solutions of the default scene, and the one key that each changes.
+#: Whole solutions of the default scene, and the keys that each changes.
+LIGHT = {"loads.0.force": [0.0, -1.0]}
 CHANGES: dict[str, dict[str, Any]] = {
     "default": {},
-    "prepared without friction": {"preparation.gravity": "frictionless"},
-    "without friction": {"contact.friction": 0.0},
+    "load of 1 mg": LIGHT,
+    "load of 1 mg, prepared without friction": {**LIGHT, "preparation.gravity": "frictionless"},
+    "load of 1 mg, without friction": {**LIGHT, "contact.friction": 0.0},
 }
 WHOLE = {
     f"{words}, {layers} layers": (words, {"packing.layers": layers, "packing.disks_per_row": disks_per_row, **changes})
@@ -111,9 +113,9 @@ def measure(words: str) -> dict[str, Any]:
 def measure_whole(name: str) -> dict[str, Any]:
     """The row of one whole solution."""
     words, changes = WHOLE[name]
-    described = Scene().updated({"loads.0.force": [0.0, -1.0], **changes})
+    described = Scene().updated(changes)
     for integrator in ("beeman", "leapfrog"):  # compiles
-        small = {"packing.layers": 4, "packing.disks_per_row": 17, "protocol.integrator": integrator}
+        small = {"packing.layers": 4, "packing.disks_per_row": 17, "protocol.integrator": integrator, **LIGHT}
         gr.solve(described.updated(small), progress=False)
     start = time.process_time()
     disks = len(gr.solve(described, progress=False).rest.position)

@@ -208,7 +208,7 @@ def fields_study():
 #: Attributes of a file with the study of the paper's pile.
 PILE = {
     "parameters": "scene: {packing: {layers: 11}, contact: {friction: 0.94, stiffness_ratio: 0.5}, "
-    "wall: {friction: 0.35}}"
+    "wall: {friction: 0.35}, preparation: {gravity: at-once}}"
 }
 
 

@@ -7,4 +7,4 @@
 # Ten jobs, each with a tenth of the sweep. They share the folder "kept"; node.sh then makes one dataset of it.
 set -e
 eval "$(python -m granular_response.machine.floating_point)"  # the same rounding on every node
-srun python sweep.py --part
+srun --cpus-per-task="$SLURM_CPUS_PER_TASK" python sweep.py --part

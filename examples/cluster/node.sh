@@ -7,4 +7,4 @@
 # A sweep on all cores of one node. What is in the folder "kept" is not solved again.
 set -e
 eval "$(python -m granular_response.machine.floating_point)"  # the same rounding on every node
-srun python sweep.py
+srun --cpus-per-task="$SLURM_CPUS_PER_TASK" python sweep.py

@@ -344,12 +344,19 @@ SBATCH = """\
 set -e
 for script; do :; done
 tasks=$(sed -n 's/^#SBATCH --array=0-//p' "$script")
+export SLURM_CPUS_PER_TASK=$(sed -n 's/^#SBATCH --cpus-per-task=//p' "$script")
 export SLURM_JOB_ID=$((1 + $(ls slurm-*.out 2>/dev/null | wc -l)))
 for k in $(seq 0 "${tasks:-0}"); do
     [ -z "$tasks" ] || export SLURM_ARRAY_TASK_ID=$k SLURM_ARRAY_TASK_COUNT=$((tasks + 1))
     bash "$script" > "slurm-${SLURM_JOB_ID}_$k.out" 2>&1
 done
 echo "$SLURM_JOB_ID"
+"""
+#: Takes over no number of cores, so that it must be told.
+SRUN = """\
+#!/bin/bash
+if [ -n "$SLURM_CPUS_PER_TASK" ]; then [ "$1" = "--cpus-per-task=$SLURM_CPUS_PER_TASK" ] && shift || exit 1; fi
+exec "$@"
 """
 
 
@@ -367,7 +374,7 @@ def test_the_scripts_for_a_cluster_run_as_they_stand(tmp_path):
         (tmp_path / path.name).write_text(text)
     programs = tmp_path / "bin"
     programs.mkdir()
-    for name, text in {"sbatch": SBATCH, "srun": '#!/bin/bash\nexec "$@"\n'}.items():
+    for name, text in {"sbatch": SBATCH, "srun": SRUN}.items():
         (programs / name).write_text(text)
         (programs / name).chmod(0o755)
     page = (ROOT / "docs" / "many-scenes.md").read_text()

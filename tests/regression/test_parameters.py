@@ -27,6 +27,9 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     "friction_fields": [
         ({"profiles": {"frictions": [0.5], "force": 12.0, "rows": [1.5]}}, r"profiles\.frictions = \[0\.5\]"),
     ],
+    "friction_linear_range": [
+        ({"frictions": [0.0, 0.3, 1.0]}, r"frictions = \[0\.0, 0\.3, 1\.0\]: must have 0\.2 and 1 among them"),
+    ],
     "frictionless_crossover": [
         ({"scene": {"packing": {"layers": 0}}}, r"scene\.packing\.layers = 0: must be a whole number from 1"),
         ({"scene": {"contact": {"friction": 0.2}}}, r"scene\.contact\.friction = 0\.2: is decided by the group"),

@@ -27,7 +27,7 @@ from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from ..scene.errors import show
 from ..scene.given import finite_numbers
-from ..scene.laboratory import FORCE, LENGTH, LaboratoryUnits
+from ..scene.laboratory import FORCE, LENGTH, SAME_RADIUS, LaboratoryUnits
 from ..solvers.choice import LARGE
 from ..solvers.small_loads import influence
 from ..solvers.solution import Progress, Solution, continue_solution, solve_scene
@@ -212,7 +212,7 @@ class Result:
         index = self._index(state)
         added = self._added(index, added)
         scale = 1e3 * units.unit("length")
-        edges = _edges(sensors, scale * self.rest.box.width)
+        edges = _edges(sensors, scale * self.rest.box.width, scale)
         forces = [sensor_forces(one, edges / scale) for one in (self._states[index], self.rest)]
         newtons = units.to_laboratory("force", forces[0] - forces[1] if added else forces[0])
         middles = ("x", 0.5 * (edges[1:] + edges[:-1]), {"long_name": "x from the left wall", "units": "mm"})
@@ -495,8 +495,8 @@ class Result:
                 text += f", {stopped} rolling rattler{'s' if stopped > 1 else ''} stopped by hand"
             rows.append((name, text))
         loads = self._solution.problem.load_disk if self._solution else self._data["loaded_disk"].values
-        if text := broke_in(self._states, loads):
-            rows.append(("the load broke in", text))
+        if said := broke_in(self._states, loads):
+            rows.append(said)
         if self._solution:  # which is asked without a dataset of it
             moved = self._solution.problem.packing.moved(self.rest.position)
         else:
@@ -620,16 +620,23 @@ def _places(name: str, given: Any) -> np.ndarray:
     return np.array(places)
 
 
-def _edges(sensors: Any, width: float) -> np.ndarray:
+#: Width of the narrowest sensor, in mean radii: on a narrower one no disk presses, as a rule.
+LEAST_SENSOR = 0.01
+
+
+def _edges(sensors: Any, width: float, radius: float) -> np.ndarray:
     """Edges of sensors, given by them or by the width of each, on a floor of this width."""
     many = np.ndim(sensors) > 0
     given = finite_numbers(sensors if many else [sensors])
     edges = np.array([] if given is None else given)
+    said = " ".join(show(sensors).split())
     if not many and len(edges) and edges[0] > 0.0:
-        count = math.ceil(width / edges[0] * (1.0 - 1e-12))  # a whole number but for rounding has no rest
+        rule = f"sensors = {said}: must be in mm, {LEAST_SENSOR:g} of the mean radius of {radius:.3g} mm or more"
+        require(edges[0] >= LEAST_SENSOR * radius, rule, ValueError)
+        # one for the rest, unless that is what the radius may be off
+        count = max(math.floor(width / edges[0] * (1.0 + 1e-12)), math.ceil((1.0 - SAME_RADIUS) * width / edges[0]))
         edges = edges[0] * np.arange(count + 1)
     if len(edges) < 2 or not (np.diff(edges) > 0.0).all():
-        said = " ".join(show(sensors).split())
         raise ValueError(f"sensors = {said}: must be a width in mm, greater than 0, or edges in mm that grow")
     return edges
 

@@ -134,6 +134,7 @@ def sweep(
     """
     base = described(scene)
     values = _values(axes)
+    require(values, "axes: must have one key or more")
     programme = {} if load_factors is None else {"protocol.load_factors": load_programme(load_factors)}
     points = [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
     require(not (programme.keys() & values.keys()), "load_factors: is an axis too, must be one of the two")
@@ -149,8 +150,11 @@ def sweep(
             report(kept, len(scenes), KEPT)
         try:
             found = map_tasks(task, scenes, workers=workers, executor=executor, progress=report, what="scenes")
-        except KeyboardInterrupt as error:
-            raise (interrupted(f"{error}, solutions are kept in {folder}") if memory else error) from None
+        except KeyboardInterrupt:
+            if not memory:
+                raise
+            kept = sum(memory.has(memory.name(_solved, one)) for one in scenes)
+            raise interrupted(f"{kept} of {len(scenes)} solutions are kept in {folder}") from None
     remarks = Counter(remark for _, remarks in found for remark in remarks)
     for remark, count in remarks.items():
         first = next(point for point, (_, own) in zip(points, found, strict=True) if remark in own)

@@ -21,6 +21,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache, partial, wraps
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -81,6 +82,23 @@ def by_type(function: Callable) -> Any:
     method.__signature__ = called.__signature__ = inspect.signature(function)  # type: ignore[attr-defined]
     overload(called, jit_options={"error_model": "numpy", "forceinline": True})(method)
     return called
+
+
+#: Classes by the names that Numba knows them by.
+_classes: dict[str, type] = {}
+
+
+def tell_apart(of: type) -> None:
+    """Number the name of a class of named tuples if another one has it.
+
+    Numba knows such a class by its name and the types of its fields. So one that a notebook defines anew would run the
+    machine code of the one before.
+    """
+    name = of.__name__
+    for number in count(2):
+        if _classes.setdefault(of.__name__, of) is of:
+            return
+        of.__name__ = f"{name}_{number}"
 
 
 class _Files(caching.IndexDataCacheFile):

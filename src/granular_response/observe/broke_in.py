@@ -11,38 +11,42 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..state import State
+from ..state import MOVED_FAR, State
 
 #: Displacement (mean radii) from which on a disk has left its place: the elastic displacements of the paper's loads are
 #: below a hundredth, and disks of a lattice exchange neighbours from some tenths on.
 REMARKABLE = 0.1
 
 
-def broke_in(states: Sequence[State], loaded_disks: NDArray[np.integer]) -> str:
-    """In one line what the loads of ``states`` did that no elastic response does; empty where they did nothing of it.
+def broke_in(states: Sequence[State], loaded_disks: NDArray[np.integer]) -> tuple[str, str] | None:
+    """What the loads of ``states`` did that no elastic response does, a title and one line; None for nothing of it.
 
     Dynamic jumps (equilibria from which motion led to the next), equilibria that were lost with the next one nearby,
-    and the largest displacements from the first state, of a loaded disk and of any. ``loaded_disks`` (l,) : disks with
-    loads.
+    and the largest displacements from the first state, of a loaded disk and of any. Minima of the energy that are far
+    from the one before may have been reached without a jump. ``loaded_disks`` (l,) : disks with loads.
     """
-    events = [(state, event) for state in states for event in state.reached.events if event.lost]
-    jumps = [event for _, event in events if event.kind != "stepped over"]
+    events = [event for state in states for event in state.reached.events if event.lost]
+    far_off = [event for event in events if event.reason.startswith(MOVED_FAR)]
+    jumps = [event for event in events if event.kind != "stepped over" and event not in far_off]
     far = [np.hypot(*(state.position - states[0].position).T) for state in states]
     farthest = max(range(len(far)), key=lambda k: float(far[k].max()))
     if not jumps and not far[farthest].max() > REMARKABLE:
-        return ""
+        return None
     said = []
     if jumps:
         said.append(f"{_count(len(jumps), 'dynamic jump')}, the first at load factor {jumps[0].load_factor:.4g}")
-        if near := len(events) - len(jumps):
+        if near := len(events) - len(jumps) - len(far_off):
             said.append(f"{_count(near, 'lost equilibrium', 'lost equilibria')} with the next one nearby")
+    if far_off:
+        between = f"between load factors {far_off[0].load_factor:.4g} and {far_off[0].until:.4g}"
+        said.append(f"{_count(len(far_off), 'minimum', 'minima')} far from the one before, the first {between}")
     where = [(_displacement(far, disk), int(disk)) for disk in np.unique(loaded_disks)]
     if where:
         how_far, disk = max(where)
         said.append(f"loaded disk {disk} moved by {how_far:.2g}")
     disk = int(far[farthest].argmax())
     said.append(f"disk {disk} farthest, by {far[farthest][disk]:.2g} mean radii")
-    return ", ".join(said)
+    return "the load broke in" if jumps else "largest displacements", ", ".join(said)
 
 
 def _displacement(far: Sequence[np.ndarray], disk: int) -> float:

@@ -11,6 +11,7 @@ from ..contact import LAWS, Law, without_friction
 from ..contact.consistent import contradiction
 from ..contact.rolling import FREE, Rolling
 from ..errors import GranularError, require
+from ..machine.machine_code import tell_apart
 from ..scene import Contact, Scene, SceneError
 from ..scene.base import Description
 from ..scene.material import KNOWN_LAWS, KnownLaw, NoParameters
@@ -22,6 +23,10 @@ METHODS = tuple(name for name in vars(Law) if name not in FIELDS and not name.st
 
 #: Reduced radius of two disks of mean radius, and of one at a wall.
 DISKS, AT_WALL = 0.5, 1.0
+
+
+for _own in (*LAWS.values(), Rolling):
+    tell_apart(_own)
 
 
 class LawError(GranularError, ValueError):
@@ -64,6 +69,7 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
     require(not lacks, rule, LawError)
     rule = f"parameters = {parameters!r}: must be a subclass of granular_response.scene.base.Description"
     require(isinstance(parameters, type) and issubclass(parameters, Description), rule, LawError)
+    tell_apart(law)
     try:
         made = law.of(3000.0, 50.0, 2400.0, 50.0, 0.2, -math.inf, 0.5, **parameters().model_dump())
     except (SceneError, TypeError) as error:

@@ -15,7 +15,7 @@ from ..errors import EquilibriumError, require
 from ..scene import Scene, SceneError
 from ..scene.errors import show
 from ..scene.given import finite_numbers
-from ..state import FloatArray, State
+from ..state import MOVED_FAR, FloatArray, State
 from .choice import Choice
 from .dynamics import Dynamics, Stop, half_swing, relax
 from .energy import minimise
@@ -336,7 +336,7 @@ def _by_minimisation(problem: Problem, before: State, factor: float, progress: P
         snapped = float(np.hypot(*moved.T).max()) > SNAPPED + way
         if not (found.reached.escapes or snapped):
             return found
-        kind, why = ("bifurcation", "unstable") if found.reached.escapes else ("jump", "the minimum has moved far")
+        kind, why = ("bifurcation", "unstable") if found.reached.escapes else ("jump", MOVED_FAR)
         left = lost(kind, start.load_factor, factor, start.position, moved, f"{why}, to the {side(moved)}")
         return replace(found, reached=replace(found.reached, events=(left,)))
     except EquilibriumError:

@@ -10,6 +10,7 @@ from .box import foot_points as foot_points
 from .box import wall_normals as wall_normals
 from .events import CONTACT_EVENTS as CONTACT_EVENTS
 from .events import LOST_EVENTS as LOST_EVENTS
+from .events import MOVED_FAR as MOVED_FAR
 from .events import ROW_EVENTS as ROW_EVENTS
 from .events import Event as Event
 from .index import StateIndexError as StateIndexError

@@ -14,6 +14,9 @@ CONTACT_EVENTS = ("opens", "closes", *ROW_EVENTS[0])
 #: to it, or to one of several.
 LOST_EVENTS = ("stepped over", "jump", "bifurcation")
 
+#: Why the next one may have been lost where minima are looked for at chosen loads alone.
+MOVED_FAR = "the minimum has moved far"
+
 
 @dataclass(frozen=True)
 class Event:

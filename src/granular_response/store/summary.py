@@ -77,8 +77,8 @@ def _result(result: xr.Dataset) -> Iterator[tuple[str, RenderableType]]:
         yield from _events(result)
     yield "certificate", _by_factor(result, _certificate(result))
     states = [state_from(result, k) for k in range(result.sizes["state"])]
-    if text := broke_in(states, result["loaded_disk"].values):
-        yield "the load broke in", _text(text)
+    if said := broke_in(states, result["loaded_disk"].values):
+        yield said[0], _text(said[1])
     if "distance_from_given" in result:
         yield "distance of disks from where they were given", _by_factor(result, _from_given(result))
     if "reaction" in result:

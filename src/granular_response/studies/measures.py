@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import check_positive
+from ..errors import check_positive, require
 from ..observe import network, peaks
 from ..observe.floor import floor_disks, floor_response, interior_mask, smoothed_response
 from ..observe.teardrop import OpenRegion, open_region
@@ -161,7 +161,7 @@ def two_peaks(measures: Measures, prominence: float = peaks.RELATIVE_PROMINENCE)
     peaks. The default is 0.001, a tenth of a percent, which a printed curve hardly shows: there it is a plateau. A dip
     that the eye sees is about 0.01. Floor disks near the side walls (``Measures.interior``) are left out.
 
-    Raises ``ValueError`` for a ``prominence`` that is not positive.
+    Raises ``ValueError`` for a ``prominence`` that is not positive, or not below 1, the largest response itself.
 
     Examples
     --------
@@ -173,6 +173,7 @@ def two_peaks(measures: Measures, prominence: float = peaks.RELATIVE_PROMINENCE)
     True
     """
     check_positive(prominence=prominence)
+    require(prominence < 1.0, f"prominence = {prominence:g}: must be below 1, 0.01 is a per cent", ValueError)
     text = TWO_PEAKS
     if prominence != peaks.RELATIVE_PROMINENCE:
         text += f" by {prominence:g} of the largest response"

@@ -225,7 +225,7 @@ def _knots(low: float, high: float, events: Iterable[Event], apart: float, besid
 
 
 def lost(states: Iterable[State]) -> list[Event]:
-    """Equilibria that a path through ``states``, in turn, has lost on its way.
+    """Losses of equilibrium on the path through ``states``, in turn.
 
     Examples
     --------
@@ -236,7 +236,7 @@ def lost(states: Iterable[State]) -> list[Event]:
 
 
 def by_motion(state: State) -> bool:
-    """Whether the motion of the disks had a part in what led from the state before to this one.
+    """Whether a dynamic jump, or motion to the next equilibrium, led from the state before to this one.
 
     Examples
     --------

@@ -129,6 +129,15 @@ class Claim:
         return "extension" if self.id.startswith("B") else "disorder" if self.disorder else "ordered"
 
 
+#: The paper's slab, for the claims of groups whose base scene it is.
+SLAB = {
+    "scene.packing.layers": 15,
+    "scene.packing.disks_per_row": 61,
+    "scene.contact.normal_stiffness": 3000.0,
+    "scene.preparation.gravity": "at-once",
+}
+
+
 class Claims:
     """The claims of a figure group, in the order in which they are declared; ``requires`` are the paper's
     parameters.
@@ -378,6 +387,8 @@ class Verdict:
 
 def _checked(claim: Claim, data: Data) -> None:
     """Raises NotMeasured unless the data are those of the parameters that the sentence is about."""
+    if claim.requires:
+        needs(claim.group in data.groups, f"data/{claim.group}.nc is missing")
     stored = data.parameters.get(claim.group, {})
     for key, asked in claim.requires.items():
         needs(key in stored, f"data/{claim.group}.nc does not say its {key}")

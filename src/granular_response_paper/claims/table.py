@@ -13,11 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from granular_response.inputs import read_json
+from granular_response.scene import SceneError
 from granular_response.scene import text as yaml
 from granular_response.store import atomic
 from granular_response.store import files as store
 
-from ..registry import PAPER, Collection
+from ..registry import PAPER, Collection, group_member
 from . import preparations, printed
 from .bounds import WORDS
 from .claim import MEANINGS, PREPARATION, ROBUSTNESS, ROWS, SCHEME, Claim, ClaimsError, Data, Test, Verdict, judge
@@ -74,11 +75,19 @@ def collect(folder: str | os.PathLike[str], others: str | os.PathLike[str], coll
     paths = {path.stem: path for path in _paths(folder, collection) if path.exists()}
     groups = {name: store.read(path) for name, path in paths.items()}
     given = {name: store.read_attributes(path).get("parameters", "") for name, path in paths.items()}
-    parameters = {name: flat(yaml.read(one) or {}) for name, one in given.items()}
+    parameters = {name: flat(_whole(name, yaml.read(one) or {})) for name, one in given.items()}
     for name, path in ((PREPARATION, Path(others)), (ROBUSTNESS, MOVES)):
         if path.exists():
             groups[name] = groups.get(name, {}) | store.read(path)
     return Data(groups, parameters)
+
+
+def _whole(group: str, given: dict[str, Any]) -> dict[str, Any]:
+    """The parameters of a group with those that its file leaves out; as they stand if of another version."""
+    try:
+        return group_member(group, "parameters", "Parameters")(**given).model_dump(mode="json")
+    except SceneError:
+        return given
 
 
 def flat(parameters: Mapping[str, Any], above: str = "") -> dict[str, Any]:

@@ -72,7 +72,11 @@ def _columns(axes: Axes, quantities: Quantities) -> None:
 
 
 def _name(what: str) -> str:
-    return textwrap.fill(what.replace("friction ", "µ\u00a0=\u00a0"), width=36).replace("k_T/k_N", "$k_T/k_N$").replace("with k_N", "with $k_N$")
+    return (
+        textwrap.fill(what.replace("friction ", "µ\u00a0=\u00a0"), width=36)
+        .replace("k_T/k_N", "$k_T/k_N$")
+        .replace("with k_N", "with $k_N$")
+    )
 
 
 def _point(axes: Axes, row: int, found: Mapping[str, Any], paper: float, colour: str, size: float) -> None:

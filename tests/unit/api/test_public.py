@@ -83,6 +83,9 @@ def test_a_profile_of_sensors_is_that_of_three_disks():
     assert wide["x"].values == pytest.approx([5.0, 15.0]) and wide.values == pytest.approx(added.values)
     part = three.floor_profile(units, [0.0, 5.0, 9.0])  # the second disk is outside
     assert part["x"].values == pytest.approx([2.5, 7.0]) and part.values == pytest.approx([weight, 0.0], rel=1e-6)
+    near = gr.LaboratoryUnits(radius=1.004 * units.radius)  # of a table whose mean radius is off by less than 1 %
+    assert len(three.floor_profile(near, 7.5)) == 2 and len(three.floor_profile(near, 5.0)) == 3
+    refuses(ValueError, r"^sensors = 0\.0075: must be in mm", three.floor_profile, units, 0.0075)
     for mistake in (0.0, -1.0, np.nan, "wide", [3.0], [3.0, 2.0], [[1.0, 2.0]]):
         refuses(ValueError, "^sensors = .*: must be a width in mm", three.floor_profile, units, mistake)
     refuses(ValueError, "added: a load adds nothing", three.floor_profile, units, 7.5, state=0, added=True)

@@ -1,9 +1,11 @@
 """What every contact law must fulfil, and the 3/2 law by hand (Sec. III.B)."""
 
+import importlib
 import math
 import os
 import pickle
 import sys
+from dataclasses import replace
 
 import numba as nb
 import numpy as np
@@ -13,11 +15,13 @@ from demonstration import Cohesion, Cohesive, Cubic
 from places import ROOT
 from pydantic import Field
 from refusals import refuses
+from small_scenes import scene
 
 import granular_response as gr
 from granular_response.cli import scene_reference
 from granular_response.contact import LAWS
 from granular_response.contact.law import elastic_force, energy, stiffness
+from granular_response.contact.linear import Linear
 from granular_response.scene import Scene, SceneError
 from granular_response.scene.base import Description, NonNegative
 from granular_response.scene.material import KNOWN_LAWS
@@ -142,7 +146,7 @@ def test_a_law_without_parameters_is_known_in_other_processes_and_tells_results_
     file = tmp_path / "law_of_mine.py"
     file.write_text(MINE)
     monkeypatch.syspath_prepend(tmp_path)
-    import law_of_mine
+    importlib.import_module("law_of_mine")
 
     scene = Scene().updated({"contact.law": "mine"})
     sent, before = pickle.dumps(scene), key(scene)
@@ -150,7 +154,7 @@ def test_a_law_without_parameters_is_known_in_other_processes_and_tells_results_
     del sys.modules["law_of_mine"]
     try:
         received = pickle.loads(sent)
-        assert received == scene and type(Problem.from_scene(received).pair_law).__name__ == law_of_mine.Mine.__name__
+        assert received == scene and type(Problem.from_scene(received).pair_law).__qualname__ == "Mine"
         file.write_text(MINE + "# another force\n")
         assert key(received) != before
     finally:
@@ -231,6 +235,35 @@ class OneShape(Cubic):
 def test_a_law_that_contradicts_itself_is_refused(wrong, said):
     refuses(gr.GranularError, said, gr.register_law, "wrong", wrong)
     assert "wrong" not in KNOWN_LAWS
+
+
+def stiffer(factor: float, name: str) -> type:
+    """A class of springs that are ``factor`` times as stiff, as a cell of a notebook defines it."""
+
+    def elastic_force(self, overlap, shape):
+        return factor * self.normal_stiffness * overlap
+
+    def stiffness(self, overlap, shape):
+        return factor * self.normal_stiffness
+
+    def energy(self, overlap, shape):
+        return 0.5 * factor * self.normal_stiffness * overlap * overlap
+
+    return type(name, (Linear,), {one.__name__: one for one in (elastic_force, stiffness, energy)})
+
+
+@pytest.mark.parametrize("name", ["Mine", "Linear"])  # the second is that of a law of the package
+def test_a_class_of_the_same_name_is_another_law(name):
+    two = scene(2, 7, contact__friction=0.0, loads=[])
+    usual = Problem.from_scene(two)
+    squeezed = replace(usual.bare_state(), position=0.999 * usual.bare_state().position)
+    forces = [usual.with_static_forces(squeezed).pairs.normal_force.sum()]
+    for factor in (2, 3):
+        gr.register_law(f"{name}_{factor}", stiffer(factor, name))
+        problem = Problem.from_scene(two.updated({"contact.law": f"{name}_{factor}"}))
+        forces.append(problem.with_static_forces(squeezed).pairs.normal_force.sum())
+        del KNOWN_LAWS[f"{name}_{factor}"]
+    assert forces[0] > 0.0 and np.array(forces[1:]) / forces[0] == pytest.approx([2.0, 3.0])
 
 
 def test_parameters_with_which_a_law_contradicts_itself_are_refused():

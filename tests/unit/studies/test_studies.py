@@ -253,6 +253,7 @@ def test_two_peaks_have_a_prominence_that_is_asked_for():
     assert measures.dip(path.at(by[1e-2].high)) > 0.0099
     assert "0.01" in gr.studies.two_peaks(measures, prominence=0.01).definition
     refuses(ValueError, "prominence", gr.studies.two_peaks, measures, prominence=0.0)
+    refuses(ValueError, "prominence = 1: must be below 1", gr.studies.two_peaks, measures, prominence=1)
 
 
 def test_one_open_contact_is_a_first_opening():

@@ -6,11 +6,11 @@ import numpy as np
 
 from granular_response.observe.peaks import central_dip
 from granular_response_paper.claims.bounds import at_least, at_most, higher_by, lower_by, more_than
-from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers, at, rise
+from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at, rise
 from granular_response_paper.claims.numbers import Quantity, needs
 
 GROUP = "friction_fields"
-claim = Claims(GROUP, {"force": 15.0, "frictions": [0.0, 0.2, 1.0]})
+claim = Claims(GROUP, {**SLAB, "force": 15.0, "frictions": [0.0, 0.2, 1.0]})
 
 #: "Near the load": within this distance (mean radii). Pressure is compared where it exceeds this part of its maximum.
 NEAR, FAINT = 6.0, 0.1

@@ -25,11 +25,11 @@ from granular_response_paper.claims.bounds import (
     order_of_magnitude,
     sampled,
 )  # fmt: skip
-from granular_response_paper.claims.claim import ROBUSTNESS, Ask, Claims, Data, Numbers, at, rise
+from granular_response_paper.claims.claim import ROBUSTNESS, SLAB, Ask, Claims, Data, Numbers, at, rise
 from granular_response_paper.claims.numbers import Quantity, needs
 
 GROUP = "friction_linear_range"
-claim = Claims(GROUP, {"scene.contact.stiffness_ratio": 0.8, "scene.wall.friction": 0.0})
+claim = Claims(GROUP, {**SLAB, "scene.contact.stiffness_ratio": 0.8, "scene.wall.friction": 0.0})
 
 #: Of the paper (Fig. 6, Sec. V.B).
 FRICTIONS = (0.0, 0.2, 1.0)

@@ -15,10 +15,10 @@ from granular_response.state import OPEN, SLIDING
 from granular_response_paper.captions import RADIUS, WEIGHT, Caption, Datasets, Value, of_group, of_scene
 from granular_response_paper.panels import among, contact_networks, family, grey_limit, label_ends, note, titles, zero
 
-from .parameters import Parameters
+from .parameters import PROFILE_FRICTIONS, Parameters
 
 #: Forces of the profiles (Fig. 7), of the pictures of contacts (Figs. 8 and 9) and of the large forces (Fig. 16).
-PROFILE_FRICTIONS, PROFILE_FORCES = (0.2, 1.0), (4.0, 10.0, 20.0, 30.0, 50.0)
+PROFILE_FORCES = (4.0, 10.0, 20.0, 30.0, 50.0)
 LARGE_FRICTION = 0.2
 CONTACT_FORCES = (5.0, 12.0, 20.0)
 CONTACTS = ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1"))

@@ -19,6 +19,9 @@ from granular_response_paper.parameters import (
     over,
 )
 
+#: Of Figs. 7 to 9.
+PROFILE_FRICTIONS = (0.2, 1.0)
+
 
 class End(Description):
     """Where the path of one friction stops, if below the last of ``forces``."""
@@ -62,5 +65,8 @@ class Parameters(SceneGroup):
     equal_rows: EqualRowsPaths
 
     def checks(self) -> Checks:
-        every = list(self.frictions)
+        every, shown = list(self.frictions), " and ".join(f"{one:g}" for one in PROFILE_FRICTIONS)
+        for key, frictions in (("frictions", self.frictions), ("states_of", self.states_of)):
+            there = set(PROFILE_FRICTIONS) <= set(frictions)
+            yield key, there, f"must have {shown} among them, which Figs. 7 to 9 show"
         yield "dynamics.friction", self.dynamics.friction in every, f"must be one of frictions = {every}"

@@ -18,11 +18,11 @@ from granular_response_paper.claims.bounds import (
     more_than,
     within,
 )  # fmt: skip
-from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers, at
+from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
 from granular_response_paper.claims.numbers import Quantity, needs
 
 GROUP = "frictionless_crossover"
-claim = Claims(GROUP, {"scene.packing.layers": 15, "scene.contact.normal_stiffness": 3000.0})
+claim = Claims(GROUP, SLAB)
 
 #: Distance of two rows of disks, and of two disks in a row (mean radii): the resolution of a region's size.
 ROW, DISK = float(np.sqrt(3.0)), 2.0

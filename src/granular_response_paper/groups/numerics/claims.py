@@ -7,11 +7,11 @@ import numpy as np
 from granular_response.state import FloatArray
 from granular_response_paper.claims.bootstrap import over_realizations
 from granular_response_paper.claims.bounds import at_least, at_most, less_than, more_than
-from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers, at
+from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
 from granular_response_paper.claims.numbers import needs
 
 GROUP = "numerics"
-claim = Claims(GROUP, {"force": 15.0, "friction": 0.2, "frictions": [0.0, 0.2]})
+claim = Claims(GROUP, {**SLAB, "force": 15.0, "friction": 0.2, "frictions": [0.0, 0.2]})
 
 #: The paper's time step and energy.
 STEP, ENERGY = 5e-4, 1e-13

@@ -13,6 +13,7 @@ claim = Claims(
         "scene.contact.friction": 0.94,
         "scene.wall.friction": 0.35,
         "scene.contact.stiffness_ratio": 0.5,
+        "scene.preparation.gravity": "at-once",
     },
 )
 

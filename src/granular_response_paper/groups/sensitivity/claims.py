@@ -6,11 +6,11 @@ from contextlib import suppress
 from dataclasses import replace
 
 from granular_response_paper.claims.bounds import at_most
-from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers, at
+from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
 from granular_response_paper.claims.numbers import NotMeasured, Quantity, needs
 
 GROUP = "sensitivity"
-claim = Claims(GROUP, {"force": 15.0, "friction": [0.2, 1.0]})
+claim = Claims(GROUP, {**SLAB, "force": 15.0, "friction": [0.2, 1.0]})
 
 #: Events that dashpots may move, by what happens.
 EVENTS = {

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from granular_response_paper.claims.bounds import about, at_most, between, within
-from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers, at
+from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
 from granular_response_paper.claims.numbers import Quantity, needs
 
 GROUP = "stiffness_ratio_crossover"
-claim = Claims(GROUP, {"force": 15.0, "scene.contact.friction": 10.0})
+claim = Claims(GROUP, {**SLAB, "force": 15.0, "scene.contact.friction": 10.0})
 
 
 @claim("K1a", "V.B, Fig. 10", Ask("ratio at which two peaks turn into one", about(0.3), paper=0.3))

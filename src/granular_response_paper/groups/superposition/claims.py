@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from granular_response_paper.claims.bootstrap import over_realizations, part_of
 from granular_response_paper.claims.bounds import lower_by, rare
-from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers, at
+from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
 from granular_response_paper.claims.numbers import needs
 
 GROUP = "superposition"
-claim = Claims(GROUP, {"scene.contact.friction": 0.05, "scene.packing.polydispersity": 0.01})
+claim = Claims(GROUP, {**SLAB, "scene.contact.friction": 0.05, "scene.packing.polydispersity": 0.01})
 
 #: Errors by what they are of.
 ERRORS = {"floor forces": "floor_error_largest", "all contact forces": "contact_error_largest"}

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from granular_response_paper.claims.bounds import between
-from granular_response_paper.claims.claim import ROBUSTNESS, Ask, Claims, Data, Numbers
+from granular_response_paper.claims.claim import ROBUSTNESS, SLAB, Ask, Claims, Data, Numbers
 from granular_response_paper.claims.numbers import Quantity, needs
 
 GROUP, LOST = "symmetry_breaking", "loss_of_symmetry"
-claim = Claims(GROUP, {"scene.contact.friction": 1.0, "scene.contact.stiffness_ratio": 0.8, "scene.wall.friction": 0.0})
+claim = Claims(
+    GROUP, {**SLAB, "scene.contact.friction": 1.0, "scene.contact.stiffness_ratio": 0.8, "scene.wall.friction": 0.0}
+)
 
 
 @claim(

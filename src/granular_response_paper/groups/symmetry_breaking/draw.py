@@ -35,10 +35,14 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
     loads = ["symmetric or not", f"a copy and its mirror image, {_load(float(copies['force']))}"]
     handles: dict[str, Any] = {}
     for panel, state in zip(axes[1], (1, 2), strict=True):
+        if state >= states.sizes["state"]:  # symmetry is not lost between the forces that were tried
+            panel.set_axis_off()
+            continue
         handles |= _network(panel, states.isel(state=0), states.isel(state=state))
         loads.append(_load(float(states["force"][state])))
-    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
-    titles(axes.flat, loads, stem=STEM)
+    if handles:
+        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
+    titles(axes.flat[: len(loads)], loads, stem=STEM)
     return {STEM: figure}
 
 
