@@ -133,7 +133,8 @@ def text(found: Quantity, unit: str = "", number: int = 0) -> str:
         return f"above {ends[0]}" if found.value is None or found.value == found.low else f"{own} (above {ends[0]})"
     if ends[0] == ends[1]:
         return ends[0]
-    if found.value is not None and found.kind != "bracket" and own in ends and number < 3:
+    finer = [shown(one, unit, 3) for one in (middle, found.low, found.high)]
+    if found.value is not None and found.kind != "bracket" and own in ends and finer[0] not in finer[1:]:
         return text(found, unit, 3)  # a value apart from an end does not read as that end
     first = ends[0].removesuffix(ends[1][ends[1].rindex(" ") :]) if " " in ends[1] and unit != "count" else ends[0]
     interval = f"{first} to {ends[1]}"

@@ -232,7 +232,10 @@ def test_a_run_that_is_killed_ends_its_children_and_keeps_its_lock(tmp_path, num
         f"reproduce.dvc.PATIENCE = {0.1 if deaf else 10.0};"
         "reproduce.reproduce(Collection('empty', 'granular_response_paper.pipeline', '.', 'nothing'), Path())"
     )
-    run = subprocess.Popen([sys.executable, "-c", script], cwd=tmp_path, env=environment, stderr=subprocess.DEVNULL)
+    run = subprocess.Popen(
+        [sys.executable, "-c", script], cwd=tmp_path, env=environment, stderr=subprocess.DEVNULL,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # jobs in the background ignore it
+    )  # fmt: skip
     with open(tmp_path / "alive") as alive:
         assert alive.readline() == "begun\n"
         run.send_signal(number)
