@@ -121,7 +121,7 @@ def two_peaks_or_one(data: Data) -> Numbers:
     case, but one peak in the frictional case.
     Short: Two distinct peaks without friction, one at friction 0.2
     Here: Of forty means of 15 packings the deepest dips by {0} of its peak without friction, the flattest by {1} at
-    friction 0.2 (below 0: one peak). From the lattice constant of Fig. 19, 2.0075, these are {lattice constant
+    friction 0.2 (below 0: one peak). From the initial lattice of Fig. 19 these are {lattice constant
     2.0075|0} and {lattice constant 2.0075|1}.
     Remark: The paper shows one mean of each, so that what is asked is only that such ones are not rare. A dip beyond
     100 % has a negative response in the middle, one below 0 a single peak. 15 mg, w = 3"""
