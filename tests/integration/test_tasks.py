@@ -393,7 +393,7 @@ def test_a_named_package_counts_with_all_of_its_modules(tmp_path, monkeypatch):
     with pytest.raises(ModuleNotFoundError, match=r"nowhere/a\.py: no part of this package, and no package nowhere"):
         keys.sources("nowhere/a.py")
     for name in [name for name in sys.modules if name.partition(".")[0] == "mine"]:
-        monkeypatch.delitem(sys.modules, name)
+        del sys.modules[name]  # not by monkeypatch, which would put it back
 
 
 HELPED = {
