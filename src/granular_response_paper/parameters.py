@@ -37,6 +37,11 @@ def _different(values: tuple[Entry, ...]) -> tuple[Entry, ...]:
     return values
 
 
+def _odd(number: int) -> int:
+    must(number % 2, "must be odd")
+    return number
+
+
 def _growing(values: tuple[float, ...]) -> tuple[float, ...]:
     must(all(before < after for before, after in pairwise(values)), "must be growing numbers")
     return values
@@ -52,6 +57,8 @@ Positives = Different[Positive]
 #: Coefficients of friction, ratios.
 Coefficients = Different[Ratio]
 Counts = Different[Count]
+#: With a middle one.
+Odd = AfterValidator(_odd)
 #: Of rows, or of disks over rows.
 Rows = Annotated[int, Field(strict=True, ge=2), allowed("must be a whole number from 2 on")]
 Path = Annotated[str, Field(strict=True, min_length=1), allowed("must be the path of a file")]

@@ -42,8 +42,18 @@ class Candidates:
     wall_shape: FloatArray | None  #: (w,)
     limit: float
 
+    def in_slots(self, values: FloatArray) -> FloatArray:
+        """(slots,) what listed pairs have (m,), and 0 in other slots."""
+        return _in_slots(values, self.slot, len(self.reach))
+
     def __repr__(self) -> str:
         return f"Candidates({len(self.first)} pairs, {len(self.wall_disk)} at walls, limit={self.limit:g})"
+
+
+def _in_slots(values: FloatArray, slot: NDArray[np.int64], slots: int) -> FloatArray:
+    room = aligned_zeros(slots)
+    room[slot] = values
+    return room
 
 
 def list_candidates(
@@ -77,13 +87,7 @@ def list_candidates(
         limit = 0.5 * margin
     runs, slot = neighbours.make_runs(first, second, packing.n, multiple=WIDTH)
     i, j = neighbours.run_pairs(runs)
-    reach = aligned_zeros(len(i))  # slots of no listed pair have none
-    reach[slot] = radius[first] + radius[second]
     shapes = law.shapes(radius[first], radius[second])
-    shape = None
-    if shapes is not None:
-        shape = aligned_zeros(len(i))
-        shape[slot] = shapes
     wall_disk, wall = packing.box.near_walls(position, radius, margin)
     return Candidates(
         reference=position.copy(),
@@ -92,11 +96,11 @@ def list_candidates(
         slot=slot,
         runs=runs,
         separation=aligned(packing.box.separation(position[i], position[j]).T),
-        reach=reach,
+        reach=_in_slots(radius[first] + radius[second], slot, len(i)),
         wall_disk=wall_disk,
         wall=wall,
         wall_gap=packing.box.wall_gap(position[wall_disk], radius[wall_disk], wall),
-        shape=shape,
+        shape=None if shapes is None else _in_slots(shapes, slot, len(i)),
         wall_shape=wall_law.shapes(radius[wall_disk], None),
         limit=limit,
     )

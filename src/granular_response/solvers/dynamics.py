@@ -104,13 +104,6 @@ class Stop:
         return replace(by_energy, acceleration=plan.stop_acceleration)
 
 
-def in_slots(candidates: Candidates, values: FloatArray) -> FloatArray:
-    """(slots,) what listed pairs have (m,), and 0 in other slots."""
-    room = aligned_zeros(len(candidates.reach))
-    room[candidates.slot] = values
-    return room
-
-
 class Dynamics:
     """One packing in motion.
 
@@ -130,9 +123,8 @@ class Dynamics:
         self.integrator = INTEGRATORS[integrator]
         self.time_step = float(time_step)
         self.uncut = uncut
-        self.steps = self.began = 0
+        self.steps = self.began = self.rebuilds = 0
         self.time = 0.0
-        self.rebuilds = 0
         self.gravity: Ramp = (1.0, 1.0, 0.0)
         self.load: Ramp = (0.0, 0.0, 0.0)
         n, freedoms = problem.n, problem.freedoms
@@ -156,10 +148,10 @@ class Dynamics:
         self.candidates: Candidates = problem.list_candidates(state.position, stride=stride)
         c = self.candidates
         pair_laws, wall_laws = zip(*problem.laws, strict=True)
-        springs = [in_slots(c, row) for row in carry_springs(problem.n, state.pairs, c.first, c.second)]
+        springs = [c.in_slots(row) for row in carry_springs(problem.n, state.pairs, c.first, c.second)]
         wall_springs = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
         rolls = len(problem.laws) > 1
-        arm = in_slots(c, problem.pair_arms(c.first, c.second)) if rolls else aligned_zeros(0)
+        arm = c.in_slots(problem.pair_arms(c.first, c.second)) if rolls else aligned_zeros(0)
         couple = aligned_zeros(problem.n if rolls else 0)
         self.model = Model(
             problem.n, problem.weight, self._inverse_mass, problem.packing.radius, self.rim,
@@ -259,11 +251,6 @@ class Dynamics:
         else:
             cure = overlap_at_start(self.problem) or "take a smaller protocol.time_step"
         return f"the motion blew up after {self.steps} steps with time_step {self.time_step:g}; {cure}"
-
-    @property
-    def memory(self) -> FloatArray:
-        """(rows, dof) what the integrator keeps from step to step."""
-        return self.history[:, : self.q.size]
 
     @property
     def position(self) -> FloatArray:

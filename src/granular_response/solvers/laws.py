@@ -20,13 +20,8 @@ from ..scene.material import KNOWN_LAWS, KnownLaw, NoParameters
 FIELDS = tuple(name for name, part in vars(Law).items() if isinstance(part, property))
 METHODS = tuple(name for name in vars(Law) if name not in FIELDS and not name.startswith("_"))
 
-
 #: Reduced radius of two disks of mean radius, and of one at a wall.
 DISKS, AT_WALL = 0.5, 1.0
-
-
-for _own in (*LAWS.values(), Rolling):
-    tell_apart(_own)
 
 
 class LawError(GranularError, ValueError):

@@ -188,21 +188,24 @@ class _Content:
         waiting: list[tuple[str, str, Path, ModuleType | None]] = [
             (module.__name__, module.__package__ or "", file, module)
         ]
-        found = dict[str, str]()
+        found, looked = dict[tuple[str, Path], str](), set[str]()
         while waiting:
             name, package, path, loaded = waiting.pop()
+            if (name, path) in found or name.partition(".")[0] in self.by_name:
+                continue
             data = _read(path)
-            found[name] = _sha256(data)
+            found[name, path] = _sha256(data)
             imported = _imports(data, package) if path.suffix == ".py" else frozenset()
-            for name in {above for one in (package, *imported) for above in _ancestors(one)} - {*found}:
-                spec = None if name.partition(".")[0] in self.by_name else _spec(name)
+            for name in {above for one in (package, *imported) for above in _ancestors(one)} - looked:
+                looked.add(name)
+                spec = _spec(name)
                 if spec and spec.origin and _own(origin := Path(spec.origin)):
                     waiting.append((name, spec.parent or "", origin, sys.modules.get(name)))
             for one in list(vars(loaded).values()) if loaded else ():  # also from a place where no import looks
                 origin = Path((isinstance(one, ModuleType) and getattr(one, "__file__", None)) or "")
-                if _own(origin) and not {one.__name__, one.__name__.partition(".")[0]} & {*found, *self.by_name}:
+                if _own(origin):
                     waiting.append((one.__name__, one.__package__ or "", origin, one))
-        return _sha256(json.dumps(sorted(found.items())).encode())
+        return _sha256(json.dumps(sorted((name, code) for (name, _), code in found.items())).encode())
 
 
 @functools.lru_cache(maxsize=1000)

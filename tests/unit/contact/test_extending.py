@@ -62,7 +62,7 @@ def test_a_limit_of_ones_own_is_that_of_dynamics_statics_rates_and_tangents():
     state = shaken(made, seed=2, spring=5e-3)
     system, known = started(made, state)
     here = system.trial(known, known.q)
-    force = Dynamics(made, state).memory[0] / made.inverse_mass
+    force = Dynamics(made, state).history[0, : system.dof] / made.inverse_mass
     assert here.contact_force + made.weight_vector == pytest.approx(force, abs=1e-9)
     slides, kinds = here.status == SLIDING, system.state(here, 0.0)
     limits = np.concatenate([most(kinds.pairs, 0.3), most(kinds.walls, 0.4)])

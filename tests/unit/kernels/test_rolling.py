@@ -112,7 +112,7 @@ def test_forces_agree_with_dynamics_at_rest_and_the_tangent_is_their_derivative(
     system, known = started(problem, state)
     q = known.q + np.random.default_rng(1).normal(0, 1e-7, system.dof)
     trial = system.trial(known, known.q)
-    force = Dynamics(problem, state).memory[0] / problem.inverse_mass
+    force = Dynamics(problem, state).history[0, : system.dof] / problem.inverse_mass
     assert trial.contact_force + problem.weight_vector == pytest.approx(force, abs=1e-9)
     trial = system.trial(known, q)
     statuses = np.abs(trial.sense[len(trial.status) :])

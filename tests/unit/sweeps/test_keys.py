@@ -166,15 +166,18 @@ def test_a_module_that_a_law_imports_counts(tmp_path, monkeypatch):
     assert not {*before} & {key(scene), key(of_problem)}
 
 
+BY_FILE = """from importlib import util
+spec = util.spec_from_file_location({}, 'elsewhere/factor.py')
+mine = util.module_from_spec(spec)
+spec.loader.exec_module(mine)
+"""
+
 #: Ways to a module that neither an import statement nor ``import_module("name")`` shows: that with the task, the other.
 WAYS = {
     "by_word": ("import importlib\nmine = importlib.import_module(name='factor_by_word')\n", "factor_by_word.py"),
     "by_alias": ("from importlib import import_module as load\nmine = load('factor_by_alias')\n", "factor_by_alias.py"),
-    "by_file": (
-        "from importlib import util\nspec = util.spec_from_file_location('mine', 'elsewhere/factor.py')\n"
-        "mine = util.module_from_spec(spec)\nspec.loader.exec_module(mine)\n",
-        "elsewhere/factor.py",
-    ),
+    "by_file": (BY_FILE.format("'mine'"), "elsewhere/factor.py"),
+    "by_file_under_the_same_name": (BY_FILE.format("__name__"), "elsewhere/factor.py"),
     "by_name_of_the_library": ("import tabnanny as mine\n", "tabnanny.py"),
     "of_package.task": ("import of_package as mine\n".replace("import", "mine = None  #"), "of_package/__init__.py"),
 }

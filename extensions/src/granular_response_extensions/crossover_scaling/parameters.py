@@ -6,14 +6,13 @@ from typing import Annotated, Literal
 
 import numpy as np
 import xarray as xr
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Positive, Ratio, Sides
-from granular_response.scene.errors import must
 from granular_response.state import FloatArray
 from granular_response_extensions.parameters import SurveyedGroup
-from granular_response_paper.parameters import SIZE, UNIT_LOAD, Checked, Checks, Growing, Some, over
+from granular_response_paper.parameters import SIZE, UNIT_LOAD, Checked, Checks, Growing, Odd, Some, over
 
 #: Rest without friction is found by statics at every size, and is the same preparation for all.
 _SLAB = UNIT_LOAD.updated({"preparation.gravity": "frictionless", "contact.stiffness_ratio": 0.8})
@@ -26,12 +25,7 @@ _DECIDED = (
 VARIED = ("layers", "disks_per_layer", "stiffness_per_layer", "confinement")
 
 
-def _odd(layers: int) -> int:
-    must(layers % 2, "must be odd")
-    return layers
-
-
-Layers = Annotated[int, Field(strict=True, ge=5), AfterValidator(_odd)]
+Layers = Annotated[int, Field(strict=True, ge=5), Odd]
 
 
 class Series(Checked):

@@ -20,9 +20,8 @@ BALANCED = 1e-4
 def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
     """A line for each packing of the group ``hysteresis``, of disorder median, least and largest; and the balance."""
     measured, events = datasets["loops"], datasets["events"]
-    heads = ["packing", *(f"{name} (mg)" for name in ("first opening", "linear up to", "reversible up to", "F"))]
-    heads += ["residual floor forces"]
-    heads += ["dissipation, first loop", "second loop"]
+    forces = (f"{name} (mg)" for name in ("first opening", "linear up to", "reversible up to", "F"))
+    heads = ["packing", *forces, "residual floor forces", "dissipation, first loop", "second loop"]
     rows = []
     off: dict[str, list[FloatArray]] = {"lattices": [], "disorder": []}
     count = 0

@@ -4,16 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from granular_response.scene.base import Count, Description, Positive, Ratio
-from granular_response.scene.errors import must
-from granular_response_paper.parameters import Positives
-
-
-def _odd(points: int) -> int:
-    must(points % 2 == 1, "must be odd, so that x = 0 is one of the points")
-    return points
+from granular_response_paper.parameters import Odd, Positives
 
 
 class Parameters(Description):
@@ -22,4 +16,4 @@ class Parameters(Description):
     diffusion_length: Positive = Field(description="Of the rays, in radii.")
     depths: Positives = Field(description="Heights of the slabs for the rays, in radii.")
     half_width: Positive = Field(description="Of the profiles, in slab heights.")
-    points: Annotated[Count, AfterValidator(_odd)] = Field(description="Points of each profile, of which x = 0 is one.")
+    points: Annotated[Count, Odd] = Field(description="Points of each profile, of which x = 0 is one.")
