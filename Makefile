@@ -59,10 +59,10 @@ figure: ## Draw one figure of the paper: make figure FIGURE=17, or one figure gr
 	@$(MAKE) --no-print-directory setup
 	@group=$$(.ci/figure "$(GROUP)" "$(FIGURE)") && $(PY) -m dvc repro --quiet draw@$$group < /dev/null && .ci/figure --drawn $$group
 
-## For own work on it (CONTRIBUTING.md has stress tests and comparisons besides)
+## For own work on it (docs/contributing.md has stress tests and comparisons besides)
 survey: setup ## Run the large ensembles of disordered slabs and larger packings: 70 minutes on two cores; continues where it was
-	$(PY) -m dvc repro survey/dvc.yaml
-	$(PY) survey/document.py
+	$(PY) -m dvc repro data/survey/dvc.yaml
+	$(PY) data/survey/document.py
 
 test: tools ## Run all tests and the linters (JOBS=2 for two processes)
 	$(PY) -m pytest -n $(JOBS) --dist worksteal

@@ -32,7 +32,7 @@ CONTENTS = {
     "Use": "installation tutorial concepts gallery/index experiment packings loads motion results many-scenes export "
     "from-lammps methods troubleshooting scene-reference api reference trust",
     "The paper": "results-of-the-paper reproduction-notes one-figure reproducing extensions",
-    "Background": "physics benchmarks architecture extending claims",
+    "Background": "physics benchmarks architecture extending claims contributing changelog",
 }
 
 
@@ -40,7 +40,7 @@ def on_the_site(app, page, source):
     """What only the site has: its table of contents, and the built gallery in place of the folder of its scripts."""
     source[0] = source[0].replace("](../examples/gallery)", "](gallery/index.rst)")
     # Markdown beside this folder is no page of the site
-    source[0] = re.sub(r"\[([^\]]+)\]\((\.\./[\w/]+\.md)(?:#[\w-]+)?\)", r"{download}`\1 <\2>`", source[0])
+    source[0] = re.sub(r"\[([^\]]+)\]\((\.\./[\w./]+\.md)(?:#[\w-]+)?\)", r"{download}`\1 <\2>`", source[0])
     if page == "index":
         for title, names in CONTENTS.items():
             names = "\n".join(names.split())

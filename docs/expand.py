@@ -36,7 +36,7 @@ UNJUDGED = "No statement of the paper is judged by it alone."
 
 def documents() -> list[Path]:
     """All Markdown files that have places or may have some."""
-    others = ("README.md", "CONTRIBUTING.md", "figures/README.md", "benchmarks/README.md")
+    others = ("README.md", "figures/README.md", "benchmarks/README.md")
     return [*(ROOT / name for name in others), *sorted(ROOT.glob("docs/*.md"))]
 
 

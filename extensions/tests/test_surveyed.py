@@ -20,7 +20,7 @@ from granular_response_paper.records import columns
 from granular_response_paper.registry import group_member
 from granular_response_paper.survey import simulate as survey
 
-FOLDER = ROOT / "survey"
+FOLDER = ROOT / "data" / "survey"
 PARAMETERS = ROOT / "extensions" / "params.yaml"
 GROUPS = surveyed.surveyed_groups()
 OF_GROUPS = {group: simulation.parameters(group, PARAMETERS)[1] for group in GROUPS}
@@ -85,7 +85,7 @@ def test_packings_of_the_survey_are_those_that_the_group_would_make(group, tmp_p
 def of_survey(group):
     """The tasks that a group leaves to the survey, and what is stored of them, by what tells packings apart."""
     tasks = surveyed.tasks_of(group, OF_GROUPS[group])
-    return tasks, surveyed.read(FOLDER / "data" / f"{group}.nc", type(next(iter(tasks))), OUTCOMES[group])
+    return tasks, surveyed.read(FOLDER / f"{group}.nc", type(next(iter(tasks))), OUTCOMES[group])
 
 
 @pytest.mark.parametrize(
@@ -118,7 +118,7 @@ def test_a_packing_of_a_figure_group_is_found_again(group, key):
 
 @pytest.mark.parametrize("group", GROUPS)
 def test_the_packings_of_a_figure_group_are_those_that_its_parameters_leave_to_the_survey(group):
-    path = FOLDER / "data" / f"{group}.nc"
+    path = FOLDER / f"{group}.nc"
     tasks, stored = of_survey(group)
     assert (PARAMETERS.parent / OF_GROUPS[group].survey_file).resolve() == path
     assert set(stored) == set(tasks)

@@ -45,7 +45,7 @@ def parameters(function) -> str:
 
 
 def test_public_signatures_stay():
-    """One that changes breaks what others have written: it goes into CHANGELOG.md and into the file."""
+    """One that changes breaks what others have written: it goes into docs/changelog.md and into the file."""
     found = [f"{name}{parameters(getattr(gr, name))}" for name in gr.__all__ if inspect.isfunction(getattr(gr, name))]
     for owner in ("Events", "LaboratoryUnits", "Result", "Scene", "plot", "studies", "studies.LoadPath"):
         of = attrgetter(owner)(gr)

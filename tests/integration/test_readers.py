@@ -61,7 +61,7 @@ def files(tmp_path_factory):
     store.write(folder / "study.nc", {"packings": texts, "slab/rest": result})
     assert store.read(folder / "study.nc")["packings"].identical(texts.drop_attrs(deep=False))
     made = {folder / "result.nc": "", folder / "unloaded.nc": "", folder / "study.nc": "packings"}
-    made |= {ROOT / "survey" / "data" / "moduli.nc": next(iter(store.read(ROOT / "survey" / "data" / "moduli.nc")))}
+    made |= {ROOT / "data" / "survey" / "moduli.nc": next(iter(store.read(ROOT / "data" / "survey" / "moduli.nc")))}
     result.to_netcdf(folder / "by_xarray.nc")
     axes = {"protocol.integrator": ["beeman", "verlet"], "protocol.load_factors": [[1.0], [1.0, 2.0]]}
     gr.sweep(loaded, axes, workers=1, progress=False).to_netcdf(folder / "sweep.nc")
@@ -85,7 +85,7 @@ def test_no_variable_holds_strings_of_any_length(files):
         for inner in group.groups.values():
             yield from variables(inner)
 
-    for path in (*files, *(ROOT / "survey" / "data").glob("*.nc")):
+    for path in (*files, *(ROOT / "data" / "survey").glob("*.nc")):
         with netCDF4.Dataset(path) as file:
             assert not [one.name for one in variables(file) if one.dtype is str], path
 

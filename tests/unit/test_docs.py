@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT / "docs"))
 expand = importlib.import_module("expand")
 pictures = importlib.import_module("pictures_of_pages")
 
-PAGES = [*expand.documents(), ROOT / "data" / "README.md", ROOT / "CHANGELOG.md"]
+PAGES = [*expand.documents(), ROOT / "data" / "README.md"]
 #: Of a code host: CommonMark with tables, and nothing else.
 HOST = MarkdownIt("commonmark").enable("table")
 NAMES = [str(page.relative_to(ROOT)) for page in PAGES]

@@ -12,7 +12,7 @@ from granular_response.store import files as store
 from granular_response_paper.ensembles import AT_REST, NOT_REACHED
 from granular_response_paper.survey import simulate as survey
 
-FOLDER = ROOT / "survey"
+FOLDER = ROOT / "data" / "survey"
 PARAMETERS = survey.read_parameters(FOLDER / "params.yaml")
 BLOCKS = list(PARAMETERS.blocks)
 
@@ -23,7 +23,7 @@ SAME = 0.02
 
 @pytest.fixture(scope="module")
 def stored():
-    return {block: store.read(FOLDER / "data" / f"{block}.nc") for block in BLOCKS}
+    return {block: store.read(FOLDER / f"{block}.nc") for block in BLOCKS}
 
 
 @pytest.mark.parametrize(
@@ -68,6 +68,6 @@ def test_what_is_stored_is_what_the_parameters_name(stored, block):
         outcome = data["outcome"].values[c]
         assert (outcome[:count, 0] != NOT_REACHED).all()
         assert (outcome[count:] == NOT_REACHED).all()
-    marks = store.read_attributes(FOLDER / "data" / f"{block}.nc")
+    marks = store.read_attributes(FOLDER / f"{block}.nc")
     assert marks["block"] == block
     assert yaml.safe_load(marks["parameters"])["collapse_depth"] == PARAMETERS.collapse_depth

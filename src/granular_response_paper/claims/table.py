@@ -63,7 +63,7 @@ def groups_read(collection: Collection) -> list[str]:
 
 
 #: Where the study of what moves the events of ordered slabs is kept.
-MOVES = Path("survey") / "data" / f"{ROBUSTNESS}.nc"
+MOVES = Path("data") / "survey" / f"{ROBUSTNESS}.nc"
 
 
 def collect(folder: str | os.PathLike[str], others: str | os.PathLike[str], collection: Collection = PAPER) -> Data:

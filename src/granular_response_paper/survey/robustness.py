@@ -36,7 +36,7 @@ from granular_response_paper.records import column, record, table, variables
 from granular_response_paper.survey.simulate import MECHANICS, made_by
 from granular_response_paper.tasks import computed
 
-OUTPUT = Path("survey") / "data" / "robustness.nc"
+OUTPUT = Path("data") / "survey" / "robustness.nc"
 
 #: The slab of Sec. V: k_T/k_N = 0.8, smooth walls.
 BASE = UNIT_LOAD.updated({"contact.stiffness_ratio": 0.8, "wall.friction": 0.0})

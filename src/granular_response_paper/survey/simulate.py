@@ -113,11 +113,11 @@ def ensemble(name: str, parameter_file: Path, realizations: int | None = None) -
 
 
 def run(block: Block, folder: Path, *, workers: int | None = None, progress: Progress | None = None) -> Path:
-    """Simulate a block and store it below ``folder``, as ``data/NAME.nc``; returns the path.
+    """Simulate a block and store it below ``folder``, as ``NAME.nc``; returns the path.
 
     Raises SweepError and StoreError.
     """
-    output = folder / "data" / f"{block.name}.nc"
+    output = folder / f"{block.name}.nc"
     store.check_writable(output)  # before the work
     with using(packages=block.packages):
         found = map_tasks(

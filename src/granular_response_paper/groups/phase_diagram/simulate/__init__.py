@@ -1,6 +1,6 @@
 """The force at which one peak becomes two, against friction and disorder: Fig. 22, claims on disordered slabs.
 
-The paper's figure is a sketch; here it is measured on the load paths of the survey (``survey/``), the lattice
+The paper's figure is a sketch; here it is measured on the load paths of the survey (``data/survey/``), the lattice
 among them, so nothing is simulated. What counts as two peaks, and what a crossover is, stands in
 :mod:`granular_response_paper.survey.crossover`.
 """

@@ -1,6 +1,6 @@
 """Runs blocks of the survey: python run.py BLOCK [BLOCK ...], all of them if none is named.
 
-A block is one of ``params.yaml``, or a figure group with packings that ``../extensions/params.yaml`` leaves to the
+A block is one of ``params.yaml``, or a figure group with packings that ``../../extensions/params.yaml`` leaves to the
 survey.
 
 ``--scheduler`` sends the tasks to a Dask cluster. What is finished is kept in ``.realizations.checkpoint``.
@@ -46,7 +46,7 @@ def main() -> None:
         groups = surveyed_groups()
         for name in given.blocks or [*read_parameters(own).blocks, *groups]:
             if name in groups:
-                block = packings(name, HERE.parent / "extensions" / "params.yaml")
+                block = packings(name, HERE.parents[1] / "extensions" / "params.yaml")
             else:
                 block = ensemble(name, own, given.realizations)
             with using(executor=executor):

@@ -10,7 +10,7 @@ import xarray as xr
 
 from granular_response.store import atomic
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 NOTES = ROOT / "docs" / "_generated" / "survey.md"
 FOUND, BELOW, ABOVE = 0, 1, 2
 #: Of the smoothing, as in Fig. 22; the polydispersity of which the paper states what contacts are missing.
