@@ -1,7 +1,7 @@
 """What a sentence asks of a number, and the thresholds of the paper's qualitative terms: one table for every claim.
 
 The thresholds are our interpretations, written when an earlier table of values was known; none is chosen for one
-claim. A star beside a verdict says that it changes with one of them halved or doubled.
+claim. A star beside a verdict says that it changes with one of them halved, or doubled to three quarters at most.
 """
 
 from __future__ import annotations
@@ -44,8 +44,14 @@ WORDS: dict[str, tuple[float, str]] = {
 
 THRESHOLDS = {word: threshold for word, (threshold, _) in WORDS.items()}
 
-#: By what a threshold is multiplied to see whether a verdict hangs on it.
-FACTORS = (0.5, 2.0)
+#: The largest threshold that is tried: a marked part is half, and doubled it would be the whole.
+MOST = 0.75
+
+
+def varied(threshold: float) -> tuple[float, float]:
+    """The thresholds in its place that show whether a verdict hangs on it: half of it, and twice or :data:`MOST`."""
+    return 0.5 * threshold, min(2.0 * threshold, MOST)
+
 
 #: How far off a response is no longer linear: the text does not say.
 TOLERANCES = (0.01, 0.02, 0.05)

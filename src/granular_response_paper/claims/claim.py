@@ -32,7 +32,7 @@ import xarray as xr
 from granular_response.errors import GranularError
 from granular_response_paper import TOO_LITTLE
 
-from .bounds import FACTORS, THRESHOLDS, Bound, Limits, Outcome
+from .bounds import THRESHOLDS, Bound, Limits, Outcome, varied
 from .numbers import NotMeasured, Quantity, needs, text
 
 #: The group whose events are those of other preparations, and the study of what moves the events of ordered slabs.
@@ -44,11 +44,13 @@ SCHEME = (
     "Each sentence has one primary case, which its figure, its forces or its words fix; that case alone decides.",
     "The sentence is supported, or not supported, if the number and its whole interval lie on one side of the bound; "
     "otherwise the data cannot tell. What may be, and was not found, is not seen.",
-    "The interval is the 95 % confidence over packings, or for ordered slabs the range over what the text leaves open: "
-    "dashpots, time step, integrator, duration of the load ramp and displacements by 10⁻⁹ radii.",
+    "The interval is the 95 % confidence over packings, or for events of ordered slabs the range over what the text "
+    "leaves open or calls irrelevant: dashpots, time step, integrator, duration of the load ramp and displacements by "
+    "10⁻⁹ radii. A number of a single state has none.",
     "Every other case says for what the sentence holds, fails or is open; so do other ways of applying gravity "
     "and other initial lattices.",
-    "A star marks a verdict that changes if the threshold of a qualitative term is halved or doubled.",
+    "A star marks a verdict that changes if the threshold of a qualitative term is halved, or doubled to three "
+    "quarters at most.",
 )
 
 Kind = Literal["supported", "not supported", "cannot tell", "not seen", "not measured"]
@@ -221,12 +223,15 @@ class Data:
         found = at(self.get(group, table), **labels)
         return Quantity.bracket(float(found["low"]), float(found["high"]))
 
-    def protocol(self, measure: Callable[[Data], Quantity], from_rest: str = "", friction: float = 0.0) -> Quantity:
-        """What is measured along the paper's load path, in the range over every protocol.
+    def protocol(
+        self, measure: Callable[[Data], Quantity], from_rest: str = "", friction: float = 0.0, *, dashpots: bool = True
+    ) -> Quantity:
+        """What is measured along the paper's load path, in the range over every protocol, or with the paper's dashpots.
 
         ``from_rest`` is an event whose forces by dynamics from rest to each force, with several ramps, belong to it.
         """
-        found = [measure(self), *(measure(replace(self, variant=name)) for name in self.variants("protocol"))]
+        others = (one for one in self.variants("protocol") if dashpots or not one.startswith("dashpots"))
+        found = [measure(self), *(measure(replace(self, variant=name)) for name in others)]
         if from_rest:
             ramps = self.get(ROBUSTNESS, "events_from_rest")
             there = (ramps["name"].values.astype(str) == from_rest) & np.isclose(ramps["friction"].values, friction)
@@ -328,7 +333,7 @@ _NUMBER = re.compile(r"\{(?:(?P<case>[^{}|]+)\|)?(?P<place>\d+)(?::(?P<digits>\d
 class Verdict:
     """On a claim, by its tests, or what is ``missing`` for them, so that there is no number.
 
-    ``star`` names the qualitative terms whose threshold, halved or doubled, changes it.
+    ``star`` names the qualitative terms on whose threshold it hangs.
     """
 
     claim: Claim
@@ -433,14 +438,14 @@ def judge(claim: Claim, data: Data) -> Verdict:
     It is not measured if its function finds too little: a variable, a label, or all that is left to look at is missing.
     """
 
-    def under(word: str, factor: float) -> Kind:
-        changed = dict(data.words) | {word: factor * data.words[word]}
+    def under(word: str, threshold: float) -> Kind:
+        changed = dict(data.words) | {word: threshold}
         return Verdict(claim, tests(claim, replace(data, words=changed))).verdict
 
     try:
         found = Verdict(claim, tests(claim, data))
         used = sorted({test.ask.bound.word for test in found.primary if test.ask.bound.word})
-        star = [word for word in used if any(under(word, factor) != found.verdict for factor in FACTORS)]
+        star = [word for word in used if {under(word, other) for other in varied(data.words[word])} != {found.verdict}]
         return replace(found, star=star)
     except NotMeasured as lacking:
         named = str(lacking).startswith(("data/", "the sentence"))

@@ -51,11 +51,11 @@ class Quantity:
     @classmethod
     def bracket(cls, low: float, high: float) -> Quantity:
         """An event above ``low`` and not above ``high``; ``high`` nan or inf means that it does not happen up
-        to ``low``.
+        to ``low``. What was looked for from ``high`` on alone, above 0, has no number.
         """
         if not math.isfinite(high):
             return cls(None, float(low), math.inf, "bracket")
-        return cls(0.5 * float(low + high), float(low), float(high), "bracket")
+        return cls(0.5 * float(low + high) if low > 0.0 else None, float(low), float(high), "bracket")
 
     @classmethod
     def over(cls, found: Iterable[Quantity | float], kind: Kind = "range", method: str = "") -> Quantity:

@@ -406,4 +406,4 @@ def test_the_tolerance_is_the_bound_of_the_word() -> None:
     section = yaml.safe_load((ROOT / "params.yaml").read_text())["phase_diagram"]
     visible = bounds.THRESHOLDS["visible"]
     assert section["tolerance"] == visible
-    assert {factor * visible for factor in bounds.FACTORS} <= set(section["other_tolerances"])
+    assert {*bounds.varied(visible)} <= set(section["other_tolerances"])

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from granular_response.state import FloatArray
-from granular_response_paper.claims.bootstrap import over_realizations
+from granular_response_paper.claims.bootstrap import DRAWS, of_draws
 from granular_response_paper.claims.bounds import at_least, at_most, less_than, more_than
 from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
 from granular_response_paper.claims.numbers import needs
@@ -26,20 +25,21 @@ def _stopped(data: Data, energy: float, friction: float, *errors: str) -> float:
 @claim(
     "N1", "III.C",
     Ask("largest error of a floor force, at rest and under load, per largest force", at_most(0.01), "%"),
-    Ask("error of the response with an energy of 1e-9", more_than(0.01), "%"), primary="friction 0"
+    Ask("error of the response with an energy of 1e-9", more_than(0.01), "%"), primary="friction 0.2"
 )  # fmt: skip
 def accurate(data: Data) -> Numbers:
     """We found that in order to obtain an accuracy of less than 1% for the forces on the floor in a given realization,
     which are used here to define the response of the system to a localized force, the system has to be relaxed to a
     kinetic energy of E_k^stop = 10⁻¹³ mgR per particle, which is significantly smaller than that used in previous
     studies (e.g., in [77], the systems are relaxed to E_k^stop = 2·10⁻⁸ mgR per particle).
-    Short: To 1 % of the floor forces a run has to stop at 1e-13
-    Here: Stopped at 1e-13 mgR per disk, floor forces are off by {0} without friction and by {friction 0.2|0} at
-    friction 0.2. Stopped at 1e-9 they are off by {floor forces, friction 0, 1e-9|0} and the response by {1}; at 1e-11
-    by {floor forces, friction 0, 1e-11|0} and {response, friction 0, 1e-11|0}.
-    Remark: The error of the response decides whether so small an energy is needed, since the floor forces are used to
-    define it. The paper compares with 2e-8; the nearest energy here is 1e-9. Only powers of a hundred were tried"""
-    for mu in (0.0, 0.2):
+    Short: Stopping at 1e-13 is accurate to 1 %, stopping much earlier is not
+    Here: Stopped at 1e-13 mgR per disk, floor forces are off by {0}. Stopped at 1e-9 they are off by {floor forces,
+    friction 0.2, 1e-9|0} and the response by {1}; at 1e-11 by {floor forces, friction 0.2, 1e-11|0} and {response,
+    friction 0.2, 1e-11|0}.
+    Remark: Friction 0.2: without friction the paper ends its runs in another way. The error of the response decides
+    whether so small an energy is needed, since the floor forces are used to define it. The paper compares with 2e-8;
+    the nearest energy here is 1e-9. Only powers of a hundred were tried"""
+    for mu in (0.2, 0.0):
         enough = _stopped(data, ENERGY, mu, "rest_error", "loaded_error")
         yield f"friction {mu:g}", enough, _stopped(data, 1e-9, mu, "response_error")
         for energy in (1e-9, 1e-11):
@@ -119,15 +119,15 @@ def damping(data: Data) -> Numbers:
 def disorder(data: Data) -> Numbers:
     """In this case, sufficient accuracy was obtained with E_k^stop = 10⁻⁹ mgR.
     Short: For averages over disorder 1e-9 is enough
-    Here: Stopping at 1e-9 mgR per disk changes the mean response of disordered packings by {0} of its largest value.
-    Remark: Sufficient is taken as 1 %, as for floor forces"""
+    Here: Stopping at 1e-9 mgR per disk changes the mean response of five disordered packings by {0} of its largest
+    value.
+    Remark: Sufficient is taken as 1 %, as for floor forces. Five is the smallest number that the paper averages over;
+    the interval holds 95 % of the samples of five"""
     study = data.get(GROUP, "disorder")
     stopped, finished = (study[name].transpose("realization", ...).values for name in ("stopped", "finished"))
     needs(np.isfinite(stopped).all() and np.isfinite(finished).all(), "disorder holds responses without numbers")
 
-    def difference(picked: FloatArray, axis: int) -> FloatArray:
-        """Largest difference of the means of the realizations ``picked``, per largest value of the finished one."""
-        early, exact = (one[picked.astype(int)].mean(axis=axis) for one in (stopped, finished))
-        return np.asarray(np.abs(early - exact).max(axis=-1) / exact.max(axis=-1))
-
-    yield over_realizations(np.arange(len(stopped)), difference)
+    samples = np.random.default_rng(0).permuted(np.tile(np.arange(len(stopped)), (DRAWS, 1)), axis=1)[:, :5]
+    early, exact = (one[samples].mean(axis=1) for one in (stopped, finished))
+    off = np.abs(early - exact).max(axis=1) / exact.max(axis=1)
+    yield of_draws(np.median(off), off, "samples of five", len(stopped))

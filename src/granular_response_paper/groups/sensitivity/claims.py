@@ -55,7 +55,7 @@ def _dashpots(data: Data, name: str, friction: float) -> Quantity:
 
 
 @claim(
-    "N10", "III.A", Ask("largest change with dashpots halved or doubled", at_most("nearly"), "%"),
+    "N10", "III.A", Ask("largest change with other dashpots", at_most("nearly"), "%"),
     primary="most sensitive result at friction 0.2", figures=[6, 7], finds="not supported"
 )  # fmt: skip
 def dissipation(data: Data) -> Numbers:

@@ -32,7 +32,8 @@ def independent(data: Data) -> Numbers:
     Short: Above it the response is nearly independent of the ratio
     Here: Responses at k_T/k_N from 0.5 to 1 differ from that at 0.8 by up to {from 0.5 on|0} of the peak, from 0.4 to 1
     by up to {from 0.4 on|0}.
-    Remark: The text does not say from which ratio on, so that the range decides. Away from the side walls"""
+    Remark: Just above 0.3 the response still changes, and the text does not say from where on it does not, so that the
+    range decides. Away from the side walls"""
     study = data.get(GROUP, "response")
     inside = study["interior"].values > 0
     ratios, response = study["stiffness_ratio"].values, study["floor_response"].transpose("stiffness_ratio", ...).values
