@@ -90,11 +90,10 @@ class Caption:
 
 
 class _Fields(string.Formatter):
-    """Those of ``str.format``; ``{name!v}`` for one value or several in words, ``{force!p}`` for that of each panel."""
+    """Those of ``str.format``; ``{name!v}`` for one value or several in words."""
 
     def convert_field(self, value: Any, conversion: str | None) -> Any:
-        own = {"v": values, "p": panels}
-        return own[conversion](value) if conversion in own else super().convert_field(value, conversion)
+        return values(value) if conversion == "v" else super().convert_field(value, conversion)
 
 
 @cache
@@ -197,11 +196,6 @@ def bracket(low: float, high: float, unit: str = WEIGHT) -> str:
 def lettered(panels: Iterable[str]) -> str:
     """What each panel shows."""
     return ", ".join(f"({chr(ord('a') + k)}) {text}" for k, text in enumerate(panels))
-
-
-def panels(forces: Sequence[float]) -> str:
-    """The force of each panel."""
-    return f"{lettered(f'{force:g}' for force in forces)} {WEIGHT}."
 
 
 def number(stem: str) -> int | None:

@@ -66,8 +66,8 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         return at_forces(response.sel(friction=LARGE_FRICTION), wanted)["force"].values.tolist()
 
     axis = among(datasets["friction_axis"]["friction"], AXIS_FRICTIONS)
+    large = sorted({*drawn(LARGE_FORCES), *_dynamic_forces(dynamic)})
     stops = (f" µ = {end.friction:g} is computed up to {end.force:g} {WEIGHT} only." for end in parameters.ends)
-    beyond, left = _dynamic_forces(dynamic), drawn(LARGE_FORCES)
     return of_group(
         "friction_linear_range",
         {
@@ -75,14 +75,12 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
             "fig07_friction_response": said(drawn(PROFILE_FORCES), PROFILE_FRICTIONS),
             **{stem: said(contact_forces(datasets[f"states_mu_{mu:g}"]), mu) for mu, stem in CONTACTS},
             "fig12_friction_crossover": said(parameters.friction_axis.force, axis),
-            "fig16_large_forces": said(sorted({*left, *beyond}), [LARGE_FRICTION, float(dynamic["friction"])]),
+            "fig16_large_forces": said(large, [LARGE_FRICTION, float(dynamic["friction"])]),
         },
         _findings(datasets),
         crossover=PAPER_CROSSOVER,
         third=PAPER_THIRD_PEAK,
         symmetric=PAPER_SYMMETRIC,
-        left=left,
-        beyond=beyond,
         stops="".join(stops),
     )
 

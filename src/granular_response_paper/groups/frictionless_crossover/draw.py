@@ -70,7 +70,6 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
             "fig05c_depth": {**deep, "force": parameters.size_forces},
         },
         _findings(datasets),
-        stiffnesses=stiffnesses,
         compared=drawn((COMPARED_FORCE,), "sizes"),
     )
 
