@@ -198,6 +198,11 @@ def lettered(panels: Iterable[str]) -> str:
     return ", ".join(f"({chr(ord('a') + k)}) {text}" for k, text in enumerate(panels))
 
 
+def peaks(number: int) -> str:
+    """How many peaks a response has, as in pictures of packings."""
+    return f"{number} peak{'s' if number != 1 else ''}"
+
+
 def number(stem: str) -> int | None:
     """The paper's figure that a picture belongs to: NN of ``figNN...``."""
     match = re.match(r"fig(\d+)", stem)
