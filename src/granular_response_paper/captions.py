@@ -90,11 +90,10 @@ class Caption:
 
 
 class _Fields(string.Formatter):
-    """Those of ``str.format``; ``{name!v}`` for one value or several in words, ``{force!p}`` for that of each panel."""
+    """Those of ``str.format``; ``{name!v}`` for one value or several in words."""
 
     def convert_field(self, value: Any, conversion: str | None) -> Any:
-        own = {"v": values, "p": panels}
-        return own[conversion](value) if conversion in own else super().convert_field(value, conversion)
+        return values(value) if conversion == "v" else super().convert_field(value, conversion)
 
 
 @cache
@@ -199,9 +198,9 @@ def lettered(panels: Iterable[str]) -> str:
     return ", ".join(f"({chr(ord('a') + k)}) {text}" for k, text in enumerate(panels))
 
 
-def panels(forces: Sequence[float]) -> str:
-    """The force of each panel."""
-    return f"{lettered(f'{force:g}' for force in forces)} {WEIGHT}."
+def peaks(number: int) -> str:
+    """How many peaks a response has, as in pictures of packings."""
+    return f"{number} peak{'s' if number != 1 else ''}"
 
 
 def number(stem: str) -> int | None:

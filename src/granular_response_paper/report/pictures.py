@@ -15,8 +15,8 @@ from granular_response.inputs import read_json
 from granular_response_paper import captions
 from granular_response_paper.registry import collection_of, group_path
 
-#: Pixels of the page per pixel of a drawn picture, which has 200 to an inch, and the most of a picture.
-SHOWN, WIDEST = 0.62, 680
+#: Pixels of the page per pixel of a drawn picture: of 7 inches, with 200 to an inch, it takes 1000 where there is room.
+SHOWN = 5 / 7
 
 #: Of 255: a picture that is brighter on average is a plot on white paper, which a dark page shows inverted.
 PAPER = 160.0
@@ -94,4 +94,4 @@ def _shown(path: Path, said: Mapping[str, Any] | None) -> Picture:
         given = captions.Caption("", "", said["parameters"]).whole.strip()
         texts = {"name": said["title"], "alternative": said["alternative"], "parameters": given}
         texts["caption"] = said["caption"].removesuffix(given).strip()
-    return Picture(path.stem, path.parent.name, width, height, min(round(SHOWN * width), WIDEST), plot, **texts)
+    return Picture(path.stem, path.parent.name, width, height, round(SHOWN * width), plot, **texts)

@@ -11,7 +11,7 @@ from scipy.special import erfc
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box, FloatArray
-from granular_response_paper.captions import RADIUS, Caption, Datasets, lettered, of_group, of_scene, values
+from granular_response_paper.captions import RADIUS, Caption, Datasets, of_group, of_scene, values
 from granular_response_paper.panels import ContactLines, added_forces, family, force_key, forces, note, outer, titles
 
 from .parameters import Parameters
@@ -40,25 +40,17 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
-    scene, width = parameters.scene, parameters.stress_width
-    frictions, profiles = list(parameters.frictions), list(parameters.profiles.frictions)
-    given = of_scene(scene, force=parameters.force, frictions=frictions)
-    each = [f"µ = µ_wall = {mu:g}" for mu in frictions]
-    below = sorted(datasets["profiles"]["depth"].values.tolist())
+    scene, profiles = parameters.scene, parameters.profiles
+    given = of_scene(scene, force=parameters.force, frictions=parameters.frictions)
     return of_group(
         "friction_fields",
         {
             "fig13_force_chains": given,
-            "fig14_vertical_stress": {**given, "width": width},
-            "fig15_force_profiles": of_scene(scene, force=parameters.profiles.force, frictions=profiles),
+            "fig14_vertical_stress": {**given, "width": parameters.stress_width},
+            "fig15_force_profiles": of_scene(scene, force=profiles.force, frictions=profiles.frictions),
         },
         _findings(datasets),
-        chains=lettered(each),
-        maps=lettered(["the isotropic harmonic lattice", *each]),
-        minus=", ".join(f"({letter})" for letter in "efgh"[: len(each)]),
         levels=LEVELS,
-        depths=[round(depth, 1) for depth in below],
-        profiles=lettered(f"µ = µ_wall = {mu:g}" for mu in profiles),
     )
 
 
@@ -75,24 +67,23 @@ def _findings(datasets: Datasets) -> dict[str, str]:
         turned.append(float(np.average(angle, weights=size[near])) if size[near].any() else np.nan)
     off = np.abs(stress["stress_zz"].values - stress["stress_zz_lattice"].values).max(axis=(-2, -1))
     off = off / float(stress["stress_zz_lattice"].max())
-    frictions = [f"µ = {mu:g}" for mu in stress["friction"].values]
+    frictions = f"at µ = {values(stress['friction'].values.tolist())}"
     widest = []
     for column in range(profiles.sizes["friction"]):
         deepest = int(np.argmax(profiles["depth"].values))
         x, size = (profiles[name].values[column, deepest] for name in ("contact_x", "magnitude"))
         known = np.isfinite(x) & np.isfinite(size)
         widest.append(abs(float(x[known][np.argmax(size[known])])) if known.any() else np.nan)
-    at = [f"µ = {mu:g}" for mu in profiles["friction"].values]
     return {
         "fig13_force_chains": "The mean direction of the forces near the load is "
         + values([f"{angle:.0f}°" for angle in turned])
-        + f" off the vertical, at {values(frictions)}.",
+        + f" off the vertical, {frictions}.",
         "fig14_vertical_stress": "The largest difference from the isotropic lattice is "
         + values([f"{100.0 * part:.2g} %" for part in off])
-        + f" of its largest stress, at {values(frictions)}.",
+        + f" of its largest stress, {frictions}.",
         "fig15_force_profiles": "At the largest depth the largest force is "
         + values([f"{place:.0f} {RADIUS}" for place in widest])
-        + f" from the middle, at {values(at)}.",
+        + f" from the middle, at µ = {values(profiles['friction'].values.tolist())}.",
     }
 
 

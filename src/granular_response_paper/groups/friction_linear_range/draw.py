@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.state import OPEN, SLIDING
-from granular_response_paper.captions import RADIUS, WEIGHT, Caption, Datasets, Value, of_group, of_scene
+from granular_response_paper.captions import RADIUS, WEIGHT, Caption, Datasets, Value, of_group, of_scene, peaks
 from granular_response_paper.panels import among, contact_networks, family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import PROFILE_FRICTIONS, Parameters
@@ -66,8 +66,8 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         return at_forces(response.sel(friction=LARGE_FRICTION), wanted)["force"].values.tolist()
 
     axis = among(datasets["friction_axis"]["friction"], AXIS_FRICTIONS)
+    large = sorted({*drawn(LARGE_FORCES), *_dynamic_forces(dynamic)})
     stops = (f" µ = {end.friction:g} is computed up to {end.force:g} {WEIGHT} only." for end in parameters.ends)
-    beyond, left = _dynamic_forces(dynamic), drawn(LARGE_FORCES)
     return of_group(
         "friction_linear_range",
         {
@@ -75,14 +75,12 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
             "fig07_friction_response": said(drawn(PROFILE_FORCES), PROFILE_FRICTIONS),
             **{stem: said(contact_forces(datasets[f"states_mu_{mu:g}"]), mu) for mu, stem in CONTACTS},
             "fig12_friction_crossover": said(parameters.friction_axis.force, axis),
-            "fig16_large_forces": said(sorted({*left, *beyond}), [LARGE_FRICTION, float(dynamic["friction"])]),
+            "fig16_large_forces": said(large, [LARGE_FRICTION, float(dynamic["friction"])]),
         },
         _findings(datasets),
         crossover=PAPER_CROSSOVER,
         third=PAPER_THIRD_PEAK,
         symmetric=PAPER_SYMMETRIC,
-        left=left,
-        beyond=beyond,
         stops="".join(stops),
     )
 
@@ -107,8 +105,8 @@ def _findings(datasets: Datasets) -> dict[str, str]:
     for friction in PROFILE_FRICTIONS:
         one = response.sel(friction=friction).dropna("force", subset=["peak_count"])
         split = one["force"].values[one["peak_count"].values >= 2]
-        peaks = f"two peaks or more from {split[0]:g}" if split.size else f"one peak up to {float(one['force'][-1]):g}"
-        counts.append(f"{'at' if counts else 'At'} µ = {friction:g} {peaks} {WEIGHT}")
+        until = f"two peaks or more from {split[0]:g}" if split.size else f"one peak up to {float(one['force'][-1]):g}"
+        counts.append(f"{'at' if counts else 'At'} µ = {friction:g} {until} {WEIGHT}")
     found["fig07_friction_response"] = f"{', '.join(counts)}."
     for friction, stem in CONTACTS:
         states = datasets[f"states_mu_{friction:g}"]
@@ -236,8 +234,8 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     _plot_profiles(left, at_forces(one, LARGE_FORCES), "force", one.isel(force=0))
     _plot_profiles(right, at_forces(dynamic, _dynamic_forces(dynamic)), "force", response.isel(friction=-1, force=0))
     mu, other = (style.equals(style.FRICTION, friction) for friction in (LARGE_FRICTION, float(dynamic["friction"])))
-    peaks = f"{mu}; paper: two peaks from {PAPER_CROSSOVER:g}, third from {PAPER_THIRD_PEAK:g}"
-    titles(axes[0], (peaks, f"{other}; paper: symmetric at {PAPER_SYMMETRIC:g}"))
+    paper = f"{mu}; paper: two peaks from {PAPER_CROSSOVER:g}, third from {PAPER_THIRD_PEAK:g}"
+    titles(axes[0], (paper, f"{other}; paper: symmetric at {PAPER_SYMMETRIC:g}"))
     zero(right)
     kept, lost = _symmetric(dynamic)
     if lost and kept:
@@ -277,8 +275,7 @@ def _plot_profiles(panel: Axes, curves: xr.Dataset, along: Literal["force", "fri
     # symbols at other disks for each curve, and dashes, so that curves which cover each other are all seen
     for index, (value, look) in enumerate(family(curves[along].values, of=along, dashed=True)):
         look |= {"markersize": 3.2, "markevery": (index % SPREAD, SPREAD)}
-        count = int(curves["peak_count"].isel({along: index}))
-        label = f"{value:g}: {count} peak{'s' if count > 1 else ''}"
+        label = f"{value:g}: {peaks(int(curves['peak_count'].isel({along: index})))}"
         panel.plot(curves["x"], curves["floor_response"].isel({along: index}), label=label, **look)
     panel.set(xlabel=style.POSITION, xlim=(-REACH, REACH))
 

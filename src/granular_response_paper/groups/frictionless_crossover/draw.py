@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
-from granular_response_paper.captions import WEIGHT, Caption, Datasets, bracket, of_group, of_scene, values
+from granular_response_paper.captions import WEIGHT, Caption, Datasets, bracket, of_group, of_scene, peaks, values
 from granular_response_paper.panels import contact_networks, family, grey_limit, label_ends, note, titles, zero
 
 from .parameters import Parameters
@@ -70,7 +70,6 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
             "fig05c_depth": {**deep, "force": parameters.size_forces},
         },
         _findings(datasets),
-        stiffnesses=stiffnesses,
         compared=drawn((COMPARED_FORCE,), "sizes"),
     )
 
@@ -137,8 +136,8 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     for at, (k, look) in enumerate(family(chosen, of="force", dashed=True)):
         one = data.isel(force=k)
         look |= {"markersize": 3.0, "markevery": (at % 3, 3)}
-        peaks = "one peak" if int(one["peak_count"]) == 1 else f"{int(one['peak_count'])} peaks"
-        profiles.plot(x, one["floor_response"], **look, label=f"{float(one['force']):g}: {peaks}")
+        label = f"{float(one['force']):g}: {peaks(int(one['peak_count']))}"
+        profiles.plot(x, one["floor_response"], **look, label=label)
     zero(profiles)
     profiles.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(x[0], x[-1]))
     profiles.legend(title=style.FORCE, loc="upper right")

@@ -12,11 +12,9 @@ from granular_response.plot import style
 from granular_response.plot.animation import FULL, Frames, animate
 from granular_response.plot.chains import draw_chains, draw_key, draw_peaks, draw_response
 from granular_response.plot.shown import Shown
-from granular_response_paper.captions import WEIGHT, Caption, Datasets, of_group, of_scene, values
+from granular_response_paper.captions import WEIGHT, Caption, Datasets, of_group, of_scene, peaks, values
 
 from .parameters import Parameters
-
-PEAKS = {1: "one peak", 2: "two peaks", 3: "three peaks"}
 
 #: Mean radii of slabs to each side of the load.
 HALF_WIDTH = 30.0
@@ -45,7 +43,7 @@ def _findings(slabs: Datasets) -> dict[str, str]:
         x, force = slab["x"].values, np.atleast_1d(slab["total_force"].values)
         curves = np.atleast_2d(slab["floor_response"].values)
         two, number = [is_double_peaked(x, curve) for curve in curves], len(find_peaks(x, curves[-1]))
-        last.append(f"{PEAKS.get(number, f'{number} peaks')} at µ = {float(slab['friction']):g}")
+        last.append(f"{peaks(number)} at µ = {float(slab['friction']):g}")
         begun = f"from {force[int(np.argmax(two))]:.3g} {WEIGHT}" if any(two) else "not"
         first.append(f"{begun} at µ = {float(slab['friction']):g}")
     return {

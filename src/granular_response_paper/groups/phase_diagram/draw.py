@@ -65,7 +65,6 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
             },
         },
         _findings(crossovers.isel(width=-1), datasets["starts"]),
-        p=parameters,
         dip=100 * parameters.tolerance,
     )  # fmt: skip
 

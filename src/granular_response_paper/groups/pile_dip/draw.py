@@ -36,8 +36,7 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     said = {**of_scene(parameters.scene), "width": parameters.stress_width}
-    opened = datasets["piles"]["central_open_contacts"].sel(case=DRAWN).values.astype(int).tolist()
-    return of_group("pile_dip", {"fig17_pile": said}, {"fig17_pile": _finding(datasets["stress"])}, open=opened)
+    return of_group("pile_dip", {"fig17_pile": said}, {"fig17_pile": _finding(datasets["stress"])})
 
 
 def _finding(stress: xr.Dataset) -> str:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from granular_response.observe.peaks import central_dip, is_double_peaked
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
-from granular_response_paper.captions import RADIUS, Caption, Datasets, of_group, of_scene
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import (
     DASHED,
     ContactLines,
@@ -100,13 +100,10 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
             "fig21_disordered_forces": ensemble | {"force": forces, "width": width},
             "packings": ensemble,
         },
-        keys=KEYS,
         clipped=CLIPPED * picture.force,
         tolerance=100.0 * float(datasets["linear_range"].attrs["tolerance"]),
-        last=chr(ord("a") - 1 + len(disordered) * len(frictions)),
         contacts=PAPER_CONTACTS,
         findings=_findings(datasets),
-        smoothed=f"{float(datasets['linear_range'].attrs['width']):g} {RADIUS}",
     )
 
 

@@ -40,16 +40,17 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     cases = parameters.cases
     layers = sorted({n for case in cases for n in case.layers})
+    wide = float(datasets["slabs"]["disks_per_layer"].max())
     said = of_scene(
         parameters.scene,
         force=parameters.force,
         friction=sorted({case.friction for case in cases}),
         wall_friction=sorted({case.friction if case.floor == "rough" else 0.0 for case in cases}),
         stiffness_ratio=parameters.scene.contact.stiffness_ratio,
-        packing=f"slabs of {layers[0]} to {layers[-1]} layers",
+        packing=f"slabs of {layers[0]} to {layers[-1]} layers, {wide:g} disks in a row for each layer",
     )
     slabs = datasets["slabs"].isel(slab=datasets["slabs"]["friction"].values == 0.0)
-    slabs = slabs.isel(slab=slabs["disks_per_layer"].values == slabs["disks_per_layer"].values.max())
+    slabs = slabs.isel(slab=slabs["disks_per_layer"].values == wide)
     count, off = slabs["layers"].values, 100.0 * slabs["distance"].values
     finding = (
         f"Without friction the difference from the elastic slab is {off[count.argmin()]:.2g} % of the peak in "
@@ -57,8 +58,7 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         if count.size
         else ""
     )
-    wide = float(datasets["slabs"]["disks_per_layer"].max())
-    return of_group("slab_comparison", {STEM: said}, {STEM: finding}, wide=wide)
+    return of_group("slab_comparison", {STEM: said}, {STEM: finding})
 
 
 def _name(case: tuple) -> str:

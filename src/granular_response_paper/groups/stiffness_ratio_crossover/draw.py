@@ -63,7 +63,6 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         "stiffness_ratio_crossover",
         {"fig10_stiffness_ratio": said, "fig11_spring_model": {}},
         {"fig10_stiffness_ratio": _finding(events)},
-        paper=PAPER,
     )
 
 

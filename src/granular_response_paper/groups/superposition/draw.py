@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
 from granular_response.state import FloatArray
-from granular_response_paper.captions import WEIGHT, Caption, Datasets, lettered, of_group, of_scene
+from granular_response_paper.captions import WEIGHT, Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import banded, family, label_ends, titles, zero
 
 from .parameters import FORCES, Parameters
@@ -33,18 +33,15 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
 
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
-    diameters = [2 * offset for offset in parameters.offsets]
-    scene, distance = parameters.scene, [2.0 * d for d in diameters]
+    scene, distance = parameters.scene, [4.0 * offset for offset in parameters.offsets]
     given = {stem: of_scene(scene, force=force, distance=distance) for stem, force in FORCES.items()}
     several = of_scene(scene, force=parameters.forces, distance=distance, realizations=parameters.realizations)
     return of_group(
         "superposition",
         given | {"fig24b_superposition_error": several},
-        panels=lettered(f"d = {d:g} diameters" for d in diameters),
         findings={stem: _finding(datasets["errors"], force) for stem, force in FORCES.items()}
         | {"fig24b_superposition_error": _errors_finding(datasets["errors"])},
         tolerance=100.0 * parameters.tolerance,
-        until=LINEAR_UNTIL,
     )
 
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response_paper.captions import WEIGHT, Caption, Datasets, bracket, of_group, of_scene
+from granular_response_paper.captions import WEIGHT, Caption, Datasets, bracket, of_group, of_scene, values
 from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
@@ -51,7 +51,7 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     return of_group(
         "symmetry_breaking",
         {STEM: of_scene(parameters.scene, force=forces)},
-        {STEM: _finding(datasets)},
+        {STEM: _finding(datasets["runs"])},
         p=parameters,
         least=100.0 * ASYMMETRIC,
     )
@@ -93,23 +93,20 @@ def _copies(panel: Axes, copies: xr.Dataset) -> None:
     panel.legend(loc="lower right")
 
 
-def _finding(datasets: Datasets) -> str:
-    """From which forces on the response is not symmetric, and to which side copies lean."""
+def _finding(runs: xr.Dataset) -> str:
+    """From which forces on the response is not symmetric."""
     said = []
-    for ramp in sorted(set(datasets["runs"]["ramp_time"].values)):
-        one = datasets["runs"].isel(run=datasets["runs"]["ramp_time"].values == ramp)
+    for ramp in sorted(set(runs["ramp_time"].values)):
+        one = runs.isel(run=runs["ramp_time"].values == ramp)
         force, lost = one["force"].values, one["asymmetry"].values > ASYMMETRIC
         if lost.any():
             kept = force[force < force[lost].min()]
             first = float(force[lost].min())
             ends = bracket(float(kept.max()), first) if kept.size else f"{first:g} {WEIGHT}"
-            said.append(f"at {ends} with a ramp of {ramp:g} sqrt(R/g)")
+            said.append(f"is lost at {ends} with a ramp of {ramp:g} sqrt(R/g)")
         else:
-            said.append(f"not up to {force.max():g} {WEIGHT} with a ramp of {ramp:g} sqrt(R/g)")
-    sides = datasets["copies"]["asymmetry_sign"].values[datasets["copies"]["asymmetry"].values > ASYMMETRIC]
-    count = datasets["copies"].sizes["copy"]
-    lean = f" Of {count} copies, to the left: {int((sides < 0).sum())}, to the right: {int((sides > 0).sum())}."
-    return f"Loss of symmetry of the response: {', '.join(said)}." + (lean if sides.size else "")
+            said.append(f"is kept up to {force.max():g} {WEIGHT} with a ramp of {ramp:g} sqrt(R/g)")
+    return f"Symmetry {values(said)}."
 
 
 def _network(panel: Axes, rest: xr.Dataset, loaded: xr.Dataset) -> dict[str, Any]:

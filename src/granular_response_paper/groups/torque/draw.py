@@ -25,7 +25,7 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     given = of_scene(parameters.scene, force=parameters.force, angle=parameters.angle, torque=parameters.torques)
     found = {"fig18_torque": _finding(datasets["torques"], parameters.angle)}
-    return of_group("torque", {"fig18_torque": given}, found, last=chr(ord("a") - 1 + len(parameters.torques)))
+    return of_group("torque", {"fig18_torque": given}, found)
 
 
 def _finding(data: xr.Dataset, angle: float) -> str:
