@@ -66,7 +66,7 @@ COMES = {
 
 
 def friction_study():
-    opened = np.round(10.0 * FORCES) * np.array([[1.0], [0.2], [0.2]])
+    opened = np.round(10.0 * FORCES) * np.array([[1.0], [0.2], [0.1]])
     double = ELASTIC * (1.0 + 0.5 * (FORCES > 20.0) * np.array([[0.0], [1.0], [0.0]]))[:, :, None]
     response = {
         # one per cent off at these forces, five at five times as much
@@ -595,17 +595,18 @@ def robustness_study():
     ]
     rest += [("first_opening", 0.2, 3.8, 4.0), ("first_opening", 1.0, 5.5, 5.7), ("third_peak", 0.2, 37.0, 38.0)]
     rest = [(*row, "protocol", "load ramp of 10 sqrt(R/g)") for row in rest]
-    rest.append(("loss_of_symmetry", 1.0, 91.2, 92.0, "width", "121 disks a row"))
+    lost = ("loss_of_symmetry", 1.0, 91.2, 92.0)
+    rest += [(*lost, "protocol", "displaced copy 1"), (*lost, "width", "121 disks a row")]
     columns = "name friction low high kind variant"
     lean = np.where(X > 0.0, 0.08, 0.01)
-    sides = np.array([1.0, -1.0, 1.0])
+    sides = np.array([1.0, -1.0, -1.0])
     control = {"friction": [1.0, 1.0, 10.0, 10.0] * 3, "force": np.repeat([95.0, 150.0, 300.0], 4)}
     return {
         "events": dataset(**by_row("event", columns, rows)),
         "events_from_rest": dataset(**by_row("event", columns, rest)),
         "copies": dataset(
-            **over("run", force=95.0 * np.ones(3), asymmetry=[1.8] * 3, asymmetry_sign=sides),
-            floor_response=("run floor_disk", [lean, lean[::-1], 1.01 * lean]),
+            **over("run", force=[95.0, 95.0, 96.0], asymmetry=[1.8] * 3, asymmetry_sign=sides),
+            floor_response=("run floor_disk", [lean, lean[::-1], 1.01 * lean[::-1]]),
         ),
         "control": dataset(
             **over("run", **control, asymmetry=[1.5, 1.6, 0.0, 0.01] * 3, sliding_contacts=np.zeros(12)),

@@ -97,8 +97,8 @@ def range_grows(data: Data) -> Numbers:
     """The larger the coefficient of static friction, the more extended is the range of forces for which the response is
     elastic and the smaller the anisotropy.
     Short: The elastic range grows with friction
-    Here: From friction 0 to 0.2 and from 0.2 to 1 the linear range changes by a factor of {0} at least, the force of
-    the first opening by {first opening, frictions 0, 0.2 and 1|0}. Below 1 it shrinks.
+    Here: Of the frictions 0, 0.2 and 1 the linear range at one is at least {0} times that at the one before (below 1:
+    it shrinks), the force of the first opening at least {first opening, frictions 0, 0.2 and 1|0} times.
     Remark: The range at x = 0 is longest near friction 0.2 to 0.5. At friction 1 it is still some eight times that
     without friction. The paper prints first openings alone, which grow"""
     every = np.unique(data.get(GROUP, "response")["friction"].values).tolist()
@@ -357,7 +357,7 @@ def transition(data: Data) -> Numbers:
     becomes asymmetric), and by a marked reduction in the number of sliding contacts.
     Short: It comes with changes in the network and much less sliding
     Here: Beyond the transition {0} of the former sliding contacts are left. The number of contacts that open or close
-    is {1} of those that the force had opened; {2} of the contacts before it and {3} after it have no mirror image.
+    is {1} of those that the force had opened. Contacts without a mirror image: {2} before it, {3} after it.
     Remark: In equilibrium a contact that slid rests just below the limit, so that how near counts as sliding is a
     choice. The change of the network is compared with what the force had changed before"""
     before, after = _jump(data)

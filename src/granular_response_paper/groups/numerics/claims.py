@@ -77,8 +77,7 @@ def criteria(data: Data) -> Numbers:
 def time_step(data: Data) -> Numbers:
     """We verified that decreasing the time step did not affect the results of the simulations.
     Short: A smaller time step gives the same results
-    Here: With half of the time step the response differs by {0} of its largest value.
-    Remark: At rest the events of the load path move with the step as in the ranges over the protocol"""
+    Here: With half of the time step the response differs by {0} of its largest value."""
     yield data.value(GROUP, "time_step.difference", time_step=2.5e-4)
 
 
