@@ -442,6 +442,16 @@ def test_no_sentence_says_more_than_three_digits_or_nonsense(entries):
     assert digits(0.0, 2) == "0" and shown(0.0, "mg") == "0 mg"
 
 
+def test_what_is_stored_is_said_by_the_sentence_that_is_written_for_it():
+    """A number that a sentence names and its function does not yield would leave the bare numbers."""
+    for one in collections():
+        stored = json.loads((ROOT / one.folder / table.OUTPUT).read_text())["table"]
+        for row in stored:
+            claim = CLAIM[row["id"]]
+            if claim.finds in ("any", row["verdict"]):
+                assert row["here"].startswith(claim.here.partition("{")[0]), claim.id
+
+
 def test_the_numbers_that_the_paper_prints(good, entries):
     found = printed.quantities(list(entries.values()), good)
     assert len(found) == len(printed.QUANTITIES) + 1

@@ -82,7 +82,7 @@ def teardrop(data: Data) -> Numbers:
     Short: Horizontal contacts open in a teardrop that grows with force, shrinks with friction
     Here: Until the open region reaches the floor, {0} of its contacts are horizontal. It is widest between its ends,
     {1} times as wide as at the wider one, and grows by {3} rows. Under 5 mg its width falls from friction 0 to 0.2 and
-    from 0.2 to 1, to {4} of the one before at most; under 15 mg it grows again from 0.2 to 1 ({width at 15 mg|4}).
+    from 0.2 to 1, to {4} of the one before at most; under 15 mg it grows again from 0.2 to 1 ({width at 15 mg|0}).
     Remark: 5 mg is the force of Fig. 8(a), which the text compares with Fig. 4(c). At larger forces oblique contacts
     open too, close below the load; the text describes none. The size is that of the connected region below the load
     (Fig. 5)"""
