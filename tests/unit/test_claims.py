@@ -425,6 +425,7 @@ WRITTEN = [
     (Quantity(12.66, 4.8, 22.0, "confidence"), "", "13 (4.8 to 22)"),
     (Quantity(0.99, 0.91, 1.0, "confidence"), "part", "99 % (91 % to all)"),
     (Quantity(2.0, 1.8, math.inf, "confidence"), "", "2.0 (above 1.8)"),
+    (Quantity.bracket(0.0, 70.0), "mg", "0 to 70 mg"),  # not 35: it was looked for from 70 mg on alone
 ]
 
 
