@@ -37,6 +37,8 @@ from .numbers import NotMeasured, Quantity, needs, text
 
 #: The group whose events are those of other preparations, and the study of what moves the events of ordered slabs.
 PREPARATION, ROBUSTNESS = "preparation", "robustness"
+#: How the names of cases from the initial lattice that the text names say so.
+OF_THE_TEXT = "that of the text"
 #: The group whose events both have.
 ORDERED = "friction_linear_range"
 

@@ -21,7 +21,20 @@ from granular_response.store import files as store
 from ..registry import PAPER, Collection, group_member
 from . import preparations, printed
 from .bounds import WORDS
-from .claim import MEANINGS, PREPARATION, ROBUSTNESS, ROWS, SCHEME, Claim, ClaimsError, Data, Test, Verdict, judge
+from .claim import (
+    MEANINGS,
+    OF_THE_TEXT,
+    PREPARATION,
+    ROBUSTNESS,
+    ROWS,
+    SCHEME,
+    Claim,
+    ClaimsError,
+    Data,
+    Test,
+    Verdict,
+    judge,
+)  # fmt: skip
 from .numbers import Quantity, rounded, text
 
 #: Where the table is kept.
@@ -234,9 +247,14 @@ def quoted(found: dict[str, Any]) -> str:
     rest = ", ".join(f"{ROWS[row]} ({number})" for row, number in found["checks"].items() if number)
     tried = {name: [row[name] for row in statements if row[name]["of"]] for name in ("gravity", "lattice")}
     whole = {name: sum(one["holds"] == one["of"] for one in found_) for name, found_ in tried.items()}
+    literal = [
+        {kind for kind in ("yes", "no", "cannot tell") if any(OF_THE_TEXT in case for case in one[kind])}
+        for one in tried["lattice"]
+    ]
     lines.append(
         f"{starred} of these verdicts change if the threshold of a qualitative term is halved or doubled. With gravity "
         f"applied in other ways {whole['gravity']} of {len(tried['gravity'])} statements hold in every way, from "
-        f"other initial lattices {whole['lattice']} of {len(tried['lattice'])}. Not counted: {rest}."
+        f"other initial lattices {whole['lattice']} of {len(tried['lattice'])}, from that of the text "
+        f"{literal.count({'yes'})} of {sum(map(bool, literal))}. Not counted: {rest}."
     )
     return "\n".join(lines)

@@ -29,7 +29,7 @@ from granular_response_paper.claims.bounds import (
     more_than,
     rare,
 )  # fmt: skip
-from granular_response_paper.claims.claim import Ask, Case, Claims, Data, Numbers, at
+from granular_response_paper.claims.claim import OF_THE_TEXT, Ask, Case, Claims, Data, Numbers, at
 from granular_response_paper.claims.numbers import Quantity, needs
 from granular_response_paper.survey.crossover import ABOVE, BELOW, FOUND, counted
 
@@ -77,8 +77,8 @@ class Slab(NamedTuple):
 
     def case(self, name: str = "polydispersity {0:g}", further: str = "") -> Case:
         """Its name, with its initial lattice and its gravity if they are not the usual ones."""
-        title = f"lattice constant {self.start}{', that of the text' if self.start == LITERAL else ''}"
-        title = "" if self.start == USUAL else title
+        title = "" if self.start == USUAL else f"lattice constant {self.start}"
+        title += f", {OF_THE_TEXT}" if self.start == LITERAL else ""
         gravity = f"gravity ramped over {self.ramp} sqrt(R/g)" if self.ramp else ""
         parts = (name.format(self.polydispersity, self.friction), further, title, gravity)
         return Case(", ".join(filter(None, parts)), "gravity" if gravity else "lattice" if title else "")
