@@ -11,8 +11,7 @@ from __future__ import annotations
 import sys
 import time
 
-import numpy as np
-from timing import write
+from timing import power, write
 
 from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
@@ -70,10 +69,10 @@ def growth(rows: list[dict]) -> list[dict]:
     for layers in dict.fromkeys(row["layers"] for row in rows if row["layers"] >= FITTED_LAYERS):
         used = [r for r in rows if r["layers"] == layers and r["depth"] > FITTED_DEPTH and not r["reaches_floor"]]
         if len(used) > 2:
-            force = np.log([row["force"] for row in used])
-            entry = {"layers": layers, "from_force": used[0]["force"], "to_force": used[-1]["force"]}
+            force = [row["force"] for row in used]
+            entry = {"layers": layers, "from_force": force[0], "to_force": force[-1]}
             for key in ("depth", "width"):
-                entry[f"exponent_of_{key}"] = float(np.polyfit(force, np.log([row[key] for row in used]), 1)[0])
+                entry[f"exponent_of_{key}"] = power(force, [row[key] for row in used])
             found.append(entry)
     return found
 

@@ -14,16 +14,14 @@ Where an increment finds no equilibrium the path from event to event leads over 
 from __future__ import annotations
 
 import itertools
-import json
 import os
 import sys
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from timing import floor, least, write
+from timing import floor, least, stored, write
 from timing import scene as paper
 
 from granular_response.errors import SolveError
@@ -240,7 +238,7 @@ def whole(runs: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def main(path: str) -> None:
-    runs = json.loads(Path(path).read_text(encoding="utf-8"))["runs"] if Path(path).exists() else []
+    runs = stored(path)
     known = {(run["kind"], run["scene"]) for run in runs}
     scenes = [(kind, k, given) for kind, of in SCENES.items() for k, given in enumerate(of())]
     # a like part of each kind, so that what has been measured so far is of all

@@ -10,17 +10,14 @@ on one thread. Kernels are compiled before. Rows that are not asked for are kept
 from __future__ import annotations
 
 import argparse
-import json
 import multiprocessing
 import os
 import resource
 import time
 from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 from typing import Any
 
-import numpy as np
-from timing import processor, write
+from timing import power, processor, stored, write
 
 import granular_response as gr
 from granular_response.scene import Scene
@@ -128,9 +125,8 @@ def measure_whole(name: str) -> dict[str, Any]:
 def main(path: str, only: list[str]) -> None:
     # one thread: where others use the machine, threads that wait for each other count as processor time
     os.environ.update(NUMBA_NUM_THREADS="1", OMP_NUM_THREADS="1")
-    stored = json.loads(Path(path).read_text(encoding="utf-8")) if Path(path).exists() else {}
-    kept = {row["scene"]: row for row in stored.get("scenes", [])}
-    whole = {(row["scene"], row["disks"]): row for row in stored.get("whole", [])}
+    kept = {row["scene"]: row for row in stored(path, "scenes")}
+    whole = {(row["scene"], row["disks"]): row for row in stored(path, "whole")}
     for words in only or [*SCENES, *WHOLE]:
         with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as process:
             row = process.submit(measure if words in SCENES else measure_whole, words).result()
@@ -142,7 +138,7 @@ def main(path: str, only: list[str]) -> None:
         found = [kept[name] for name in SCENES if name in kept]
         wholes = sorted(whole.values(), key=lambda row: ([*CHANGES].index(row["scene"]), row["disks"]))
         paper = [row for row in found if row["scene"].startswith("slab") and row["disks"] < MOST]
-        slope = np.polyfit(*np.log([[row["disks"], row["seconds"]] for row in paper]).T, 1)[0] if paper[1:] else None
+        slope = power(*([row[key] for row in paper] for key in ("disks", "seconds"))) if paper[1:] else None
         write(path, {"exponent_of_seconds": slope, "scenes": found, "whole": wholes})
 
 

@@ -17,18 +17,17 @@ LINE = re.compile(r"^ *\d+ of (\d+)  ([\w@]+) +([\d.]+) s ")
 
 
 def main(path: str) -> None:
-    rows, machine = [], f"{processor()}, {os.cpu_count()} cores"
+    rows, totals, machine = [], [], f"{processor()}, {os.cpu_count()} cores"
     for collection in ("paper", "extensions"):
         command = [sys.executable, "-m", "granular_response_paper", "reproduce", "--force", "--collection", collection]
         root = Path(__file__).resolve().parents[1]
         said = subprocess.run(command, cwd=root, stdout=subprocess.PIPE, text=True, check=True).stdout
         found = [match.groups() for match in map(LINE.match, said.splitlines()) if match]
         assert found and len(found) == int(found[0][0]), f"{collection}: not every stage has run"
+        seconds = {stage: float(number) for _, stage, number in found}
         common = {"collection": collection, "measured_on": machine}
-        rows += [common | {"stage": stage, "seconds": float(seconds)} for _, stage, seconds in found]
-    names = dict.fromkeys(row["collection"] for row in rows)
-    totals = {name: sum(row["seconds"] for row in rows if row["collection"] == name) for name in names}
-    totals = [{"collection": name, "seconds": round(seconds, 1)} for name, seconds in totals.items()]
+        rows += [common | {"stage": stage, "seconds": number} for stage, number in seconds.items()]
+        totals.append({"collection": collection, "seconds": round(sum(seconds.values()), 1)})
     write(path, {"runs": rows, "totals": totals}, measured=False)
 
 

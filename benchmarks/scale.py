@@ -11,13 +11,11 @@ OUTPUT.json has for them. Kernels are compiled beforehand; large slabs take all 
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import tempfile
 from pathlib import Path
 
-import numpy as np
-from timing import process, processor, write
+from timing import power, process, processor, stored, write
 
 from granular_response.machine.threads import cores
 from granular_response.scene import Scene
@@ -87,34 +85,30 @@ def exponents(rows: list[dict]) -> list[dict]:
         of = [row for row in rows if row["method"] == method]
         large = [row for row in of if row["disks"] > 10_000] if method != "dynamics" else of
         if len(large) > 1:
-            n = np.log([row["disks"] for row in large])
-            entry = {"method": method, "from_disks": large[0]["disks"], "to_disks": large[-1]["disks"]}
+            n = [row["disks"] for row in large]
+            entry = {"method": method, "from_disks": n[0], "to_disks": n[-1]}
             for key in ("seconds", "cpu_seconds", "peak_gibibytes"):
-                entry[f"exponent_of_{key}"] = float(np.polyfit(n, np.log([row[key] for row in large]), 1)[0])
+                entry[f"exponent_of_{key}"] = power(n, [row[key] for row in large])
             found.append(entry)
     return found
 
 
 def main(path: str, most: int, threads: int, only: tuple[str, int] | None) -> None:
-    earlier = json.loads(Path(path).read_text(encoding="utf-8"))["runs"] if Path(path).exists() else []
-    earlier = [{"threads": 1, **row} for row in earlier]
+    known = {(row["method"], row["layers"]): row for row in stored(path)}
     for method, settings in METHODS.items():  # compiles
         for layers, per_row in ((8, 25),) if method == "dynamics" else ((8, 25), (45, 181)):  # bands and fronts
             measure(layers, per_row, method, settings["friction"], 1.0, 1)
-    rows: list[dict] = []
-    for layers, per_row in SLABS:
-        for method, settings in METHODS.items():
-            if layers > settings["layers"]:
-                continue
-            if layers * per_row > most or (only and only != (method, layers)):
-                rows += [row for row in earlier if (row["method"], row["layers"]) == (method, layers)]
-                continue
-            rows.append(measure(layers, per_row, method, settings["friction"], settings["force"], threads))
-            print(rows[-1], flush=True)
-            # after every run: the last ones take long
-            if not only:
-                write(path, {"exponents": exponents(rows), "runs": rows})
-    write(path, {"exponents": exponents(rows), "runs": rows})
+    asked = [(method, *slab) for slab in SLABS for method in METHODS if slab[0] <= METHODS[method]["layers"]]
+    for method, layers, per_row in asked:
+        if layers * per_row > most or only not in (None, (method, layers)):
+            continue
+        settings = METHODS[method]
+        row = measure(layers, per_row, method, settings["friction"], settings["force"], threads)
+        print(row, flush=True)
+        known[method, layers] = row
+        # after every run: the last ones take long
+        rows = [known[one[:2]] for one in asked if one[:2] in known]
+        write(path, {"exponents": exponents(rows), "runs": rows})
 
 
 if __name__ == "__main__":

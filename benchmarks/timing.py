@@ -1,4 +1,4 @@
-"""What all benchmarks share: the scene they time, seconds of calls and of processes, and whole JSON files."""
+"""What all benchmarks share: the scene they time, seconds of calls and of processes, exponents, and JSON files."""
 
 from __future__ import annotations
 
@@ -28,28 +28,15 @@ def processor() -> str:
     return names[0] if names else platform.processor() or platform.machine()
 
 
-def scene(friction: float, force: float | None = None, **protocol: Any) -> Scene:
-    """The paper's slab with one load on the middle of its top row, or none."""
-    loads = [] if force is None else [{"disk": "top-centre", "force": [0.0, -force]}]
+def scene(friction: float, force: float, **protocol: Any) -> Scene:
+    """The paper's slab with one load on the middle of its top row."""
+    loads = [{"disk": "top-centre", "force": [0.0, -force]}]
     return Scene.from_dict({"contact": {"friction": friction}, "loads": loads, "protocol": protocol})
 
 
 def floor(state, problem: Problem) -> np.ndarray:
     """Forces of the floor on the bottom row."""
     return state.walls.normal_force[: int((problem.packing.row == 0).sum())]
-
-
-def interleaved(
-    actions: list[Callable[[], object]], repeats: int, clock: Callable[[], float] = time.perf_counter
-) -> list[float]:
-    """Least seconds of each of several actions whose repeats take turns, so that they meet the same machine."""
-    seconds = np.empty((repeats, len(actions)))
-    for row in seconds:
-        for k, action in enumerate(actions):
-            start = clock()
-            action()
-            row[k] = clock() - start
-    return seconds.min(axis=0).tolist()
 
 
 def least(action: Callable[[], Any], repeats: int = 1, long: float = np.inf) -> tuple[Any, dict[str, float]]:
@@ -76,6 +63,16 @@ def process(command: list[str], **environment: str) -> dict[str, float]:
         raise RuntimeError(f"{' '.join(command)} ended with code {running.returncode}")
     used = usage.ru_utime + usage.ru_stime
     return {"seconds": seconds, "cpu_seconds": used, "peak_gibibytes": usage.ru_maxrss / 2**20}
+
+
+def power(x: list[float], y: list[float]) -> float:
+    """The exponent of the power law that is fitted to y against x."""
+    return float(np.polyfit(np.log(x), np.log(y), 1)[0])
+
+
+def stored(path: str, name: str = "runs") -> list[dict[str, Any]]:
+    """The rows under a name in a JSON file; none before its first run."""
+    return json.loads(Path(path).read_text(encoding="utf-8")).get(name, []) if Path(path).exists() else []
 
 
 def write(path: str, metrics: dict[str, Any], *, measured: bool = True) -> None:

@@ -8,7 +8,6 @@ time of a step but not its processor time, where the system tells it; both are s
 
 from __future__ import annotations
 
-import json
 import sys
 import tempfile
 from collections.abc import Callable
@@ -18,7 +17,7 @@ from typing import Any
 
 import numpy as np
 from peers import codes, kernel, ours, processes
-from timing import write
+from timing import stored, write
 
 from granular_response import __version__
 
@@ -65,7 +64,7 @@ def measure_steps(layers: int, per_row: int, settle: int, steps: int, there: lis
 
 def main(path: str, least: int = 0, most: int = 10**9) -> None:
     there, skipped = codes.there()
-    earlier = json.loads(Path(path).read_text(encoding="utf-8"))["runs"] if Path(path).exists() else []
+    earlier = stored(path)
     rows: list[dict] = []
     for layers, per_row, settle, _ in kernel.SLABS:
         n = kernel.slab(layers, per_row, FRICTION).n

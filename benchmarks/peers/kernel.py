@@ -7,10 +7,9 @@ nothing and misleads). Times are of the processor. LAMMPS is recorded as absent 
 from __future__ import annotations
 
 import sys
-import time
 
 from peers import lammps
-from timing import interleaved, write
+from timing import least, write
 
 from granular_response.scene import Scene
 from granular_response.solvers.dynamics import Dynamics
@@ -34,12 +33,11 @@ def measure(layers: int, per_row: int, friction: float, settle: int, steps: int)
     problem = slab(layers, per_row, friction)
     dynamics = Dynamics(problem, problem.bare_state(), "beeman", TIME_STEP)
     dynamics.advance(settle)
-    repeats = max(5, REPEATS if problem.n < 10_000 else REPEATS // 4)
+    repeats = REPEATS if problem.n < 10_000 else REPEATS // 4
     theirs = None
     if lammps.executable():
         theirs = lammps.step_time(problem.packing, friction, settle, steps, TIME_STEP)
-    (ours,) = interleaved([lambda: dynamics.advance(steps)], repeats, time.process_time)
-    ours /= steps
+    ours = least(lambda: dynamics.advance(steps), repeats)[1]["processor"] / steps
     return {
         "disks": problem.n,
         "friction": friction,

@@ -16,6 +16,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -50,7 +51,7 @@ class Run:
 
 def executable() -> str | None:
     """Path of `lmp`, or None where it is not installed."""
-    return processes.found("lmp")
+    return shutil.which("lmp")
 
 
 def version(command: str | None = None) -> str | None:

@@ -20,11 +20,6 @@ MODEL = "gran model hooke/stiffness tangential history"
 STILL = "omegax 0 omegay 0 omegaz 0"
 
 
-def executable() -> str | None:
-    """Path of `liggghts`, or None where it is not installed."""
-    return processes.found("liggghts")
-
-
 def version(command: str) -> str:
     """Its version."""
     text = subprocess.run([command, "-log", "none", "-h"], capture_output=True, text=True).stdout

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 import tempfile
 from collections.abc import Iterator
@@ -121,8 +120,3 @@ def own_peak() -> float | None:
     """Peak memory of this process."""
     status = Path("/proc/self/status")
     return peak(status.read_text()) if status.exists() else None
-
-
-def found(name: str, variable: str | None = None) -> str | None:
-    """Path of a command: that which an environment variable names, or the one on the path."""
-    return os.environ.get(variable) if variable else shutil.which(name)

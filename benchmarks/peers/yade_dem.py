@@ -20,11 +20,6 @@ from peers import lammps, processes
 from granular_response.scene import Packing
 
 
-def executable() -> str | None:
-    """Path of `yade`, or None where it is not installed."""
-    return processes.found("yade")
-
-
 def version(command: str) -> str:
     """Its version."""
     text = subprocess.run([command, "--version"], capture_output=True, text=True)

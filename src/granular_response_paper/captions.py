@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 import re
 import string
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -191,11 +191,6 @@ def bracket(low: float, high: float, unit: str = WEIGHT) -> str:
     """A bracket in words: one value where both ends agree to three digits."""
     ends = f"{low:.3g}", f"{high:.3g}"
     return f"{ends[0]} {unit}" if ends[0] == ends[1] else f"{ends[0]} to {ends[1]} {unit}"
-
-
-def lettered(panels: Iterable[str]) -> str:
-    """What each panel shows."""
-    return ", ".join(f"({chr(ord('a') + k)}) {text}" for k, text in enumerate(panels))
 
 
 def peaks(number: int) -> str:

@@ -46,9 +46,10 @@ def test_every_picture_has_a_title_of_its_own(group):
     assert len(set(titles)) == len(titles)
 
 
-def test_captions_on_the_page_have_few_words():
+@pytest.mark.parametrize("collection", collections(), ids=lambda one: one.name)
+def test_captions_on_the_page_have_few_words(collection):
     """With the title, without the parameters, which are folded."""
-    shown = pictures.collect(ROOT / report.FIGURES)
+    shown = pictures.collect(ROOT / collection.folder / report.FIGURES)
     words = {picture.stem: len(f"{picture.title}. {picture.caption}".split()) for picture in shown}
     assert words and not {stem: count for stem, count in words.items() if count > MOST_WORDS}
 

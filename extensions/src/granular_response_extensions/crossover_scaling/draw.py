@@ -11,7 +11,7 @@ from matplotlib.ticker import LogLocator
 from numpy.typing import ArrayLike
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, Datasets, of_group, of_scene, values
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene
 from granular_response_paper.panels import different, family, label_ends, titles
 
 from .parameters import Parameters
@@ -44,10 +44,10 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     powers = datasets["powers"]
     frictions = different(powers["friction"][of_layers(powers)])
     given = of_scene(parameters.base, friction=frictions, normal_stiffness=None, packing=None)
-    exponent = powers["exponent"].sel(event="crossover").values[:, 0]
-    layers = [f"{said(exponent[k])} ({name(powers, k)})" for k in of_layers(powers) if np.isfinite(exponent[k])]
-    plain = values(layers).replace("$", "").replace("\\mu", "µ").replace("\\propto", "∝")
-    finding = f"The onset force of two peaks grows with the layers to the power of {plain}."
+    exponents = powers["exponent"].sel(event="crossover").values[of_layers(powers), 0]
+    known = sorted(exponents[np.isfinite(exponents)])
+    ends = " to ".join(dict.fromkeys(said(power) for power in (*known[:1], *known[-1:])))
+    finding = f"The onset force of two peaks grows with the number of layers to the power of {ends}." if ends else ""
     surveyed = " Open symbols: slabs of the survey." if any(one.surveyed for one in parameters.series) else ""
     stem = "crossover_scaling"
     return of_group(stem, {stem: given}, {stem: finding}, p=parameters, survey=surveyed)

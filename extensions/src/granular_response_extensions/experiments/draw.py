@@ -47,12 +47,11 @@ def _cases(means: xr.Dataset) -> tuple[list[int], list[int], list[int]]:
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     p = parameters
-    said = of_scene(p.base, polydispersity=None, packing=None, width=p.width)
     sizes = ", ".join(f"{name}: {packing.build().n} disks" for name, packing in p.packings.items())
-    numbers = [case.realizations for case in p.cases]
-    counts = f"{min(numbers)} to {max(numbers)}"
+    counts = sorted({case.realizations for case in p.cases})
+    said = of_scene(p.base, polydispersity=None, packing=sizes, width=p.width, realizations=counts)
     pictures = {"experiments": said, "experiments_images": said}
-    return of_group("experiments", pictures, _findings(datasets["means"]), p=p, sizes=sizes, counts=counts)
+    return of_group("experiments", pictures, _findings(datasets["means"]), p=p)
 
 
 def _findings(means: xr.Dataset) -> dict[str, str]:

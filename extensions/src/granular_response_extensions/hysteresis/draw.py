@@ -27,12 +27,11 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     curves = datasets["curves"]
-    cases, one = looped(curves["polydispersity"].values, curves["friction"].values)
+    cases, _ = looped(curves["polydispersity"].values, curves["friction"].values)
     lattices = [parameters.cases[case] for case in cases]
     said = of_scene(parameters.base, friction=None, polydispersity=None)
     given = said | {"friction": [case.friction for case in lattices], "force": lattices[0].forces[-1]}
-    finding, friction = _finding(curves.isel(case=cases)), parameters.cases[one].friction
-    return of_group("hysteresis", {"hysteresis_loops": given}, {"hysteresis_loops": finding}, friction=friction)
+    return of_group("hysteresis", {"hysteresis_loops": given}, {"hysteresis_loops": _finding(curves.isel(case=cases))})
 
 
 def _finding(curves: xr.Dataset) -> str:

@@ -11,7 +11,7 @@ from matplotlib.patches import Circle
 
 from granular_response.plot import style
 from granular_response_extensions.panels import materials
-from granular_response_paper.captions import Caption, Datasets, lettered, of_group, of_scene, values
+from granular_response_paper.captions import Caption, Datasets, of_group, of_scene, values
 from granular_response_paper.panels import titles
 
 from .parameters import Parameters
@@ -30,7 +30,6 @@ def draw(datasets: Datasets) -> dict[str, Figure]:
 
 def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     packings = datasets["packings"]
-    maps = _mapped(packings)
     like = packings.isel(case=packings["polydispersity"].values == packings["polydispersity"].values[-1])
     medians = [
         f"{float(np.nanmedian(one)):.2g} at µ = {float(mu):g}"
@@ -41,10 +40,6 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
         "influence",
         {"influence_map": said},
         {"influence_map": f"A small force changes the floor forces by a median of {values(medians)} times itself."},
-        panels=lettered(
-            f"δ = {float(delta):g}, µ = {float(mu):g}"
-            for delta, mu in zip(maps["polydispersity"].values, maps["friction"].values, strict=True)
-        ),
     )
 
 
