@@ -266,7 +266,7 @@ def numerics_study():
         "swing": dataset(
             {"stop_rule": ["instantaneous", "envelope"]}, {"reading": 3}, mean_acceleration=("stop_rule reading", 1e-6)
         ),
-        "disorder": dataset(sizes={"realization": 12}, **means),
+        "disorder": dataset(sizes={"realization": 15}, **means),
         "time_step": dataset({"time_step": [5e-4, 2.5e-4]}, difference=("time_step", [0.0, 1e-5])),
         "integrators": dataset({"integrator": ["beeman", "gear"]}, difference=("integrator", [0.0, 1e-6])),
         "damping": dataset({"damping_ratio": [0.1, 0.2, 0.5, 0.8, 1.0]}, **damping),
