@@ -65,7 +65,7 @@ def test_packings_of_the_survey_are_those_that_the_group_would_make(group, tmp_p
     key, own = PARTS[group]
     direct = simulate(group, section | {key: [own[0]]})
     file = tmp_path / "params.yaml"
-    given = section | {key: [own[1]], "survey_file": str(tmp_path / "data" / f"{group}.nc")}
+    given = section | {key: [own[1]], "survey_file": str(tmp_path / f"{group}.nc")}
     file.write_text(yaml.safe_dump({"common": {"method": "auto"}, group: given}))
     path = survey.run(surveyed.block(group, file), tmp_path, workers=1)
     assert str(path) == given["survey_file"]

@@ -7,7 +7,7 @@ ten displaced copies under each force tell which way the response leans, and the
 contact reaches its limit, whether sliding or opening breaks the symmetry.
 
 The study takes some minutes and stands outside the pipeline of the figures; its dataset is part of the repository,
-``survey/data/robustness.nc``. ``python -m granular_response_paper.survey.robustness`` makes it anew. Units are reduced:
+``data/survey/robustness.nc``. ``python -m granular_response_paper.survey.robustness`` makes it anew. Units are reduced:
 mean radius, mean mass, g.
 """
 
