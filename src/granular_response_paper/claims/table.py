@@ -34,6 +34,7 @@ from .claim import (
     Test,
     Verdict,
     judge,
+    together,
 )  # fmt: skip
 from .numbers import Quantity, rounded, text
 
@@ -139,25 +140,32 @@ def key(kind: str) -> str:
 
 
 def _row(entry: Verdict) -> dict[str, Any]:
-    gravity, lattice = (entry.others(prepared) for prepared in ("gravity", "lattice"))
     return {
         **_named(entry.claim, "id", "place", "paper", "short", "source", "figures", "group", "part", "row", "primary"),
         **_named(entry, "verdict", "star", "here", "cases"),
         "remark": entry.claim.remark,
-        "gravity": _held(gravity),
-        "lattice": _held(lattice),
+        "gravity": _held(entry, "gravity"),
+        "lattice": _held(entry, "lattice"),
         **_interval(entry.primary[0].found if entry.primary else None),
         "tests": [_tested(test) for test in entry.tests],
     }
 
 
-def _held(found: Mapping[str, str]) -> dict[str, Any]:
-    """In how many preparations a sentence holds, of how many that were tried, and the words for it."""
-    holds, of = sum(one == "yes" for one in found.values()), len(found)
+def _held(entry: Verdict, prepared: str) -> dict[str, Any]:
+    """In how many preparations a sentence holds, of how many that were tried, and the words for it, also where not
+    every number of it was asked. The primary case counts alone if it was prepared so.
+    """
+    found, asked = entry.others(prepared), Counter(one.case for one in entry.tests if one.case.prepared == prepared)
     by_outcome = {name: [case for case, one in found.items() if one == name] for name in ("yes", "no", "cannot tell")}
-    open_in = len(by_outcome["cannot tell"])
+    own = {case: one for case, one in found.items() if entry.claim.primary in case} or found
+    outcomes = Counter(own.values())
+    holds, open_in, of = outcomes["yes"], outcomes["cannot tell"], len(own)
+    literal = [one for case, one in own.items() if OF_THE_TEXT in case]
     said = "open in all" if open_in == of else f"holds in {holds}" + (f", open in {open_in}" if open_in else "")
-    return {"holds": holds, "of": of, "text": f"{said} of {of}" if of else "not tried", **by_outcome}
+    whole = all(number == len(entry.claim.asks) for number in asked.values())
+    said = f"{said} of {of}{'' if whole else ', asked in part'}" if of else "not tried"
+    in_text = together(literal) if literal else ""
+    return {"holds": holds, "of": of, "whole": whole, "text": said, "literal": in_text, **by_outcome}
 
 
 def _tested(test: Test) -> dict[str, Any]:
@@ -246,15 +254,12 @@ def quoted(found: dict[str, Any]) -> str:
     starred = sum(bool(row["star"]) for row in statements)
     rest = ", ".join(f"{ROWS[row]} ({number})" for row, number in found["checks"].items() if number)
     tried = {name: [row[name] for row in statements if row[name]["of"]] for name in ("gravity", "lattice")}
-    whole = {name: sum(one["holds"] == one["of"] for one in found_) for name, found_ in tried.items()}
-    literal = [
-        {kind for kind in ("yes", "no", "cannot tell") if any(OF_THE_TEXT in case for case in one[kind])}
-        for one in tried["lattice"]
-    ]
+    whole = {name: sum(one["holds"] == one["of"] and one["whole"] for one in some) for name, some in tried.items()}
+    literal = [one["literal"] for one in tried["lattice"] if one["literal"]]
     lines.append(
         f"{starred} of these verdicts change if the threshold of a qualitative term is halved or doubled. With gravity "
         f"applied in other ways {whole['gravity']} of {len(tried['gravity'])} statements hold in every way, from "
         f"other initial lattices {whole['lattice']} of {len(tried['lattice'])}, from that of the text "
-        f"{literal.count({'yes'})} of {sum(map(bool, literal))}. Not counted: {rest}."
+        f"{literal.count('yes')} of {len(literal)}. Not counted: {rest}."
     )
     return "\n".join(lines)
