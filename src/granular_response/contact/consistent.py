@@ -28,6 +28,8 @@ def contradiction(law: Law) -> str:
     """What in a law contradicts itself, in words; nothing if all its parts belong together."""
     if said := _shapes(law):
         return said
+    if not 0.0 < (stiffest := law.stiffest(1.0)) < np.inf:
+        return f"stiffest is {stiffest!r} at a force of 1, must be a finite number greater than 0"
     for first, second in BODIES:
         shapes = law.shapes(np.array([first]), None if second is None else np.array([second]))
         shape = None if shapes is None else float(shapes[0])
