@@ -13,6 +13,7 @@ from functools import cache
 import numba as nb
 import numpy as np
 
+from ..machine.lanes import spread
 from .coulomb import limit, limit_slope
 from .law import Law, elastic_force, energy, stiffness
 
@@ -78,6 +79,7 @@ def _asked() -> Callable:
 
     @nb.njit(error_model="numpy")
     def asked(law, overlap, shape):
+        limit(law, elastic_force(law, spread(overlap), shape))  # dynamics has several contacts at once
         force, stiff = elastic_force(law, overlap, shape), stiffness(law, overlap, shape)
         return energy(law, overlap, shape), force, stiff, limit(law, force), limit_slope(law, force)
 

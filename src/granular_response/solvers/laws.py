@@ -85,7 +85,8 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
         plain = re.sub(r"\x1b\[\d+m", "", str(error))
         cause = re.search(r"Error: (?:Failed in .*\n)?(.*(?:\n.* signature: .*)*)", plain)
         raise LawError(
-            f"law = {law.__qualname__}: cannot be compiled: {' '.join((cause[1] if cause else plain).split())}"
+            f"law = {law.__qualname__}: cannot be compiled, must be arithmetic and functions of machine/lanes.py: "
+            + " ".join((cause[1] if cause else plain).split())
         ) from error
     if said:
         raise LawError(f"law = {law.__qualname__}: {said}")

@@ -234,6 +234,13 @@ class Misspelt(Cubic):
         return self.faktor * overlap
 
 
+class Powered(Cubic):
+    """For one contact alone."""
+
+    def elastic_force(self, overlap, shape):
+        return self.factor * overlap**3.0
+
+
 class Renamed(Cubic):
     def energy(self, delta, shape):
         return delta
@@ -252,8 +259,12 @@ class Nothing(Cubic):
         (Softer, r"Softer: stiffness is .* at overlap 1\.01e-06, where the derivative of elastic_force is"),
         (Unlike, r"Unlike: shapes is None for two disks or for a disk and a wall, must be for both or for neither$"),
         (Limp, r"Limp: stiffest is nan at a force of 1, must be a finite number greater than 0$"),
-        (Misspelt, r"Misspelt: cannot be compiled: Unknown attribute 'faktor' of type Misspelt\(.*\)$"),
-        (Renamed, r"Renamed: cannot be compiled: .* signature: \(self, delta, shape\)$"),
+        (Misspelt, r"Misspelt: cannot be compiled, .*: Unknown attribute 'faktor' of type Misspelt\(.*\)$"),
+        (
+            Powered,
+            r"Powered: cannot be compiled, must be arithmetic and functions of machine/lanes\.py: .*function pow",
+        ),
+        (Renamed, r"Renamed: cannot be compiled, .* signature: \(self, delta, shape\)$"),
         (Nothing, r"Nothing: of\(\) gave None, must give the law$"),
         (OneShape, r"OneShape: shapes is 0\.5 for 3 contacts, must be as many finite numbers$"),
     ],
