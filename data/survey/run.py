@@ -31,7 +31,7 @@ def main() -> None:
     from granular_response.sweeps.resources import using
     from granular_response_extensions.surveyed import block as packings
     from granular_response_extensions.surveyed import surveyed_groups
-    from granular_response_paper.checkout import CheckoutError, check
+    from granular_response_paper.checkout import CheckoutError, unchanged
     from granular_response_paper.registry import GroupError, collections
     from granular_response_paper.survey.simulate import SurveyError, ensemble, read_parameters, run
 
@@ -41,15 +41,13 @@ def main() -> None:
 
         executor = Client(given.scheduler).get_executor()
     try:
-        for collection in collections():
-            check(collection, HERE)
         groups = surveyed_groups()
         for name in given.blocks or [*read_parameters(own).blocks, *groups]:
             if name in groups:
                 block = packings(name, HERE.parents[1] / "extensions" / "params.yaml")
             else:
                 block = ensemble(name, own, given.realizations)
-            with using(executor=executor):
+            with using(executor=executor), unchanged(collections()[-1], HERE):
                 print(f"\n{run(block, HERE, workers=given.workers, progress=progress)}")
     except (CheckoutError, GroupError, SceneError, StoreError, SurveyError, SweepError) as error:
         sys.exit(f"error: {error}")

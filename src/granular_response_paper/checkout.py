@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -24,18 +27,36 @@ def check(collection: Collection = PAPER, start: Path = Path(".")) -> None:
     here = start.resolve()
     folders = [one for above in (here, *here.parents) for one in (above, above / collection.folder)]
     checkouts = [one for one in folders if (one / "dvc.yaml").is_file()]
-    names = ("granular_response", "granular_response_paper", collection.package.partition(".")[0])
-    for package in dict.fromkeys(names):
+    for package, imported in _imported(collection).items():
         own = next((one for top in checkouts if (one := top / "src" / package).is_dir()), None)
-        spec = find_spec(package)
-        if own is None or spec is None or spec.origin is None:
-            continue
-        imported = Path(spec.origin).resolve().parent
-        if imported != own.resolve() and (name := _difference(own, imported)):
+        if own and imported != own.resolve() and (name := _difference(own, imported)):
             raise CheckoutError(
                 f"{package} runs from {imported}, whose {name} is not that of this checkout ({own}): "
                 "use the checkout's own environment, made by make setup"
             )
+
+
+@contextmanager
+def unchanged(collection: Collection = PAPER, start: Path = Path(".")) -> Iterator[None]:
+    """Call ``check``, and at the end raise CheckoutError if a module that ran was edited meanwhile.
+
+    DVC records files as they are when a stage has ended.
+    """
+    check(collection, start)
+    folders = _imported(collection).values()
+    before = {folder / name: content for folder in folders for name, content in _files(folder).items()}
+    yield
+    ran = {Path(file).resolve() for one in list(sys.modules.values()) if (file := getattr(one, "__file__", None))}
+    for path in sorted(ran & before.keys()):
+        if not path.is_file() or path.read_bytes() != before[path]:
+            raise CheckoutError(f"{path} changed while it ran; run the stage again")
+
+
+def _imported(collection: Collection) -> dict[str, Path]:
+    """The folders that library, paper and collection are imported from."""
+    names = dict.fromkeys(("granular_response", "granular_response_paper", collection.package.partition(".")[0]))
+    specs = {name: find_spec(name) for name in names}
+    return {name: Path(one.origin).resolve().parent for name, one in specs.items() if one and one.origin}
 
 
 def _difference(own: Path, imported: Path) -> str:

@@ -61,9 +61,8 @@ def simulate(
     from .pipeline import simulation
 
     loaded()
-    checkout.check(collection_of(group))
     try:
-        with TerminalProgress() as progress:
+        with checkout.unchanged(collection_of(group)), TerminalProgress() as progress:
             path = simulation.simulate(group, output, parameter_file=params, workers=workers, progress=progress)
     except KeyboardInterrupt:
         if count := simulation.finished(group, output):

@@ -112,6 +112,21 @@ def test_damaged_machine_code_is_compiled_again_and_named_once(called, tmp_path,
 
 
 @pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
+def test_code_for_other_arguments_and_a_pipe_are_not_taken_for_what_the_index_names(called, tmp_path):
+    """A file system without locks, or a folder that was copied in parts."""
+    called("i8"), called("f8")
+    one, other = (tmp_path / "cache").rglob("shared_kernel*.nbc")
+    one.rename(other.with_suffix("")), other.rename(one), other.with_suffix("").rename(other)
+    said, messages = called("i8")
+    assert said == [["6", "0"]] and "cannot be read (ValueError)" in messages[0]
+    for kind in "nbi", "nbc":
+        for file in [*(tmp_path / "cache").rglob(f"shared_kernel*.{kind}")]:
+            file.unlink()
+            os.mkfifo(file)
+        assert called("i8")[0] == [["6", "0"]]
+
+
+@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
 def test_a_pipe_in_the_place_of_the_lock_is_not_waited_for(tmp_path, monkeypatch):
     monkeypatch.setattr(machine_code, "cache_folder", lambda: tmp_path)
     compiled = machine_code.kernel(_doubled)

@@ -126,6 +126,16 @@ def test_an_environment_that_is_not_whole_is_made_anew(setup, damage):
     assert not Path(".venv/of-before").exists()
 
 
+@pytest.mark.parametrize("content", [b"", b"\xff\0"], ids=["empty", "spoilt"])
+@pytest.mark.parametrize("name", [".folder", ".paper", "direct_url.json"])
+def test_a_note_of_the_set_up_that_is_damaged_is_made_anew(setup, name, content):
+    whole(setup)
+    note, *_ = Path(".venv").rglob(name)
+    note.write_bytes(content)
+    whole(setup)
+    assert note.read_bytes() != content
+
+
 def test_an_environment_of_somebody_is_not_lost(setup, capsys):
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", ".venv"], check=True)
     Path(".venv/mine").touch()

@@ -13,6 +13,7 @@ from functools import cache
 import numba as nb
 import numpy as np
 
+from ..machine.lanes import spread
 from .coulomb import limit, limit_slope
 from .law import Law, elastic_force, energy, stiffness
 
@@ -28,6 +29,8 @@ def contradiction(law: Law) -> str:
     """What in a law contradicts itself, in words; nothing if all its parts belong together."""
     if said := _shapes(law):
         return said
+    if not 0.0 < (stiffest := law.stiffest(1.0)) < np.inf:
+        return f"stiffest is {stiffest!r} at a force of 1, must be a finite number greater than 0"
     for first, second in BODIES:
         shapes = law.shapes(np.array([first]), None if second is None else np.array([second]))
         shape = None if shapes is None else float(shapes[0])
@@ -76,6 +79,7 @@ def _asked() -> Callable:
 
     @nb.njit(error_model="numpy")
     def asked(law, overlap, shape):
+        limit(law, elastic_force(law, spread(overlap), shape))  # dynamics has several contacts at once
         force, stiff = elastic_force(law, overlap, shape), stiffness(law, overlap, shape)
         return energy(law, overlap, shape), force, stiff, limit(law, force), limit_slope(law, force)
 

@@ -29,6 +29,8 @@ import numba as nb
 from numba.core import caching, compiler_lock
 from numba.extending import overload
 
+from ..inputs import read_bytes
+
 _log = logging.getLogger(__name__)
 _PACKAGE = Path(__file__).parents[1]
 #: Folders of the package whose files make kernels or are inlined into them.
@@ -102,11 +104,20 @@ def tell_apart(of: type) -> None:
 
 
 class _Files(caching.IndexDataCacheFile):
-    """Numba's index and data files of one kernel, each behind the digest of its content."""
+    """Numba's index and data files of one kernel, each behind the digest of its content; data with what it is for."""
+
+    def save(self, key: Any, data: Any) -> None:
+        super().save(key, (key, data))
+
+    def load(self, key: Any) -> Any:
+        made_for, data = super().load(key) or (key, None)
+        if made_for != key:  # the index is of another time
+            raise ValueError("its content is for other arguments")
+        return data
 
     def _load_index(self) -> dict:
         try:
-            version, packed = pickle.loads(_checked(Path(self._index_path).read_bytes()))
+            version, packed = pickle.loads(_checked(read_bytes(self._index_path)))
         except FileNotFoundError:
             return {}
         stamp, overloads = pickle.loads(packed) if version == self._version else (None, {})
@@ -116,7 +127,7 @@ class _Files(caching.IndexDataCacheFile):
         self._write(self._index_path, (self._version, self._dump((self._source_stamp, overloads))))
 
     def _load_data(self, name: str) -> Any:
-        return pickle.loads(_checked(Path(self._data_path(name)).read_bytes()))
+        return pickle.loads(_checked(read_bytes(self._data_path(name))))
 
     def _save_data(self, name: str, data: Any) -> None:
         self._write(self._data_path(name), data)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -46,8 +47,8 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
     Raises
     ------
     LawError
-        When another law has the name, the law lacks something, or its energy, force and stiffness are not derivatives
-        of each other. They are compared again with the parameters of each scene.
+        When another law has the name, the law lacks something or cannot be compiled, or its energy, force and stiffness
+        are not derivatives of each other. They are compared again with the parameters of each scene.
 
     Examples
     --------
@@ -58,7 +59,8 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
     require(isinstance(name, str) and name.isidentifier(), rule, LawError)
     if name in KNOWN_LAWS and law_class(name) is not law:
         raise LawError(f"name = {name!r}: is the name of another law, {law_class(name).__qualname__}")
-    lacks = [part for part in FIELDS if part not in getattr(law, "_fields", ())]
+    lacks = [] if isinstance(law, type) else ["class"]
+    lacks += [part for part in FIELDS if part not in getattr(law, "_fields", ())]
     lacks += [part for part in METHODS if not callable(getattr(law, part, None))]
     rule = f"law = {law!r}: has no {', '.join(lacks)}; must be a named tuple with the parts of a law"
     require(not lacks, rule, LawError)
@@ -71,7 +73,17 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
         raise LawError(
             f"law = {law.__qualname__}: {error}; parameters must have defaults, and of() take them"
         ) from None
-    if said := contradiction(made):
+    require(isinstance(made, law), f"law = {law.__qualname__}: of() gave {made!r}, must give the law", LawError)
+    try:
+        said = contradiction(made)
+    except Exception as error:  # of the compiler, which says first what it tried
+        plain = re.sub(r"\x1b\[\d+m", "", str(error))
+        cause = re.search(r"Error: (?:Failed in .*\n)?(.*(?:\n.* signature: .*)*)", plain)
+        raise LawError(
+            f"law = {law.__qualname__}: cannot be compiled, must be arithmetic and functions of machine/lanes.py: "
+            + " ".join((cause[1] if cause else plain).split())
+        ) from error
+    if said:
         raise LawError(f"law = {law.__qualname__}: {said}")
     KNOWN_LAWS[name] = KnownLaw(parameters, law)
 

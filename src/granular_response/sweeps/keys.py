@@ -122,7 +122,7 @@ class _Content:
         if isinstance(value, range):
             return [str(value)]
         if isinstance(value, Enum):
-            return [value.name]
+            return [value.name or value.value]  # bits of a Flag that have no name
         if isinstance(value, (list, tuple)):
             return plain(value)
         if isinstance(value, (Mapping, set, frozenset)):
@@ -154,11 +154,12 @@ class _Content:
         kind = type(value)
         if kind.__module__.partition(".")[0] in self.by_name or isinstance(value, (Description, Enum, Path)):
             return []
-        known = {one.name for one in dataclasses.fields(value)} if dataclasses.is_dataclass(value) else set()
+        state = object.__getstate__(value)  # of __dict__, and of __slots__ where there are any
         more = {
             name: one
-            for name, one in getattr(value, "__dict__", {}).items()
-            if name not in known and not isinstance(getattr(kind, name, None), functools.cached_property)
+            for part in (state if isinstance(state, tuple) else (state,))
+            for name, one in (part or {}).items()
+            if not isinstance(getattr(kind, name, None), functools.cached_property)
         }
         return [self.plain(more)] if more else []
 

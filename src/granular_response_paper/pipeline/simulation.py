@@ -82,7 +82,8 @@ def simulate(
     Finished tasks of its sweeps are kept beside the output until it is whole, so a run that was interrupted
     continues; rest states are kept there for other groups.
 
-    Raises what ``parameters`` raises, and GroupError where its parameters leave nothing to be measured.
+    Raises what ``parameters`` raises, and GroupError where its parameters leave nothing to be measured or were edited
+    meanwhile.
     """
     function = group_member(group, "simulate", "simulate")
     given, described = parameters(group, parameter_file)
@@ -101,6 +102,8 @@ def simulate(
                 raise SweepError(f"{parameter_file}: section {group}: {error}") from error.__cause__
             problem = " ".join(str(error).split())
             raise GroupError(f"{parameter_file}: section {group} cannot be measured: {problem}") from error
+        if parameters(group, parameter_file)[0] != given:  # DVC would record the new ones
+            raise GroupError(f"{parameter_file}: section {group} changed while it ran; run the stage again")
         store.write(output, datasets, {"group": group, "parameters": text.write(given)}, keep=True)
         shutil.rmtree(kept, ignore_errors=True)
     return output

@@ -168,6 +168,7 @@ def test_a_law_without_parameters_is_known_in_other_processes_and_tells_results_
         (("two words", Cubic), "must be letters, digits and underscores"),
         (("mine", Cohesion), "has no normal_stiffness, .* must be a named tuple"),
         (("mine", Cubic, dict), "must be a subclass of"),
+        (("mine", Cubic(*range(len(Cubic._fields)))), "has no class; must be a named tuple"),
         (("mine", Cohesive), "of.* missing 1 required keyword-only argument: 'strength'"),
     ],
 )
@@ -223,12 +224,48 @@ class OneShape(Cubic):
         return 0.5
 
 
+class Limp(Cubic):
+    def stiffest(self, force):
+        return np.nan
+
+
+class Misspelt(Cubic):
+    def energy(self, overlap, shape):
+        return self.faktor * overlap
+
+
+class Powered(Cubic):
+    """For one contact alone."""
+
+    def elastic_force(self, overlap, shape):
+        return self.factor * overlap**3.0
+
+
+class Renamed(Cubic):
+    def energy(self, delta, shape):
+        return delta
+
+
+class Nothing(Cubic):
+    @classmethod
+    def of(cls, *constants):
+        return None
+
+
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
         (Stronger, r"Stronger: elastic_force is \S+ at overlap 1\.01e-06, where the derivative of energy is \S+$"),
         (Softer, r"Softer: stiffness is .* at overlap 1\.01e-06, where the derivative of elastic_force is"),
         (Unlike, r"Unlike: shapes is None for two disks or for a disk and a wall, must be for both or for neither$"),
+        (Limp, r"Limp: stiffest is nan at a force of 1, must be a finite number greater than 0$"),
+        (Misspelt, r"Misspelt: cannot be compiled, .*: Unknown attribute 'faktor' of type Misspelt\(.*\)$"),
+        (
+            Powered,
+            r"Powered: cannot be compiled, must be arithmetic and functions of machine/lanes\.py: .*function pow",
+        ),
+        (Renamed, r"Renamed: cannot be compiled, .* signature: \(self, delta, shape\)$"),
+        (Nothing, r"Nothing: of\(\) gave None, must give the law$"),
         (OneShape, r"OneShape: shapes is 0\.5 for 3 contacts, must be as many finite numbers$"),
     ],
 )

@@ -6,7 +6,7 @@ import shutil
 import signal
 import subprocess
 import sys
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import grimp
@@ -306,6 +306,28 @@ def test_a_copy_runs_until_its_sources_differ(copied, tmp_path):
     done = subprocess.run(command, cwd=ROOT, env=os.environ | own, capture_output=True, text=True)
     assert "CheckoutError: granular_response runs from " + str(copied) in done.stderr
     model.with_name("new.py").unlink()
+
+
+def test_what_is_edited_while_a_stage_runs_is_not_recorded(copied, tmp_path, monkeypatch):
+    """DVC records sources and parameters as they are when a stage has ended."""
+    source, file = copied / "src" / "granular_response" / "kernels" / "model.py", tmp_path / "params.yaml"
+    content, parameters = source.read_bytes(), (ROOT / "params.yaml").read_text()
+    script = f"from granular_response_paper import checkout\nwith checkout.unchanged():\n{' ' * 4}"
+    for edited, status in (source.with_name("forces.py"), 0), (source, 1):
+        command = f"{script}from granular_response.kernels import model; open({str(edited)!r}, 'ab').write(b'#')"
+        environment = os.environ | {"PYTHONPATH": str(copied / "src")}
+        run = subprocess.run(
+            [sys.executable, "-c", command], cwd=copied, env=environment, capture_output=True, text=True
+        )
+        assert run.returncode == status, run.stderr
+    assert run.stderr.endswith(f"CheckoutError: {source} changed while it ran; run the stage again\n")
+    source.write_bytes(content)
+    file.write_text(parameters)
+    edit = {"simulate": lambda _: file.write_text(parameters.replace("stiffness_ratio: 0.8", "stiffness_ratio: 0.5"))}
+    member = simulation.group_member
+    monkeypatch.setattr(simulation, "group_member", lambda group, of, name: edit.get(of) or member(group, of, name))
+    run = partial(simulation.simulate, "friction_linear_range", tmp_path / "one.nc", parameter_file=file)
+    refuses(GroupError, "section friction_linear_range changed while it ran; run the stage again$", run)
 
 
 def test_outside_a_checkout_nothing_is_refused(tmp_path):

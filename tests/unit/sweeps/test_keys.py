@@ -26,6 +26,10 @@ class Task:
         return self.forces.sum() + item
 
 
+class Bits(enum.IntFlag):
+    ONE = 1
+
+
 class Colour(enum.Enum):
     RED = 1
     BLUE = 2
@@ -212,10 +216,24 @@ class Factor(Task):
         object.__setattr__(self, "factor", factor)
 
 
-def test_attributes_beside_a_value_count():
-    one, other = Listed([1]), Listed([1])
+class Slotted(list):
+    __slots__ = ("unit",)
+
+
+@dataclasses.dataclass
+class Described(list):
+    unit: str = ""
+
+
+@pytest.mark.parametrize("kind", [Listed, Slotted, Described])
+def test_attributes_beside_the_items_of_a_list_count(kind):
+    one, other = kind(), kind()
     one.unit, other.unit = "mm", "m"
-    assert key(one) != key(other) != key(Listed([1]))
+    assert key(one) != key(other) != key(kind())
+
+
+def test_attributes_beside_a_value_count():
+    assert key(Bits(4)) != key(Bits(8))  # no name
     assert key(Factor(1.0)) == key(Factor(1.0)) != key(Factor(2.0))
     refuses(Indistinct, "MaskedArray", key, np.ma.array([1.0, 2.0], mask=[False, True]))
 
