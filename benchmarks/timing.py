@@ -17,6 +17,7 @@ import numpy as np
 from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
 from granular_response.store import atomic
+from granular_response_paper.checkout import check
 
 
 def processor() -> str:
@@ -76,7 +77,11 @@ def stored(path: str, name: str = "runs") -> list[dict[str, Any]]:
 
 
 def write(path: str, metrics: dict[str, Any], *, measured: bool = True) -> None:
-    """A JSON file with numbers of six digits, since more is noise, and what they were ``measured`` on."""
+    """A JSON file with numbers of six digits, since more is noise, and what they were ``measured`` on.
+
+    Raises CheckoutError where the package that runs is not that of this checkout.
+    """
+    check(start=Path(__file__).parent)
     if measured:
         metrics = {"measured_on": processor(), **metrics}
 
