@@ -5,6 +5,7 @@ Both are drawn from ``quantities`` of the stored claims, so that no number is he
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -82,7 +83,8 @@ def _name(what: str) -> str:
 def _point(axes: Axes, row: int, found: Mapping[str, Any], paper: float, colour: str, size: float) -> None:
     """A number over the paper's, of ours with its interval; an arrow from a bound, and at the end of the axis."""
     low, high = found["interval"]
-    at, mark = (low, ">") if found["value"] is None else (high, "<") if low <= 0.0 else (found["value"], "o")
+    middle = found["value"] or math.sqrt(low * (high or low))
+    at, mark = (low, ">") if high is None else (high, "<") if low <= 0.0 else (middle, "o")
     least, most = ENDS
     if not least < at / paper < most:
         at, mark = (least * paper, "<") if at < paper else (most * paper, ">")
