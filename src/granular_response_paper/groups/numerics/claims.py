@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from granular_response_paper.claims.bootstrap import over_realizations
+from granular_response_paper.claims.bootstrap import DRAWS, of_draws
 from granular_response_paper.claims.bounds import at_least, at_most, less_than, more_than
 from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
 from granular_response_paper.claims.numbers import needs
@@ -114,18 +114,18 @@ def damping(data: Data) -> Numbers:
     yield "any step", half / time.min()
 
 
-@claim("N7", "III.C", Ask("error of the mean response", at_most(0.01), "%"))
+@claim("N7", "III.C", Ask("error of the mean response", at_most(0.01), "%"), finds="any")
 def disorder(data: Data) -> Numbers:
     """In this case, sufficient accuracy was obtained with E_k^stop = 10⁻⁹ mgR.
     Short: For averages over disorder 1e-9 is enough
     Here: Stopping at 1e-9 mgR per disk changes the mean response of five disordered packings by {0} of its largest
-    value, in the median of such means.
-    Remark: Sufficient is taken as 1 %, as for floor forces. The paper averages over five packings or more"""
+    value.
+    Remark: Sufficient is taken as 1 %, as for floor forces. Five is the smallest number that the paper averages over;
+    the interval holds 95 % of the samples of five"""
     study = data.get(GROUP, "disorder")
     stopped, finished = (study[name].transpose("realization", ...).values for name in ("stopped", "finished"))
     needs(np.isfinite(stopped).all() and np.isfinite(finished).all(), "disorder holds responses without numbers")
-
-    early, exact = (
-        one[: len(one) // FIVE * FIVE].reshape(-1, FIVE, one.shape[1]).mean(axis=1) for one in (stopped, finished)
-    )
-    yield over_realizations(np.abs(early - exact).max(axis=1) / exact.max(axis=1))
+    samples = np.random.default_rng(0).permuted(np.tile(np.arange(len(stopped)), (DRAWS, 1)), axis=1)[:, :FIVE]
+    early, exact = (one[samples].mean(axis=1) for one in (stopped, finished))
+    off = np.abs(early - exact).max(axis=1) / exact.max(axis=1)
+    yield of_draws(np.median(off), off, "samples of five", len(stopped))
