@@ -86,6 +86,11 @@ def smoothed_response(
     return given @ kernel.T
 
 
+def wall_margin(width: float) -> float:
+    """Distance from the side walls within which no peak is looked for: ten radii, less in a narrow slab."""
+    return min(10.0, 0.2 * width)
+
+
 def interior_mask(x: ArrayLike, width: float, margin: float = 10.0, *, left_wall: float = 0.0) -> NDArray[np.bool_]:
     """Whether each ``x`` is at least ``margin`` away from both side walls; same shape as ``x``.
 

@@ -168,7 +168,7 @@ class Frames:
                 below.clear()
                 x, responses = shown.data["x"].values, self.responses[k]
                 draw_response(below, x, responses[frame], responses[0], half_width=self.half, limits=self.limits)
-                draw_peaks(below, x, responses[frame])
+                draw_peaks(below, shown, responses[frame])
                 below.set_xlabel(style.POSITION)
                 below.tick_params(labelleft=k == 0)
             self.panels[1, 0].set_ylabel(style.RESPONSE)

@@ -83,9 +83,15 @@ def draw_response(
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def draw_peaks(axes: Axes, x: FloatArray, response: FloatArray) -> None:
-    """How many peaks a response has (:mod:`granular_response.observe.peaks`), in its upper left corner."""
-    number = len(find_peaks(x, response))
+def draw_peaks(axes: Axes, shown: Shown, response: FloatArray) -> None:
+    """How many peaks a response has in the interior (:mod:`granular_response.observe.peaks`), in its upper left corner.
+
+    Nothing where the floor disks have no order along x, or are too few for a peak.
+    """
+    try:
+        number = len(find_peaks(shown.values("x"), response, interior=shown.interior))
+    except ValueError:
+        return
     text = f"{number} peak{'s' if number != 1 else ''}"
     axes.text(0.03, 0.95, text, transform=axes.transAxes, va="top", weight="bold", color=style.INCREASED)
 

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from .. import errors
 from ..errors import GranularError
-from ..observe.floor import origin_of
+from ..observe.floor import interior_mask, origin_of, wall_margin
 from ..state import Box, FloatArray, state_index
 from . import network, style
 
@@ -97,6 +97,14 @@ class Shown:
     def origin(self) -> float:
         """Where ``x`` of the response is 0."""
         return origin_of(self.values("position", 0), self.values("floor_disk"), self.values("x"), self.box)
+
+    @property
+    def interior(self) -> np.ndarray:
+        """Which places of the response are away from the side walls, where peaks are looked for."""
+        x, width = self.values("x"), self.box.width
+        if self.box.periodic:
+            return np.full(x.shape, True)
+        return interior_mask(x, width, wall_margin(width), left_wall=-self.origin)
 
     @property
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:

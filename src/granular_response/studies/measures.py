@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import check_positive, require
 from ..observe import network, peaks
-from ..observe.floor import floor_disks, floor_response, interior_mask, smoothed_response
+from ..observe.floor import floor_disks, floor_response, interior_mask, smoothed_response, wall_margin
 from ..observe.teardrop import OpenRegion, open_region
 from ..state import FloatArray, State
 from ..store.result import common_candidates
@@ -30,11 +30,6 @@ FIRST_OPENING = "a contact of disks in the central third of the slab is open tha
 ANY_OPENING = "a contact of disks anywhere in the slab is open that touches at rest"
 TWO_PEAKS = "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0"
 REACHES_FLOOR = "the region of opened contacts below the load contains a contact of the bottom row"
-
-
-def wall_margin(width: float) -> float:
-    """Distance from the side walls within which no peak is looked for: ten radii, less in a narrow slab."""
-    return min(10.0, 0.2 * width)
 
 
 class Measures:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from granular_response.errors import SolveError
 from granular_response.observe import network
-from granular_response.observe.floor import floor_disks, floor_force
+from granular_response.observe.floor import floor_disks, floor_force, wall_margin
 from granular_response.scene import Scene
 from granular_response.solvers.path import Collapsed
 from granular_response.solvers.problem import Problem
@@ -22,7 +22,6 @@ from granular_response.solvers.timestep import stability_limit
 from granular_response.state import FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS, flags
 from granular_response.studies import LoadPath, by_motion, lost
-from granular_response.studies.measures import wall_margin
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED, OUTCOMES
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup
 from granular_response_paper.parameters import material

@@ -53,6 +53,24 @@ def test_scales_and_places_are_those_of_all_frames(result) -> None:
     assert low <= result.floor_response.values.min() and high >= result.floor_response.values.max()
 
 
+def peaks(data) -> str:
+    frames = animation.Frames(data, figure=Figure())
+    frames.draw(0)
+    return " ".join(text.get_text() for text in frames.panels[1, 0].texts if "peak" in text.get_text())
+
+
+def test_peaks_at_the_side_walls_do_not_count(result) -> None:
+    data = result.to_dataset()
+    at_wall, inside = (data["floor_response"].where(data["floor_disk"] != data["floor_disk"][k], 0.25) for k in (1, 3))
+    assert peaks(data) == peaks(data.assign(floor_response=at_wall)) == "1 peak"
+    assert peaks(data.assign(floor_response=inside)) == "2 peaks"
+
+
+def test_where_floor_disks_have_no_order_along_x_there_is_no_number_of_peaks(result) -> None:
+    data = result.to_dataset()
+    assert peaks(data.assign_coords(x=data["x"].where(data["x"].round() != 2.0, 0.0))) == ""
+
+
 def widths(frames: animation.Frames) -> list[float]:
     return sorted(width for lines in frames.panels[0, 0].collections for width in np.atleast_1d(lines.get_linewidth()))
 

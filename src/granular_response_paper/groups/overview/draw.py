@@ -41,8 +41,9 @@ def _findings(slabs: Datasets) -> dict[str, str]:
     last, first = [], []
     for slab in slabs.values():
         x, force = slab["x"].values, np.atleast_1d(slab["total_force"].values)
-        curves = np.atleast_2d(slab["floor_response"].values)
-        two, number = [is_double_peaked(x, curve) for curve in curves], len(find_peaks(x, curves[-1]))
+        curves, inside = np.atleast_2d(slab["floor_response"].values), Shown.of(slab).interior
+        two = [is_double_peaked(x, curve, interior=inside) for curve in curves]
+        number = len(find_peaks(x, curves[-1], interior=inside))
         last.append(f"{peaks(number)} at µ = {float(slab['friction']):g}")
         begun = f"from {force[int(np.argmax(two))]:.3g} {WEIGHT}" if any(two) else "not"
         first.append(f"{begun} at µ = {float(slab['friction']):g}")
@@ -78,7 +79,7 @@ def _overview(slabs: Datasets) -> Figure:
             draw_chains(above, Shown.of(slab, 1 if row == 0 else -1), largest=FULL * force, half_width=half)
             draw_response(below, x, curves[k, row], elastic, half_width=half, limits=limits)
             below.tick_params(labelleft=k == 0, labelbottom=row == 1)
-            draw_peaks(below, x, curves[k, row])
+            draw_peaks(below, Shown.of(slab), curves[k, row])
             if k == 0:
                 name = style.equals(style.F_EXT, force, style.WEIGHT)
                 above.text(0.0, 0.98, name, transform=above.transAxes, va="top")

@@ -23,10 +23,10 @@ import xarray as xr
 
 from granular_response.errors import SolveError
 from granular_response.observe import network
+from granular_response.observe.floor import wall_margin
 from granular_response.scene import Scene, SceneError
 from granular_response.state import FloatArray, State
 from granular_response.studies import LoadPath
-from granular_response.studies.measures import wall_margin
 from granular_response_extensions.network.parameters import VERTICAL_MARGIN, Parameters
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles.realizations import ensemble_scene
