@@ -1,8 +1,9 @@
 """The teardrop: the connected region of contacts that the load opens below itself (Secs. IV.A and IV.B).
 
 Two open contacts are adjacent if their centres are within :data:`REACH` lattice constants of each other. The region is
-the connected component nearest to the loaded disk, if it begins within :data:`START` lattice constants of it: contacts that the load opens far away, where the side
-walls have thinned the forces, are no teardrop. All lengths are measured in the rest state, in mean radii.
+the connected component nearest to the loaded disk, if it begins within :data:`START` lattice constants of it: contacts
+that the load opens far away, where the side walls have thinned the forces, are no teardrop. All lengths are measured in
+the rest state, in mean radii.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
 
 from ..errors import require
-from .base import Description, Finite, Sparse, Vector, allowed
+from .base import Description, Finite, Vector, allowed
 from .errors import NotAllowed, SceneError, must, show, show_key
 from .packing import Packing
 
@@ -70,7 +70,7 @@ Displacement = Annotated[
 ]
 
 
-class Load(Sparse):
+class Load(Description):
     """A force (mg) and a torque (mg × mean radius) on one disk, or a prescribed displacement (mean radii) of it.
 
     A displaced disk is held at its displacement, and the force that this takes is part of the result. The force acts

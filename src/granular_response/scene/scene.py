@@ -17,7 +17,7 @@ from ..errors import require
 from ..inputs import read_text, unreadable
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
-from .base import MOST_STIFFNESS, PLACES, Description, PackingDescription, Sparse, packing_kinds, refused
+from .base import MOST_STIFFNESS, PLACES, Description, PackingDescription, packing_kinds, refused
 from .errors import NotAllowed, SceneError, SceneFileError, must, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
@@ -54,7 +54,7 @@ def _check_list(value: Any) -> Any:
     return tuple(value)
 
 
-class Scene(Sparse):
+class Scene(Description):
     """What is simulated. ``Scene()`` is the paper's: 15 rows of 61 and 60 disks, friction 0.2, F = 15.
 
     Every way to make a scene, the constructor included, raises SceneError with a message of one line that

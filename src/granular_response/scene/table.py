@@ -16,7 +16,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, Valida
 from ..inputs import unreadable
 from . import formats
 from .arrays import ROUNDING, packed
-from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
+from .base import Overlaps, PackingDescription, Positive, Sides, Vector, allowed
 from .errors import NotAllowed, SceneError, describe, must, show
 from .formats import csv_table
 from .packing import Packing, exact_mean
@@ -43,7 +43,7 @@ def _check_columns(value: Any) -> Any:
     return dict(value)
 
 
-class FilePacking(Sparse, PackingDescription):
+class FilePacking(PackingDescription):
     """Disks from a file: CSV with the columns x, z and radius, or what another program wrote (``scene.formats``).
 
     Lengths are in any one unit. Every centre lies above the floor and between the side walls; periodic sides take any
