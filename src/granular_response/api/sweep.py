@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import itertools
 import json
-import numbers
 import os
 import platform
 import warnings
@@ -278,28 +277,10 @@ def _values(axes: Any) -> dict[str, list[Any]]:
         require(not isinstance(given, (str, bytes, Mapping)) and np.iterable(given) and not unordered(given), rule)
         values[key] = list(plain(given))
         require(values[key], f"axes: {key} has no values, must have one or more")
-        seen = set()
-        for value in values[key]:
-            if (same := _comparable(value)) in seen:
-                raise ValueError(f"axes: {key} has {show(plain(value))} twice, must have different values")
-            seen.add(same)
+        for k, value in enumerate(values[key]):
+            if value in values[key][:k]:
+                raise ValueError(f"axes: {key} has {show(value)} twice, must have different values")
     return values
-
-
-def _comparable(value: Any) -> Any:
-    """What is equal, and has the same hash, for equal values: numbers as numbers, but truth values apart from them."""
-    value = plain(value)
-    if isinstance(value, Description):
-        return "description", type(value).__name__, _comparable(value.model_dump(mode="json"))
-    if isinstance(value, bool):
-        return "truth", value
-    if isinstance(value, (numbers.Real, str)) or value is None:
-        return value
-    if isinstance(value, Mapping):
-        return "mapping", frozenset((key, _comparable(part)) for key, part in value.items())
-    if isinstance(value, (list, tuple)):
-        return "list", tuple(map(_comparable, value))
-    return "other", repr(value)
 
 
 def _measured(

@@ -37,11 +37,8 @@ def rest_state(problem: Problem) -> State:
         return state
     if not os.path.isdir(memory.shelf):  # the first one of these sources
         memory.clear()
-    with memory.making(kept):
-        state = memory.load(kept)  # another process may just have made it
-        if not isinstance(state, State):
-            state = solvers.rest_state(problem)
-            memory.save(kept, state)
+    state = solvers.rest_state(problem)
+    memory.save(kept, state)
     return state
 
 
