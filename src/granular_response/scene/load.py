@@ -153,25 +153,21 @@ def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.
     Raises NotAllowed, to which the caller adds where the selector stands.
     """
     if isinstance(selector, int):
-        if not 0 <= selector < n:
-            raise NotAllowed(f"must be from 0 to {n - 1}, the packing has {n} disks", value=selector)
+        must(0 <= selector < n, f"must be from 0 to {n - 1}, the packing has {n} disks", value=selector)
         return int(selector)
     if not isinstance(selector, RowSelector):
         raise NotAllowed("must be top-centre, the index of a disk, a TopSelector or a RowSelector", value=selector)
-    rows = len(row_count)
-    if rows == 0:
-        rule = "only slabs and piles have rows, must be top-centre, {x: number} or the index of a disk"
-        raise NotAllowed(rule, key=("row",), value=selector.row)
-    named = {"top": rows - 1, "bottom": 0}
-    row = named[selector.row] if isinstance(selector.row, str) else selector.row
-    if row >= rows:
-        rule = f"must be top, bottom or from 0 to {rows - 1}, the packing has {rows} rows"
-        raise NotAllowed(rule, key=("row",), value=selector.row)
+    rows, row = len(row_count), selector.row
+    rule = "only slabs and piles have rows, must be top-centre, {x: number} or the index of a disk"
+    must(rows, rule, key=("row",), value=row)
+    row = {"top": rows - 1, "bottom": 0}[row] if isinstance(row, str) else row
+    must(
+        row < rows, f"must be top, bottom or from 0 to {rows - 1}, the packing has {rows} rows", key=("row",), value=row
+    )
     middle = (int(row_count[row]) - 1) // 2
     last = int(row_count[row]) - 1 - middle
-    if not -middle <= selector.offset <= last:
-        rule = f"must be from {-middle} to {last}, row {row} has {row_count[row]} disks"
-        raise NotAllowed(rule, key=("offset",), value=selector.offset)
+    rule = f"must be from {-middle} to {last}, row {row} has {row_count[row]} disks"
+    must(-middle <= selector.offset <= last, rule, key=("offset",), value=selector.offset)
     return int(row_count[:row].sum()) + middle + selector.offset
 
 
