@@ -608,9 +608,7 @@ def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scen
 
 def _places(name: str, given: Any) -> np.ndarray:
     places = finite_numbers(given)
-    if places is None:
-        said = " ".join(show(given).split())  # an array is several lines
-        raise ValueError(f"{name} = {said}: must be a list of finite numbers")
+    require(places is not None, f"{name} = {show(given)}: must be a list of finite numbers")
     return np.array(places)
 
 
@@ -623,7 +621,7 @@ def _edges(sensors: Any, width: float, radius: float) -> np.ndarray:
     many = np.ndim(sensors) > 0
     given = finite_numbers(sensors if many else [sensors])
     edges = np.array([] if given is None else given)
-    said = " ".join(show(sensors).split())
+    said = show(sensors)
     if not many and len(edges) and edges[0] > 0.0:
         rule = f"sensors = {said}: must be in mm, {LEAST_SENSOR:g} of the mean radius of {radius:.3g} mm or more"
         require(edges[0] >= LEAST_SENSOR * radius, rule, ValueError)

@@ -267,9 +267,7 @@ def _noted(result: Result, *, measure: Callable[[Result], Any]) -> xr.Dataset:
 
 def _values(axes: Any) -> dict[str, list[Any]]:
     """The values of each key; raises ValueError for what is no axis."""
-    if not isinstance(axes, Mapping):
-        said = " ".join(show(axes).split())  # an array is several lines
-        raise ValueError(f"axes = {said}: must be a mapping of keys to lists of values")
+    require(isinstance(axes, Mapping), f"axes = {show(axes)}: must be a mapping of keys to lists of values")
     values = {}
     for key, given in axes.items():
         # text and mappings can be iterated over too, but by letters and by names
@@ -339,8 +337,7 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
     """One dataset of those of all combinations, which are in the order of the product of ``values``."""
     errors = [one if isinstance(one, str) else "" for one in found]
     good = [place for place, one in enumerate(found) if not isinstance(one, str)]
-    if not good:
-        raise SweepError(f"none of {len(found)} combinations has an equilibrium, the first: {errors[0]}")
+    require(good, f"none of {len(found)} combinations has an equilibrium, the first: {errors[0]}", SweepError)
     results = [one for one in found if not isinstance(one, str)]
     names = _names(values)
     taken = {str(name) for one in results for name in (*one.variables, *one.dims)} & {*names.values(), "error"}

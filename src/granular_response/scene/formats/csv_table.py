@@ -103,8 +103,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
                     raise FormatError(f"column {name} is given {times} times, must be given once", place)
             motion = {name: titles.index((name, "")) for name in MOTION if (name, "") in titles}
             continue
-        if len(cells) != len(header):
-            raise FormatError(f"has {len(cells)} values, must have {len(header)} as the header", place)
+        must(len(cells) == len(header), f"has {len(cells)} values, must have {len(header)} as the header", place)
         rows.append(numbers([cells[column] for column in chosen.values()], tuple(chosen), place))
         cells_of.append(cells)
         places.append(place)

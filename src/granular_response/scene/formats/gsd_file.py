@@ -121,8 +121,7 @@ class _Frames:
         for frame in (self.last, 0):
             if (found := self._chunk(frame, name)) is None:
                 continue
-            if found.dtype.kind not in kinds:
-                raise FormatError(f"chunk {name}: has values of another kind, {found.dtype}")
+            must(found.dtype.kind in kinds, f"chunk {name}: has values of another kind, {found.dtype}")
             if found.size == math.prod(shape):
                 return found.astype(float).reshape(shape)
             if frame == self.last:

@@ -88,9 +88,7 @@ def read(path: Path) -> Table:
             continue
         if cells[0][0].isalpha():
             section = " ".join(cells)
-            if section not in _SECTIONS:
-                rule = f"{shown(section)}: is no section that atoms of style sphere have"
-                raise FormatError(rule, place)
+            must(section in _SECTIONS, f"{shown(section)}: is no section that atoms of style sphere have", place)
             once.add(f"section {section}", place)
             sections[section] = []
             if section == "Atoms" and comment.strip() != "sphere":  # other styles have as many columns
@@ -100,16 +98,14 @@ def read(path: Path) -> Table:
             once.add(name, place)
             header[name] = said
         else:
-            if whole_number(cells[0]) is None:
-                rule = f"{shown(cells[0])}: a line of section {section} must begin with a whole number"
-                raise FormatError(rule, place)
+            rule = f"{shown(cells[0])}: a line of section {section} must begin with a whole number"
+            must(whole_number(cells[0]) is not None, rule, place)
             if section in _NAMED_ONCE:
                 once.add(f"{cells[0]} in section {section}", place)
             sections[section].append((place, cells))
     for name, (sizes, names) in _SIZES.items():
         for place, cells in sections.get(name, []):
-            if len(cells) not in sizes:
-                raise FormatError(f"has {len(cells)} values, must have {names}", place)
+            must(len(cells) in sizes, f"has {len(cells)} values, must have {names}", place)
     atoms, count = sections.get("Atoms", []), header.get("atoms")
     places = [place for place, _ in atoms]
     rows = [numbers(cells[2:7], _COLUMNS, place) for place, cells in atoms]
