@@ -27,10 +27,9 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from ..errors import require
-from ..observe.stress import coarse_grained_stress, given_forces, grid_points
+from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
 from ..state import OPEN, SLIDING, FloatArray, foot_points, wall_normals
 from ..store import atomic
-from ..store.result import state_from
 from . import network, style
 from .field import draw_field, root_norm
 from .photoelastic import photoelastic
@@ -279,7 +278,15 @@ def stress(
     rule = f"component = {component!r}: must be one of xx, xz, zx, zz"
     require(component in ("xx", "xz", "zx", "zz"), rule, PictureError)
     check_positive(vmax=vmax, half_width=half_width)
-    carried = given_forces(state_from(shown.data, shown.index), *shown.forces(added))
+    first, second = shown.pairs
+    at_wall, wall = shown.position[shown.values("wall_disk")], shown.values("wall_index")
+    separation = shown.box.separation(shown.position[first], shown.position[second])
+    carried = ContactForces(
+        point=np.concatenate([shown.position[first], at_wall]),
+        branch=np.concatenate([separation, at_wall - shown.box.on_wall(at_wall, wall)]),
+        force=np.concatenate(shown.forces(added)),
+        period=shown.box.period,
+    )
     step = max(0.5, max(shown.box.width, shown.top) / 240.0)
     left = -0.5 * shown.box.width if shown.box.periodic else -shown.origin
     x = left + np.linspace(0.0, shown.box.width, round(shown.box.width / step) + 1)
