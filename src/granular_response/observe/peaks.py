@@ -59,11 +59,7 @@ class _Hill:
 
 
 def find_peaks(
-    x: ArrayLike,
-    response: ArrayLike,
-    *,
-    interior: Interior = None,
-    relative_prominence: float = RELATIVE_PROMINENCE,
+    x: ArrayLike, response: ArrayLike, *, interior: Interior = None, relative_prominence: float = RELATIVE_PROMINENCE
 ) -> Peaks:
     """Peaks of a response sampled at ``x`` (both (k,)); the definition is in the module's docstring.
 

@@ -73,11 +73,4 @@ def name(problem: Problem) -> str:
             protocol.maximum_steps,
             protocol.static_finish,
         )
-    return key(
-        packing,
-        problem.laws,
-        problem.rule,
-        preparation,
-        method,
-        numerics,
-    )
+    return key(packing, problem.laws, problem.rule, preparation, method, numerics)
