@@ -216,8 +216,8 @@ def preparations(
             twin = list(ways)[first]
             raise SceneError(f"ways[{name!r}]: is the same as {twin!r}; keys that are left out are those of the scene")
     options: dict[str, Any] = {"load_factors": load_factors, "workers": workers, "executor": executor}
-    noted = functools.partial(_noted, measure=measure)
-    found = sweep(base, {"preparation": chosen}, noted, checkpoint=checkpoint, progress=progress, **options)
+    options |= {"checkpoint": checkpoint, "progress": progress}
+    found = sweep(base, {"preparation": chosen}, functools.partial(_noted, measure=measure), **options)
     found = found.assign_coords(preparation=("preparation", list(ways), found["preparation"].attrs))
     disks = found["loaded_disk"].values
     if len({tuple(one) for one in disks[np.isfinite(disks).all(axis=1)].tolist()}) > 1:

@@ -287,8 +287,7 @@ def draw_torque(axes: Axes, at: ArrayLike, torque: float, *, radius: float = 1.7
     ends = [(x + radius * np.cos(a), z + radius * np.sin(a)) for a in (start, end)]
     axes.add_patch(
         FancyArrowPatch(
-            ends[0],
-            ends[1],
+            *ends,
             # a circle through both ends: the bulge over half the chord is tan(angle / 4)
             connectionstyle=f"arc3,rad={-2.0 * np.tan((start - end) / 4.0) * 0.5:.4f}",
             arrowstyle="-|>",
