@@ -18,7 +18,7 @@ from ..inputs import read_text, unreadable
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
 from .base import MOST_STIFFNESS, PLACES, Description, PackingDescription, packing_kinds, refused
-from .errors import NotAllowed, SceneError, SceneFileError, must, show, show_key, suggestion
+from .errors import SceneError, SceneFileError, must, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
 from .material import Contact, Wall
@@ -107,13 +107,8 @@ class Scene(Description):
         if total := self.packing.disk_count:  # 0: only the file knows
             count = self.packing.row_count() if isinstance(self.packing, LatticePacking) else np.zeros(0, np.int64)
             for place, load in enumerate(self.loads):
-                if load.disk == TOP_CENTRE or isinstance(load.disk, TopSelector):  # chosen by positions
-                    continue
-                try:
-                    check_disk(load.disk, total, count)
-                except NotAllowed as problem:
-                    path = ("loads", place, "disk", *problem.key)
-                    raise NotAllowed(problem.allowed, key=path, value=problem.value) from None
+                if load.disk != TOP_CENTRE and not isinstance(load.disk, TopSelector):  # chosen by positions
+                    check_disk(load.disk, total, count, ("loads", place, "disk"))
         return self
 
     @model_validator(mode="after")
