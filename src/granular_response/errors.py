@@ -23,11 +23,11 @@ def require(met: object, said: str, error: type[Exception] = ValueError) -> None
         raise error(said)
 
 
-def check_positive(**given: Any) -> None:
-    """ValueError, with its name, for the first of ``given`` that is not a finite number greater than 0."""
+def check_positive(error: type[Exception] = ValueError, /, **given: Any) -> None:
+    """``error``, with its name, for the first of ``given`` that is not a finite number greater than 0."""
     import numpy as np  # here, so that nothing waits for it that only has errors
 
     for name, value in given.items():
         number = np.asarray(value)
         rule = f"{name} = {value!r}: must be a finite number greater than 0"
-        require(not number.ndim and number.dtype.kind in "iuf" and 0.0 < number < np.inf, rule)
+        require(not number.ndim and number.dtype.kind in "iuf" and 0.0 < number < np.inf, rule, error)

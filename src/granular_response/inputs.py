@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 
-def check_regular(path: str | os.PathLike[str]) -> None:
-    """Raise the OSError of what cannot be read whole: nothing there, a folder, a device or a pipe (no end)."""
-    _check_mode(os.stat(path).st_mode, path)
+def check_regular(path: str | os.PathLike[str], opened: int | None = None) -> None:
+    """Raise the OSError of what cannot be read whole: nothing there, a folder, a device or a pipe (no end).
 
-
-def _check_mode(kind: int, path: str | os.PathLike[str]) -> None:
+    What is looked at is the file that was ``opened``, or what has the name now.
+    """
+    kind = os.stat(path if opened is None else opened).st_mode
     if stat.S_ISDIR(kind):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), os.fspath(path))
     if not stat.S_ISREG(kind):
@@ -38,7 +38,7 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     # a pipe would wait to be opened
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     try:
-        _check_mode(os.fstat(descriptor).st_mode, path)
+        check_regular(path, descriptor)
         with open(descriptor, "rb", closefd=False) as file:
             return file.read()
     finally:

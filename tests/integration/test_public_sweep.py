@@ -168,7 +168,6 @@ ONE = {"contact.friction": [0.1]}
         ({"contact.friction": [0.1, -1]}, None, SceneError, r"contact.friction = -1"),
         ({"contact.friction": []}, None, ValueError, r"contact.friction has no values"),
         ({"contact.friction": [0.1, 0.1]}, None, ValueError, r"contact.friction has 0.1 twice, must have different"),
-        ({"protocol.static_finish": [True, 1]}, None, SceneError, r"static_finish = 1"),  # others, and not allowed
         ({"contact.friction": 0.1}, None, ValueError, r"^axes: contact.friction = 0.1, must be a list of values$"),
         (ONE, lambda result: 1 / 0, SweepError, r"task 1 of 1 \(.*contact.friction = 0.1.*ZeroDivisionError"),
         (ONE, lambda result: result, SweepError, r"measure is a Result, must be a number"),

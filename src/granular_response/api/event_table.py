@@ -9,6 +9,7 @@ from typing import Any, overload
 
 import xarray as xr
 
+from ..errors import require
 from ..scene.errors import suggestion
 from ..state import Event
 from ..store.variables import EVENT_KINDS as KINDS
@@ -114,5 +115,4 @@ class Events(Sequence[Event]):
 
 def check_kind(kind: object) -> None:
     """Raise ValueError, in one line, for what is no kind of event."""
-    if kind not in KINDS:
-        raise ValueError(f"kind = {kind!r}: must be {' or '.join(KINDS)}{suggestion(kind, KINDS)}")
+    require(kind in KINDS, f"kind = {kind!r}: must be {' or '.join(KINDS)}{suggestion(kind, KINDS)}")

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..errors import check_positive
+from ..errors import check_positive, require
 from ..observe import network
 from ..observe.difference import pair_force_difference, wall_force_difference
 from ..observe.stress import virial_stress
@@ -127,8 +127,7 @@ def force_distribution(result: Result, *, state: int = -1, bins: int = 24, to: f
         raise ValueError(f"bins = {bins!r}: must be a whole number, 1 or greater")
     check_positive(to=to)
     forces = chosen.normal_force[chosen.touching]
-    if not len(forces) or not forces.mean() > 0.0:
-        raise ValueError("result: no contacts between disks that bear a force")
+    require(len(forces) and forces.mean() > 0.0, "result: no contacts between disks that bear a force")
     edges = np.linspace(0.0, to, int(bins) + 1)
     density = np.histogram(forces / forces.mean(), edges)[0] / (len(forces) * np.diff(edges))
     middles = ("force", 0.5 * (edges[1:] + edges[:-1]), {"long_name": "normal force over its mean"})
@@ -275,8 +274,7 @@ def work(result: Result) -> xr.Dataset:
     >>> bool(total["work"] > 0.0), bool(abs(total["dissipated"] - total["slid"]) < 0.01 * total["work"])
     (True, True)
     """
-    if not result.loaded:
-        raise ValueError("result: no loads in this scene, so no work")
+    require(result.loaded, "result: no loads in this scene, so no work")
     problem = result._solved.problem
     states = common_candidates(result._states, problem.packing.radius)
     energy = np.array([stored(problem, state) for state in states])

@@ -31,7 +31,6 @@ from ..scene.laboratory import FORCE, LENGTH, SAME_RADIUS, LaboratoryUnits
 from ..solvers.choice import LARGE
 from ..solvers.small_loads import influence
 from ..solvers.solution import Progress, Solution, continue_solution, solve_scene
-from ..solvers.timestep import time_steps_taken
 from ..state import Certificate, State, state_index
 from ..store import export as exporting
 from ..store import files
@@ -494,17 +493,12 @@ class Result:
             if stopped := state.reached.stopped_rattlers:
                 text += f", {stopped} rolling rattler{'s' if stopped > 1 else ''} stopped by hand"
             rows.append((name, text))
-        loads = self._solution.problem.load_disk if self._solution else self._data["loaded_disk"].values
-        if said := broke_in(self._states, loads):
+        if said := broke_in(self._states, self._data["loaded_disk"].values):
             rows.append(said)
-        if self._solution:  # which is asked without a dataset of it
-            moved = self._solution.problem.packing.moved(self.rest.position)
-        else:
-            moved = self._data["distance_from_given"].values[0] if "distance_from_given" in self._data else None
         if len(self.rest.position) > LARGE and self.rest.reached.time_step is not None:
-            of = self._solution and time_steps_taken(self._solution.problem, self.rest)
-            rows.append(("time step", of or self._data.attrs["time_step"]))
-        if moved is not None:
+            rows.append(("time step", self._data.attrs["time_step"]))
+        if "distance_from_given" in self._data:
+            moved = self._data["distance_from_given"].values[0]
             disk = int(np.argmax(moved))
             text = f"median {np.median(moved):.2g}, largest {moved[disk]:.2g} mean radii (disk {disk})"
             rows.append(("moved from the given places", text))
@@ -614,9 +608,7 @@ def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scen
 
 def _places(name: str, given: Any) -> np.ndarray:
     places = finite_numbers(given)
-    if places is None:
-        said = " ".join(show(given).split())  # an array is several lines
-        raise ValueError(f"{name} = {said}: must be a list of finite numbers")
+    require(places is not None, f"{name} = {show(given)}: must be a list of finite numbers")
     return np.array(places)
 
 
@@ -629,7 +621,7 @@ def _edges(sensors: Any, width: float, radius: float) -> np.ndarray:
     many = np.ndim(sensors) > 0
     given = finite_numbers(sensors if many else [sensors])
     edges = np.array([] if given is None else given)
-    said = " ".join(show(sensors).split())
+    said = show(sensors)
     if not many and len(edges) and edges[0] > 0.0:
         rule = f"sensors = {said}: must be in mm, {LEAST_SENSOR:g} of the mean radius of {radius:.3g} mm or more"
         require(edges[0] >= LEAST_SENSOR * radius, rule, ValueError)

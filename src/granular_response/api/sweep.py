@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import itertools
 import json
-import numbers
 import os
 import platform
 import warnings
@@ -217,8 +216,8 @@ def preparations(
             twin = list(ways)[first]
             raise SceneError(f"ways[{name!r}]: is the same as {twin!r}; keys that are left out are those of the scene")
     options: dict[str, Any] = {"load_factors": load_factors, "workers": workers, "executor": executor}
-    noted = functools.partial(_noted, measure=measure)
-    found = sweep(base, {"preparation": chosen}, noted, checkpoint=checkpoint, progress=progress, **options)
+    options |= {"checkpoint": checkpoint, "progress": progress}
+    found = sweep(base, {"preparation": chosen}, functools.partial(_noted, measure=measure), **options)
     found = found.assign_coords(preparation=("preparation", list(ways), found["preparation"].attrs))
     disks = found["loaded_disk"].values
     if len({tuple(one) for one in disks[np.isfinite(disks).all(axis=1)].tolist()}) > 1:
@@ -268,9 +267,7 @@ def _noted(result: Result, *, measure: Callable[[Result], Any]) -> xr.Dataset:
 
 def _values(axes: Any) -> dict[str, list[Any]]:
     """The values of each key; raises ValueError for what is no axis."""
-    if not isinstance(axes, Mapping):
-        said = " ".join(show(axes).split())  # an array is several lines
-        raise ValueError(f"axes = {said}: must be a mapping of keys to lists of values")
+    require(isinstance(axes, Mapping), f"axes = {show(axes)}: must be a mapping of keys to lists of values")
     values = {}
     for key, given in axes.items():
         # text and mappings can be iterated over too, but by letters and by names
@@ -278,28 +275,10 @@ def _values(axes: Any) -> dict[str, list[Any]]:
         require(not isinstance(given, (str, bytes, Mapping)) and np.iterable(given) and not unordered(given), rule)
         values[key] = list(plain(given))
         require(values[key], f"axes: {key} has no values, must have one or more")
-        seen = set()
-        for value in values[key]:
-            if (same := _comparable(value)) in seen:
-                raise ValueError(f"axes: {key} has {show(plain(value))} twice, must have different values")
-            seen.add(same)
+        for k, value in enumerate(values[key]):
+            if value in values[key][:k]:
+                raise ValueError(f"axes: {key} has {show(value)} twice, must have different values")
     return values
-
-
-def _comparable(value: Any) -> Any:
-    """What is equal, and has the same hash, for equal values: numbers as numbers, but truth values apart from them."""
-    value = plain(value)
-    if isinstance(value, Description):
-        return "description", type(value).__name__, _comparable(value.model_dump(mode="json"))
-    if isinstance(value, bool):
-        return "truth", value
-    if isinstance(value, (numbers.Real, str)) or value is None:
-        return value
-    if isinstance(value, Mapping):
-        return "mapping", frozenset((key, _comparable(part)) for key, part in value.items())
-    if isinstance(value, (list, tuple)):
-        return "list", tuple(map(_comparable, value))
-    return "other", repr(value)
 
 
 def _measured(
@@ -358,8 +337,7 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
     """One dataset of those of all combinations, which are in the order of the product of ``values``."""
     errors = [one if isinstance(one, str) else "" for one in found]
     good = [place for place, one in enumerate(found) if not isinstance(one, str)]
-    if not good:
-        raise SweepError(f"none of {len(found)} combinations has an equilibrium, the first: {errors[0]}")
+    require(good, f"none of {len(found)} combinations has an equilibrium, the first: {errors[0]}", SweepError)
     results = [one for one in found if not isinstance(one, str)]
     names = _names(values)
     taken = {str(name) for one in results for name in (*one.variables, *one.dims)} & {*names.values(), "error"}

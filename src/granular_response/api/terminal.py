@@ -12,7 +12,7 @@ from typing import Any, Self
 
 from numba.core import event
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from ..sweeps.resources import KEPT
 
@@ -20,6 +20,8 @@ LOG = logging.getLogger("granular_response")
 TEXT = "compiling kernels, which takes up to a minute and is kept for the next time"
 #: The stage of a progress in which nothing else goes on.
 STAGE = "compiling (first run only)"
+#: Seconds after which a progress is shown, and between two lines of a log file.
+PATIENCE, PAUSE = 2.0, 60.0
 
 
 def columns() -> int | None:
@@ -37,19 +39,17 @@ def shown(progress: Callable[..., Any] | bool) -> Iterator[Callable[..., Any] | 
 class TerminalProgress:
     """A line with bar, elapsed time and time left on standard error: ``progress(done, total, what)``.
 
-    Each new ``what`` starts over. Silent for ``patience`` seconds. A notebook gets a line of text; a log file, and a
-    terminal that moves no cursor (``TERM=dumb``), a line after each ``pause`` seconds. What a checkpoint has is said at
+    Each new ``what`` starts over. Silent for :data:`PATIENCE`. A notebook gets a line of text; a log file, and a
+    terminal that moves no cursor (``TERM=dumb``), a line after each :data:`PAUSE`. What a checkpoint has is said at
     once.
     """
 
-    def __init__(self, console: Console | None = None, patience: float = 2.0, pause: float = 60.0) -> None:
+    def __init__(self, console: Console | None = None) -> None:
         self._console = console or Console(stderr=True, width=columns())
-        self._patience, self._pause = patience, pause
-        self._started = self._logged = time.monotonic()
+        self._started = self._told = time.monotonic()
         self._bars: Progress | None = None
-        self._task: TaskID | None = None
         self._what: str | None = None
-        self._told: float | None = None
+        self._in_line = False  #: of a notebook, which has no end yet
 
     def __enter__(self) -> Self:
         return self
@@ -57,30 +57,29 @@ class TerminalProgress:
     def __exit__(self, *_: object) -> None:
         if self._bars is not None:
             self._bars.stop()
-            self._bars = None
-        if self._told is not None:
+        if self._in_line:
             self._console.file.write("\n")
-            self._told = None
 
     def __call__(self, done: float, total: float, what: str = "") -> None:
-        now = time.monotonic()
+        now, file = time.monotonic(), self._console.file
+        said = f"{done:.4g} of {total:.4g}"
         if what == KEPT:
-            self._console.file.write(f"{done:.4g} of {total:.4g} kept\n")
-            self._console.file.flush()
+            file.write(f"{said} kept\n")
+            file.flush()
             return
-        if now - self._started < self._patience:
+        if now - self._started < PATIENCE:
             return
+        line = f"{what or 'working'}: {said}, {now - self._started:.0f} s"
         if self._console.is_jupyter:
-            if self._told is None or now - self._told > 0.5 or done == total:
-                elapsed = f"{now - self._started:.0f} s "
-                self._console.file.write(f"\r{what or 'working'}: {done:.4g} of {total:.4g}, {elapsed}")
-                self._told = now
+            if not self._in_line or now - self._told > 0.5 or done == total:
+                self._told, self._in_line = now, True
+                file.write(f"\r{line} ")
             return
-        if not (self._console.is_interactive and self._console.file.isatty()):  # colours can be forced upon a file
-            if now - self._logged >= self._pause:
-                self._logged, elapsed = now, f"{now - self._started:.0f} s"
-                self._console.file.write(f"{what or 'working'}: {done:.4g} of {total:.4g}, {elapsed}\n")
-                self._console.file.flush()
+        if not (self._console.is_interactive and file.isatty()):  # colours can be forced upon a file
+            if now - self._told >= PAUSE:
+                self._told = now
+                file.write(f"{line}\n")
+                file.flush()
             return
         if self._bars is None:
             self._bars = Progress(
@@ -94,12 +93,12 @@ class TerminalProgress:
                 transient=True,
             )
             self._bars.start()
-        if self._task is None or what != self._what:
-            if self._task is not None:
-                self._bars.remove_task(self._task)
-            self._task = self._bars.add_task(what or "working", total=total)
+        if what != self._what:
+            for task in self._bars.task_ids:
+                self._bars.remove_task(task)
+            self._bars.add_task(what or "working", total=total)
             self._what = what
-        self._bars.update(self._task, completed=done, total=total)
+        self._bars.update(self._bars.task_ids[0], completed=done, total=total)
 
 
 class _Once(event.Listener):

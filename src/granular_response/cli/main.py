@@ -265,8 +265,7 @@ def plot(
 
 @commands.command("keys", "keys protocol")
 def keys(
-    part: Annotated[str, typer.Argument(help="Beginning of the keys, such as contact.")] = "",
-    imported: Import = None,
+    part: Annotated[str, typer.Argument(help="Beginning of the keys, such as contact.")] = "", imported: Import = None
 ) -> None:
     """Print the keys of a scene file: default, what is allowed, unit and meaning."""
     from . import scene_reference

@@ -28,9 +28,8 @@ def broke_in(states: Sequence[State], loaded_disks: NDArray[np.integer]) -> tupl
     events = [event for state in states for event in state.reached.events if event.lost]
     far_off = [event for event in events if event.reason.startswith(MOVED_FAR)]
     jumps = [event for event in events if event.kind != "stepped over" and event not in far_off]
-    far = [np.hypot(*(state.position - states[0].position).T) for state in states]
-    farthest = max(range(len(far)), key=lambda k: float(far[k].max()))
-    if not jumps and not far[farthest].max() > REMARKABLE:
+    far = np.stack([np.hypot(*(state.position - states[0].position).T) for state in states])
+    if not jumps and not far.max() > REMARKABLE:
         return None
     said = []
     if jumps:
@@ -40,17 +39,12 @@ def broke_in(states: Sequence[State], loaded_disks: NDArray[np.integer]) -> tupl
     if far_off:
         between = f"between load factors {far_off[0].load_factor:.4g} and {far_off[0].until:.4g}"
         said.append(f"{_count(len(far_off), 'minimum', 'minima')} far from the one before, the first {between}")
-    where = [(_displacement(far, disk), int(disk)) for disk in np.unique(loaded_disks)]
-    if where:
+    if where := [(float(far[:, disk].max()), int(disk)) for disk in np.unique(loaded_disks)]:
         how_far, disk = max(where)
         said.append(f"loaded disk {disk} moved by {how_far:.2g}")
-    disk = int(far[farthest].argmax())
-    said.append(f"disk {disk} farthest, by {far[farthest][disk]:.2g} mean radii")
+    disk = int(far.argmax()) % far.shape[1]
+    said.append(f"disk {disk} farthest, by {far.max():.2g} mean radii")
     return "the load broke in" if jumps else "largest displacements", ", ".join(said)
-
-
-def _displacement(far: Sequence[np.ndarray], disk: int) -> float:
-    return max(float(one[disk]) for one in far)
 
 
 def _count(number: int, one: str, many: str = "") -> str:

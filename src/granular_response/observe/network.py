@@ -110,20 +110,17 @@ def fabric_tensor(state: State) -> FloatArray:
     return normal.T @ normal / len(normal) if len(normal) else np.full((2, 2), np.nan)
 
 
-def contact_angle_histogram(
-    state: State, bins: int = 36, contacts: BoolArray | None = None
-) -> tuple[FloatArray, FloatArray]:
+def contact_angle_histogram(state: State, bins: int) -> tuple[FloatArray, FloatArray]:
     """Distribution of the angles of the touching pairs: bin centres (b,) from 0 and density (b,) per radian.
 
     The density integrates to 1 over pi. The first bin is centred on the horizontal, so contacts that are horizontal up
-    to rounding are not split; with ``bins`` a multiple of 3 so are the oblique lattice directions. ``contacts``
-    restricts the pairs. An empty network gives zeros. Raises ``ValueError`` for fewer than one bin.
+    to rounding are not split; with ``bins`` a multiple of 3 so are the oblique lattice directions. An empty network
+    gives zeros. Raises ``ValueError`` for fewer than one bin.
     """
     require(bins >= 1, f"bins: {bins} given; it must be at least 1")
-    chosen = state.pairs.touching if contacts is None else state.pairs.touching & contacts
     spacing = np.pi / bins
     # Cells are half-open in the shifted angle; the modulo folds angles just below pi onto the first.
-    cell = np.floor(contact_angle(state)[chosen] / spacing + 0.5).astype(np.int64) % bins
+    cell = np.floor(contact_angle(state)[state.pairs.touching] / spacing + 0.5).astype(np.int64) % bins
     density = np.bincount(cell, minlength=bins).astype(np.float64)
     if cell.size:
         density /= cell.size * spacing

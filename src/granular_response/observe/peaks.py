@@ -59,11 +59,7 @@ class _Hill:
 
 
 def find_peaks(
-    x: ArrayLike,
-    response: ArrayLike,
-    *,
-    interior: Interior = None,
-    relative_prominence: float = RELATIVE_PROMINENCE,
+    x: ArrayLike, response: ArrayLike, *, interior: Interior = None, relative_prominence: float = RELATIVE_PROMINENCE
 ) -> Peaks:
     """Peaks of a response sampled at ``x`` (both (k,)); the definition is in the module's docstring.
 
@@ -128,8 +124,7 @@ def central_dip(x: ArrayLike, response: ArrayLike, *, interior: Interior = None)
     Raises ``ValueError`` for bad samples, or if x = 0 has no samples on both sides.
     """
     x, r = _samples(x, response, interior)
-    if not x[0] < 0.0 < x[-1]:
-        raise ValueError(f"x: runs from {x[0]} to {x[-1]}; it must have samples on both sides of 0")
+    require(x[0] < 0.0 < x[-1], f"x: runs from {x[0]} to {x[-1]}; it must have samples on both sides of 0")
     scale = float(np.max(np.abs(r)))
     if scale == 0.0:
         return 0.0
@@ -172,8 +167,7 @@ def asymmetry(x: ArrayLike, response: ArrayLike, *, interior: Interior = None) -
     require(largest > 0.0, f"response: its largest value is {largest}; it must be positive somewhere")
     reach = min(-float(x[0]), float(x[-1]))
     both = np.abs(x) <= reach + 1e-6 * (x[-1] - x[0])
-    if not np.any(both):
-        raise ValueError(f"x: runs from {x[0]} to {x[-1]}; it must have samples on both sides of 0")
+    require(np.any(both), f"x: runs from {x[0]} to {x[-1]}; it must have samples on both sides of 0")
     return float(np.max(np.abs(r[both] - np.interp(-x[both], x, r))) / largest)
 
 
@@ -188,8 +182,7 @@ def _outer_peaks(
     """All peaks, if there are peaks above the centre on both sides of it; else None."""
     peaks = find_peaks(x, response, interior=interior, relative_prominence=relative_prominence)
     x, r = _samples(x, response, interior)
-    if not x[0] < 0.0 < x[-1]:
-        raise ValueError(f"x: runs from {x[0]} to {x[-1]}; it must have samples on both sides of 0")
+    require(x[0] < 0.0 < x[-1], f"x: runs from {x[0]} to {x[-1]}; it must have samples on both sides of 0")
     high = peaks.height >= np.interp(0.0, x, r) + relative_prominence * np.max(np.abs(r))
     both = np.any(high & (peaks.position < 0.0)) and np.any(high & (peaks.position > 0.0))
     return peaks if both else None

@@ -1,10 +1,9 @@
 """The teardrop: the connected region of contacts that the load opens below itself (Secs. IV.A and IV.B).
 
-Two open contacts are adjacent if their centres are within ``reach`` lattice constants of each other: on the triangular
-lattice horizontal contacts of one row and of neighbouring rows are one lattice constant apart, the next nearest 1.7, so
-the default 1.2 joins neighbours and bridges nothing. The region is the connected component nearest to the loaded disk,
-if it begins within ``start_distance`` lattice constants of it: contacts that the load opens far away, where the side
-walls have thinned the forces, are no teardrop. All lengths are measured in the rest state, in mean radii.
+Two open contacts are adjacent if their centres are within :data:`REACH` lattice constants of each other. The region is
+the connected component nearest to the loaded disk, if it begins within :data:`START` lattice constants of it: contacts
+that the load opens far away, where the side walls have thinned the forces, are no teardrop. All lengths are measured in
+the rest state, in mean radii.
 """
 
 from __future__ import annotations
@@ -20,6 +19,10 @@ from ..state import FLOOR, Box, FloatArray, State
 from .network import contact_centre
 
 BoolArray = NDArray[np.bool_]
+
+#: Lattice constants. On the triangular lattice horizontal contacts of one row and of neighbouring rows are one apart,
+#: the next nearest 1.7: neighbours are joined and nothing is bridged.
+REACH, START = 1.2, 5.0
 
 
 @dataclass(frozen=True)
@@ -43,8 +46,6 @@ def open_region(
     *,
     start: BoolArray | None = None,
     lattice_constant: float = 2.0,
-    reach: float = 1.2,
-    start_distance: float = 5.0,
 ) -> OpenRegion:
     """Connected region of the ``opened`` pairs ((m,) mask) that begins nearest to ``origin`` ((2,)), Fig. 5.
 
@@ -57,10 +58,7 @@ def open_region(
     centre = contact_centre(state)
     if state.box.periodic:  # the shortest way from the origin
         centre = origin + state.box.separation(centre, origin)
-    inside = connected(
-        centre, opened, origin, state.box, start=start, lattice_constant=lattice_constant, reach=reach,
-        start_distance=start_distance,
-    )  # fmt: skip
+    inside = connected(centre, opened, origin, state.box, start=start, lattice_constant=lattice_constant)
     region = np.flatnonzero(inside)
     if region.size == 0:
         return OpenRegion(contacts=inside, depth=0.0, width=0.0, reaches_floor=False)
@@ -88,17 +86,15 @@ def connected(
     *,
     start: BoolArray | None = None,
     lattice_constant: float = 2.0,
-    reach: float = 1.2,
-    start_distance: float = 5.0,
 ) -> BoolArray:
     """Which of the ``opened`` contacts (m,) with ``centre`` (m, 2) belong to the region; see :func:`open_region`."""
     inside = np.zeros(opened.shape, dtype=bool)
     candidate = np.flatnonzero(opened)
-    may_begin = opened & (np.linalg.norm(centre - origin, axis=1) <= start_distance * lattice_constant)
+    may_begin = opened & (np.linalg.norm(centre - origin, axis=1) <= START * lattice_constant)
     begin = np.flatnonzero(may_begin if start is None else may_begin & start)
     if begin.size == 0:
         return inside
-    label = _components(centre[candidate], reach * lattice_constant, box)
+    label = _components(centre[candidate], REACH * lattice_constant, box)
     distance = np.linalg.norm(centre[begin] - origin, axis=1)
     nearest = begin[distance <= distance.min() + 0.01 * lattice_constant]
     begun = np.zeros(label.max() + 1, bool)

@@ -17,7 +17,6 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike
 
-from ..errors import require
 from ..observe.teardrop import connected
 from ..state import FLOOR, OPEN, SLIDING, Box, FloatArray
 from . import style
@@ -31,7 +30,7 @@ def draw_disks(
     position: ArrayLike,
     radius: ArrayLike,
     *,
-    values: ArrayLike | None = None,
+    values: FloatArray | None = None,
     facecolor: Any = "none",
     edgecolor: Any = style.FAINT,
     linewidth: float = 0.4,
@@ -42,12 +41,9 @@ def draw_disks(
     With ``values`` (n,) they are filled by value: pass ``cmap`` and ``norm`` or ``clim``, and hand the
     returned collection to ``colorbar``.
     """
-    centre = _points(position, "position")
-    diameter = 2.0 * np.broadcast_to(np.asarray(radius, dtype=float), len(centre))
-    if values is not None:
-        collection["array"] = np.asarray(values, dtype=float)
-    else:
-        collection["facecolor"] = facecolor
+    centre = np.asarray(position, float)
+    diameter = 2.0 * np.broadcast_to(radius, len(centre))
+    collection |= {"facecolor": facecolor} if values is None else {"array": values}
     disks = EllipseCollection(
         diameter,
         diameter,
@@ -65,23 +61,21 @@ def draw_disks(
 
 
 def draw_rotations(
-    axes: Axes, position: ArrayLike, radius: ArrayLike, angle: ArrayLike, **lines: Any
+    axes: Axes, position: FloatArray, radius: ArrayLike, angle: ArrayLike, **lines: Any
 ) -> LineCollection:
     """Mark the rotation of each disk by a diameter that was vertical at ``angle`` (n,) zero (Fig. 2)."""
-    centre, turn = _points(position, "position"), np.asarray(angle, dtype=float)
-    arm = np.stack([-np.sin(turn), np.cos(turn)], axis=1) * 0.8 * np.reshape(radius, (-1, 1))
-    return _segments(axes, centre - arm, centre + arm, {"color": style.MUTED, "linewidth": 0.4, **lines})
+    arm = np.stack([-np.sin(angle), np.cos(angle)], axis=1) * 0.8 * np.reshape(radius, (-1, 1))
+    return _segments(axes, position - arm, position + arm, {"color": style.MUTED, "linewidth": 0.4, **lines})
 
 
 def draw_contacts(
-    axes: Axes, position: ArrayLike, first: ArrayLike, second: ArrayLike, *, box: Box | None = None, **lines: Any
+    axes: Axes, position: FloatArray, first: np.ndarray, second: np.ndarray, *, box: Box | None = None, **lines: Any
 ) -> LineCollection:
     """Connect the centres of the pairs ``first``, ``second`` (m,): thin black lines unless said otherwise.
 
     With a periodic ``box``, a pair across its sides is half a line at each.
     """
-    centre = _points(position, "position")
-    start, end = centre[np.asarray(first, dtype=int)], centre[np.asarray(second, dtype=int)]
+    start, end = position[first], position[second]
     if box is not None and box.periodic:
         half = 0.5 * box.separation(end, start)
         start, end = np.concatenate([start, end]), np.concatenate([start + half, end - half])
@@ -105,14 +99,14 @@ KINDS = ("unchanged", "sliding", "closed", "opened")
 
 def draw_contact_changes(
     axes: Axes,
-    position: ArrayLike,
-    first: ArrayLike,
-    second: ArrayLike,
+    position: FloatArray,
+    first: np.ndarray,
+    second: np.ndarray,
     *,
-    touching_before: ArrayLike,
-    touching: ArrayLike,
-    sliding: ArrayLike,
-    region: ArrayLike = True,
+    touching_before: np.ndarray,
+    touching: np.ndarray,
+    sliding: np.ndarray,
+    region: np.ndarray | bool = True,
     box: Box | None = None,
     **lines: Any,
 ) -> dict[str, LineCollection]:
@@ -122,33 +116,29 @@ def draw_contact_changes(
     ``sliding`` touches and slides now, ``unchanged`` touches before and after without sliding (thin black). Kinds that
     do not occur are left out of the returned collections, which are labelled for a legend.
     """
-    i, j = np.asarray(first, dtype=int), np.asarray(second, dtype=int)
     drawn = {}
     for name, mask in _changes(touching_before, touching, sliding, region).items():
         if mask.any():
             look = {**CONTACT_LINES[name], "label": name, **lines}
-            drawn[name] = draw_contacts(axes, position, i[mask], j[mask], box=box, **look)
+            drawn[name] = draw_contacts(axes, position, first[mask], second[mask], box=box, **look)
     return drawn
 
 
 def _changes(
-    before: ArrayLike, now: ArrayLike, sliding: ArrayLike = False, region: ArrayLike = True
+    touched: np.ndarray, touches: np.ndarray, slides: np.ndarray | bool = False, inside: np.ndarray | bool = True
 ) -> dict[str, np.ndarray]:
     """(m,) masks of what became of contacts."""
-    inside = np.asarray(region, dtype=bool)
-    touched, touches = np.asarray(before, dtype=bool), np.asarray(now, dtype=bool)
-    slides = np.asarray(sliding, dtype=bool) & touches
     return {
-        "unchanged": touched & touches & ~slides,
-        "sliding": touched & slides,
+        "unchanged": touched & touches & np.logical_not(slides),
+        "sliding": touched & touches & slides,
         "closed": ~touched & touches,
         "opened": touched & ~touches & inside,
-        "opened elsewhere": touched & ~touches & ~inside,
+        "opened elsewhere": touched & ~touches & np.logical_not(inside),
     }
 
 
 def draw_state_changes(
-    axes: Axes, rest: xr.Dataset, loaded: xr.Dataset, sliding: ArrayLike | None = None
+    axes: Axes, rest: xr.Dataset, loaded: xr.Dataset, sliding: np.ndarray | None = None
 ) -> dict[str, LineCollection]:
     """Figs. 4, 8, 9 and 16: the central third of a slab, what a load changes in its contacts, the load and the floor.
 
@@ -175,7 +165,7 @@ def draw_state_changes(
         second[shown],
         touching_before=before[shown],
         touching=now[shown],
-        sliding=np.asarray(sliding)[shown],
+        sliding=sliding[shown],
         region=region[shown],
     )
     on_floor = rest["wall_index"].values == FLOOR
@@ -192,19 +182,17 @@ def draw_state_changes(
 
 
 def pair_points(
-    position: ArrayLike, radius: ArrayLike, first: ArrayLike, second: ArrayLike, *, box: Box | None = None
+    position: FloatArray, radius: ArrayLike, first: np.ndarray, second: np.ndarray, *, box: Box | None = None
 ) -> FloatArray:
     """(m, 2) contact points: on the line of centres, dividing the overlap (or gap) evenly.
 
     With a periodic ``box``, that of a pair across its sides lies beside the first disk.
     """
-    centre = _points(position, "position")
-    i, j = np.asarray(first, dtype=int), np.asarray(second, dtype=int)
-    size = np.broadcast_to(np.asarray(radius, dtype=float), len(centre))
-    between = centre[j] - centre[i] if box is None else box.separation(centre[j], centre[i])
+    start, end, size = position[first], position[second], np.broadcast_to(radius, len(position))
+    between = end - start if box is None else box.separation(end, start)
     distance = np.linalg.norm(between, axis=1)
-    from_first = 0.5 * (distance + size[i] - size[j])
-    return centre[i] + between * (from_first / distance)[:, None]
+    from_first = 0.5 * (distance + size[first] - size[second])
+    return start + between * (from_first / distance)[:, None]
 
 
 #: How forces are drawn that press what touches together more (or at all), and less: colour and order.
@@ -216,9 +204,9 @@ FORCE_LINES: dict[str, dict[str, Any]] = {
 
 def draw_forces(
     axes: Axes,
-    point: ArrayLike,
-    force: ArrayLike,
-    normal: ArrayLike,
+    point: FloatArray,
+    force: FloatArray,
+    normal: FloatArray,
     *,
     length_per_force: float,
     width_per_force: float,
@@ -232,18 +220,16 @@ def draw_forces(
     :data:`THINNEST`. Forces below ``smallest`` are left out, which keeps the files of large packings small. Kinds
     without a line are left out of the returned collections.
     """
-    centre, vector = _points(point, "point"), _points(force, "force")
-    require(len(centre) == len(vector), f"force: {len(vector)} given for {len(centre)} contact points")
-    magnitude = np.linalg.norm(vector, axis=1)
-    pushes = np.sum(vector * np.asarray(normal), axis=1) >= 0.0
+    magnitude = np.linalg.norm(force, axis=1)
+    pushes = np.sum(force * normal, axis=1) >= 0.0
     drawn = {}
     for (name, look), kind in zip(FORCE_LINES.items(), (pushes, ~pushes), strict=True):
         shown = kind & (magnitude > smallest)
         if shown.any():
-            half = 0.5 * length_per_force * vector[shown]
+            half = 0.5 * length_per_force * force[shown]
             widths = np.maximum(width_per_force * magnitude[shown], THINNEST)
             keywords = {"capstyle": "butt", **look, **lines, "linewidths": widths}
-            drawn[name] = _segments(axes, centre[shown] - half, centre[shown] + half, keywords)
+            drawn[name] = _segments(axes, point[shown] - half, point[shown] + half, keywords)
     return drawn
 
 
@@ -256,19 +242,18 @@ SCALES: dict[str, Callable[[FloatArray], FloatArray]] = {
 }
 
 
-def rescaled(force: ArrayLike, scale: Literal["linear", "sqrt", "percentile"], *, largest: float) -> FloatArray:
+def rescaled(force: FloatArray, scale: Literal["linear", "sqrt", "percentile"], *, largest: float) -> FloatArray:
     """Forces (m, 2) in their directions with magnitudes in place of which stands 1 for ``largest``, 0 for none.
 
     ``sqrt`` and ``percentile`` let small forces be seen beside large ones: of a point load, the chains beyond its
     first rows.
     """
-    vector = _points(force, "force")
-    magnitude = np.linalg.norm(vector, axis=1)
+    magnitude = np.linalg.norm(force, axis=1)
     # forces that are rounding only stay without length on every scale
     seen = magnitude > 1e-9 * largest
-    size = np.zeros(len(vector))
+    size = np.zeros(len(force))
     size[seen] = SCALES[scale](magnitude[seen] / largest)
-    return vector * (size / np.where(seen, magnitude, 1.0))[:, None]
+    return force * (size / np.where(seen, magnitude, 1.0))[:, None]
 
 
 def draw_load(axes: Axes, at: ArrayLike, direction: ArrayLike = (0.0, -1.0), *, length: float = 4.0) -> None:
@@ -302,8 +287,7 @@ def draw_torque(axes: Axes, at: ArrayLike, torque: float, *, radius: float = 1.7
     ends = [(x + radius * np.cos(a), z + radius * np.sin(a)) for a in (start, end)]
     axes.add_patch(
         FancyArrowPatch(
-            ends[0],
-            ends[1],
+            *ends,
             # a circle through both ends: the bulge over half the chord is tan(angle / 4)
             connectionstyle=f"arc3,rad={-2.0 * np.tan((start - end) / 4.0) * 0.5:.4f}",
             arrowstyle="-|>",
@@ -351,9 +335,3 @@ def include(axes: Axes, points: FloatArray) -> None:
     if len(points):
         axes.update_datalim(points)
         axes.autoscale(enable=None)  # type: ignore[arg-type]  # its type leaves out what its text allows
-
-
-def _points(values: ArrayLike, name: str) -> FloatArray:
-    array = np.asarray(values, dtype=float)
-    require(array.ndim == 2 and array.shape[1] == 2, f"{name}: must have shape (n, 2), not {array.shape}")
-    return array

@@ -27,10 +27,7 @@ class PictureError(GranularError, ValueError):
 
 def check_positive(**given: float | None) -> None:
     """PictureError, with its name, for the first of ``given`` that is no number greater than 0; None is left out."""
-    try:
-        errors.check_positive(**{name: value for name, value in given.items() if value is not None})
-    except ValueError as error:
-        raise PictureError(str(error)) from None
+    errors.check_positive(PictureError, **{name: value for name, value in given.items() if value is not None})
 
 
 @contextlib.contextmanager

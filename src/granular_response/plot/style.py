@@ -114,10 +114,7 @@ FAINT, MUTED = "#C8C8C8", "#707070"
 PAPER, PAPER_BAND = "#9A7B4F", "#F1E9DA"
 
 _SHEET: Any = mpl.rc_params_from_file(Path(__file__).with_suffix(".mplstyle"), use_default_template=False)
-RC: dict[str, Any] = {
-    **_SHEET,
-    "axes.prop_cycle": cycler(color=COLOURS) + cycler(linestyle=LINE_STYLES),
-}
+RC: dict[str, Any] = {**_SHEET, "axes.prop_cycle": cycler(color=COLOURS) + cycler(linestyle=LINE_STYLES)}
 #: Settings of the program rather than of a picture; resetting some of them warns or switches the backend.
 _NOT_STYLE = ("animation", "backend", "backend_fallback", "docstring", "interactive", "keymap", "macosx", "timezone",
               "tk", "toolbar", "webagg")  # fmt: skip

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from ..state import FloatArray
 from ..state.box import FARTHEST
-from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector
+from .base import Overlaps, PackingDescription, Positive, Sides, Vector
 from .errors import NotAllowed, must
 from .formats import Table
 from .given import plain
@@ -94,7 +94,7 @@ def _check_numbers(value: Any) -> Any:
 Column = Annotated[tuple[float, ...], BeforeValidator(_check_numbers)]
 
 
-class ArrayPacking(Sparse, PackingDescription):
+class ArrayPacking(PackingDescription):
     """Disks given by their numbers; ``Scene.from_arrays`` makes one of arrays.
 
     Lengths are in any one unit, masses too. Every centre lies above the floor and between the side walls; periodic

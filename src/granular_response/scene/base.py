@@ -97,6 +97,10 @@ class Description(BaseModel, metaclass=_Public):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
+    #: Keys that are written only where they are not the default: a scene without them is written as if they did not
+    #: exist.
+    sparse: ClassVar[tuple[str, ...]] = ()
+
     def __init__(self, /, **data: Any) -> None:
         try:
             super().__init__(**data)
@@ -133,6 +137,14 @@ class Description(BaseModel, metaclass=_Public):
             if info is None or value != info.get_default(call_default_factory=True):
                 yield name, value
 
+    @model_serializer(mode="wrap")
+    def _written(self, written: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        data: dict[str, Any] = written(self)
+        fields = {key: info for key, info in type(self).model_fields.items() if key in self.sparse}
+        defaults = {key: info.get_default(call_default_factory=True) for key, info in fields.items()}
+        usual = {key for key, default in defaults.items() if getattr(self, key) == default}
+        return {key: value for key, value in data.items() if key not in usual}
+
     @model_validator(mode="before")
     @classmethod
     def _check_keys(cls, data: Any) -> Any:
@@ -161,23 +173,6 @@ PLACES: dict[str, tuple[type[Description], ...]] = {}
 def packing_kinds() -> list[str]:
     """The kinds of packings."""
     return [one.model_fields["kind"].default for one in PLACES["packing"]]
-
-
-class Sparse(Description):
-    """A description of which some keys are written only where they are not the default.
-
-    So a scene that does not have what they say is written as if they did not exist.
-    """
-
-    sparse: ClassVar[tuple[str, ...]] = ()
-
-    @model_serializer(mode="wrap")
-    def _written(self, written: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        data: dict[str, Any] = written(self)
-        fields = {key: info for key, info in type(self).model_fields.items() if key in self.sparse}
-        defaults = {key: info.get_default(call_default_factory=True) for key, info in fields.items()}
-        usual = {key for key, default in defaults.items() if getattr(self, key) == default}
-        return {key: value for key, value in data.items() if key not in usual}
 
 
 def allowed(phrase: str) -> WrapValidator:

@@ -86,8 +86,7 @@ def _of_table(lines: list[str]) -> Iterator[GivenContact]:
         several = f"columns {', '.join(missing)} are" if len(missing) > 1 else f"column {missing[0]} is"
         raise FormatError(f"{several} missing, which a .contacts.csv has{there}", "line 1")
     for place, cells in ((f"line {k}", cells) for k, cells in enumerate(csv.reader(lines), start=1) if k > 1):
-        if len(cells) != len(header):
-            raise FormatError(f"has {len(cells)} values, must have {len(header)} as the header", place)
+        must(len(cells) == len(header), f"has {len(cells)} values, must have {len(header)} as the header", place)
         row = dict(zip(header, cells, strict=True))
         first, second, wall = (row[one].strip() for one in _NAMES)
         if wall and wall not in WALL_MEANINGS:
@@ -105,8 +104,7 @@ def _of_pairs(path: Path, position: FloatArray, box: Box, table: Table) -> Itera
         raise FormatError("calls disks by their ids, so the file of the disks must have ids")
     known = {float(one): k for k, one in enumerate(table.ids)}
     for (one, two, normal, x, y, z), place in read_contacts(path):
-        if one not in known or two not in known:
-            raise FormatError(f"atoms {one:.0f} and {two:.0f}: must be ids of disks", place)
+        must(one in known and two in known, f"atoms {one:.0f} and {two:.0f}: must be ids of disks", place)
         apart = box.separation(position[known[one]], position[known[two]])
         tangential = float(apart[0] * (y + z) - apart[1] * x) / float(np.hypot(*apart))
         yield GivenContact(place, known[one], known[two], False, tangential, np.nan, normal)

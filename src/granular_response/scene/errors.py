@@ -57,7 +57,7 @@ def show(value: object) -> str:
     """``value`` on one line, spelled as YAML where Python differs, and cut where it is long."""
     if value is None or isinstance(value, bool):
         return {None: "null", True: "true", False: "false"}[value]
-    return _short.repr(value)
+    return re.sub(r"\s*\n\s*", " ", _short.repr(value))  # an array is several lines
 
 
 def show_key(path: Iterable[str | int]) -> str:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Final, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import require
+from ..errors import check_positive, require
 from .base import UNITS, Description, unit_of
 from .errors import SceneError, describe, show, suggestion
 from .given import plain
@@ -75,11 +75,7 @@ class LaboratoryUnits:
     gravity: float = 9.8  #: m/s2
 
     def __post_init__(self) -> None:
-        for item in fields(self):
-            value = getattr(self, item.name)
-            number = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
-            if not number or not (0.0 < value < math.inf):
-                raise SceneError(describe((item.name,), value, "must be a finite number greater than 0"))
+        check_positive(SceneError, **vars(self))
 
     @property
     def mass(self) -> float:

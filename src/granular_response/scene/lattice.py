@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from .base import Fraction, Index, PackingDescription, Sides, allowed
-from .errors import NotAllowed
+from .errors import must
 from .packing import Packing, exact_mean, generator
 
 TOUCHING_LARGEST = "touching-largest"
@@ -66,8 +66,8 @@ class LatticePacking(PackingDescription):
 
     @model_validator(mode="after")
     def _check_size(self) -> LatticePacking:
-        if (n := self.disk_count) > MOST_DISKS:
-            raise NotAllowed(f"must have at most {MOST_DISKS} disks", key=("layers",), value=f"{n} disks")
+        n, rule = self.disk_count, f"must have at most {MOST_DISKS} disks"
+        must(n <= MOST_DISKS, rule, key=("layers",), value=f"{n} disks")
         return self
 
     def build(self) -> Packing:
@@ -115,9 +115,9 @@ class SlabPacking(LatticePacking):
 
     @model_validator(mode="after")
     def _check_period(self) -> SlabPacking:
-        if self.periodic and self.disks_per_row < LEAST_PERIOD:
-            rule = f"must be at least {LEAST_PERIOD} with periodic sides, so that no disk meets another on both sides"
-            raise NotAllowed(rule, key=("disks_per_row",), value=self.disks_per_row)
+        rule = f"must be at least {LEAST_PERIOD} with periodic sides, so that no disk meets another on both sides"
+        enough = self.disks_per_row >= LEAST_PERIOD or not self.periodic
+        must(enough, rule, key=("disks_per_row",), value=self.disks_per_row)
         return self
 
     def row_count(self) -> NDArray[np.int64]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
 
 from ..errors import require
-from .base import Description, Finite, Sparse, Vector, allowed
+from .base import Description, Finite, Vector, allowed
 from .errors import NotAllowed, SceneError, must, show, show_key
 from .packing import Packing
 
@@ -70,7 +70,7 @@ Displacement = Annotated[
 ]
 
 
-class Load(Sparse):
+class Load(Description):
     """A force (mg) and a torque (mg × mean radius) on one disk, or a prescribed displacement (mean radii) of it.
 
     A displaced disk is held at its displacement, and the force that this takes is part of the result. The force acts
@@ -147,31 +147,29 @@ def resolve_disk(
         raise SceneError(f"{key}{part} = {show(problem.value)}: {problem.allowed}") from None
 
 
-def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.int64]) -> int:
+def check_disk(
+    selector: str | int | RowSelector, n: int, row_count: NDArray[np.int64], at: tuple[str | int, ...] = ()
+) -> int:
     """As ``resolve_disk``, for a selector that needs no positions, by the numbers of disks alone.
 
-    Raises NotAllowed, to which the caller adds where the selector stands.
+    Raises NotAllowed; the selector stands ``at`` this place.
     """
     if isinstance(selector, int):
-        if not 0 <= selector < n:
-            raise NotAllowed(f"must be from 0 to {n - 1}, the packing has {n} disks", value=selector)
+        must(0 <= selector < n, f"must be from 0 to {n - 1}, the packing has {n} disks", key=at, value=selector)
         return int(selector)
     if not isinstance(selector, RowSelector):
-        raise NotAllowed("must be top-centre, the index of a disk, a TopSelector or a RowSelector", value=selector)
-    rows = len(row_count)
-    if rows == 0:
-        rule = "only slabs and piles have rows, must be top-centre, {x: number} or the index of a disk"
-        raise NotAllowed(rule, key=("row",), value=selector.row)
-    named = {"top": rows - 1, "bottom": 0}
-    row = named[selector.row] if isinstance(selector.row, str) else selector.row
-    if row >= rows:
-        rule = f"must be top, bottom or from 0 to {rows - 1}, the packing has {rows} rows"
-        raise NotAllowed(rule, key=("row",), value=selector.row)
+        rule = "must be top-centre, the index of a disk, a TopSelector or a RowSelector"
+        raise NotAllowed(rule, key=at, value=selector)
+    rows, row = len(row_count), selector.row
+    rule = "only slabs and piles have rows, must be top-centre, {x: number} or the index of a disk"
+    must(rows, rule, key=(*at, "row"), value=row)
+    row = {"top": rows - 1, "bottom": 0}[row] if isinstance(row, str) else row
+    rule = f"must be top, bottom or from 0 to {rows - 1}, the packing has {rows} rows"
+    must(row < rows, rule, key=(*at, "row"), value=row)
     middle = (int(row_count[row]) - 1) // 2
     last = int(row_count[row]) - 1 - middle
-    if not -middle <= selector.offset <= last:
-        rule = f"must be from {-middle} to {last}, row {row} has {row_count[row]} disks"
-        raise NotAllowed(rule, key=("offset",), value=selector.offset)
+    rule = f"must be from {-middle} to {last}, row {row} has {row_count[row]} disks"
+    must(-middle <= selector.offset <= last, rule, key=(*at, "offset"), value=selector.offset)
     return int(row_count[:row].sum()) + middle + selector.offset
 
 

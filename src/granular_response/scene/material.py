@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, NamedTuple
 
 from pydantic import BeforeValidator, Field, SerializeAsAny, ValidationInfo, field_validator
 
-from .base import Description, Ratio, Sparse, Stiffness
+from .base import Description, Ratio, Stiffness
 from .errors import NotAllowed, suggestion
 
 
@@ -36,7 +36,7 @@ def _check_law(value: Any) -> Any:
 _SPARSE = ("rolling_friction", "rolling_stiffness_ratio", "parameters")
 
 
-class Contact(Sparse):
+class Contact(Description):
     """Spring and dashpot along the normal, spring and dashpot with a limit along the tangent and along the rolling.
 
     Sec. III.A and III.B of the paper, with its values as defaults. Reduced units: stiffness in mg
@@ -121,7 +121,7 @@ class Contact(Sparse):
         return 2.0 * self.damping_ratio * math.sqrt(self.tangential_stiffness)
 
 
-class Wall(Sparse):
+class Wall(Description):
     """The contact law at the floor and the side walls; what is null follows the contacts between disks.
 
     Examples

@@ -16,7 +16,7 @@ from pydantic import Field, model_validator
 
 from ..state import FloatArray
 from .base import Fraction, Index, PackingDescription, Positive, Sides, allowed
-from .errors import NotAllowed
+from .errors import NotAllowed, must
 from .packing import Packing, exact_mean, generator
 
 MOST_POURED = 20_000
@@ -62,10 +62,9 @@ class PouredPacking(PackingDescription):
             raise NotAllowed(rule, key=("fractions",), value=list(self.fractions))
         largest = float(self._radius().max())
         least = 6.0 * largest if self.periodic else 2.0 * largest
-        if not least <= self.width <= 1e6:
-            size = "three diameters" if self.periodic else "the diameter"
-            rule = f"must be from {least:.4g}, {size} of the largest disk, to 1e6"
-            raise NotAllowed(rule, key=("width",), value=self.width)
+        size = "three diameters" if self.periodic else "the diameter"
+        rule = f"must be from {least:.4g}, {size} of the largest disk, to 1e6"
+        must(least <= self.width <= 1e6, rule, key=("width",), value=self.width)
         return self
 
     @property

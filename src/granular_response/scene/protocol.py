@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from ..state import FloatArray
-from .base import Count, Description, Finite, Flag, NonNegative, Positive, Sparse, allowed
+from .base import Count, Description, Finite, Flag, NonNegative, Positive, allowed
 from .errors import SceneError, describe
 from .names import MOTION
 from .packing import Packing
@@ -47,7 +47,7 @@ class Taps(Description):
     duration: Positive = Field(default=3.0, description="Duration of a tap, rounded to a multiple of four time steps.")
 
 
-class Preparation(Sparse):
+class Preparation(Description):
     """How the unloaded packing comes to rest. With friction the initial equilibrium depends on it.
 
     Examples
@@ -130,7 +130,7 @@ class Protocol(Description):
     )
 
 
-class Motion(Sparse):
+class Motion(Description):
     """Velocities and spins with which disks start, for :func:`granular_response.motion`.
 
     A number is that of all disks, a list has one for each; ``column`` takes them from the file of the packing: the

@@ -17,8 +17,8 @@ from ..errors import require
 from ..inputs import read_text, unreadable
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
-from .base import MOST_STIFFNESS, PLACES, Description, PackingDescription, Sparse, packing_kinds, refused
-from .errors import NotAllowed, SceneError, SceneFileError, must, show, show_key, suggestion
+from .base import MOST_STIFFNESS, PLACES, Description, PackingDescription, packing_kinds, refused
+from .errors import SceneError, SceneFileError, must, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
 from .material import Contact, Wall
@@ -44,8 +44,7 @@ def _check_kind(value: Any) -> Any:
     must(isinstance(value, Mapping), f"must be a mapping with the key kind ({choices})")
     must("kind" in value, f"key kind is missing, must be {choices}")
     kind = value["kind"]
-    if not isinstance(kind, str) or kind not in kinds:
-        raise NotAllowed(f"must be {choices}{suggestion(kind, kinds)}", key=("kind",), value=kind)
+    must(kind in kinds, f"must be {choices}{suggestion(kind, kinds)}", key=("kind",), value=kind)
     return dict(value)
 
 
@@ -54,7 +53,7 @@ def _check_list(value: Any) -> Any:
     return tuple(value)
 
 
-class Scene(Sparse):
+class Scene(Description):
     """What is simulated. ``Scene()`` is the paper's: 15 rows of 61 and 60 disks, friction 0.2, F = 15.
 
     Every way to make a scene, the constructor included, raises SceneError with a message of one line that
@@ -84,39 +83,32 @@ class Scene(Sparse):
 
     @model_validator(mode="after")
     def _check_contacts(self) -> Scene:
-        if self.wall.normal_stiffness is None and self.contact.normal_stiffness > 0.5 * MOST_STIFFNESS:
-            rule = "must be at most 5e11 where wall.normal_stiffness, twice as much, is left open"
-            raise NotAllowed(rule, key=("contact", "normal_stiffness"), value=self.contact.normal_stiffness)
+        own, key = self.contact.normal_stiffness, ("contact", "normal_stiffness")
+        rule = "must be at most 5e11 where wall.normal_stiffness, twice as much, is left open"
+        must(self.wall.normal_stiffness is not None or own <= 0.5 * MOST_STIFFNESS, rule, key=key, value=own)
         for name, contact in (("contact", self.contact), ("wall", self.resolved_wall)):
-            if contact.rolls and not (contact.rubs and contact.rolling_stiffness_ratio > 0):
-                rule = f"{name}.friction, stiffness_ratio and rolling_stiffness_ratio are greater than 0"
-                key = (name, "rolling_friction")
-                raise NotAllowed(f"must be 0 unless {rule}", key=key, value=contact.rolling_friction)
+            rule = f"must be 0 unless {name}.friction, stiffness_ratio and rolling_stiffness_ratio are greater than 0"
+            springs = contact.rubs and contact.rolling_stiffness_ratio > 0
+            must(springs or not contact.rolls, rule, key=(name, "rolling_friction"), value=contact.rolling_friction)
         return self
 
     @model_validator(mode="after")
     def _check_loads(self) -> Scene:
         rough_floor = self.resolved_wall.rubs
         for place, load in enumerate(self.loads):
-            if load.torque != 0 and not self.contact.rubs and not rough_floor:
-                rule = f"{_SMOOTH}, which alone can balance it"
-                raise NotAllowed(rule, key=("loads", place, "torque"), value=load.torque)
+            rule, turns = f"{_SMOOTH}, which alone can balance it", self.contact.rubs or rough_floor
+            must(load.torque == 0 or turns, rule, key=("loads", place, "torque"), value=load.torque)
         sideways = sum(load.force[0] for load in self.loads)
         held = any(load.displacement and load.displacement[0] is not None for load in self.loads)
         rounding = 1e-12 * sum(abs(load.force[0]) for load in self.loads)
-        if self.packing.periodic and not rough_floor and abs(sideways) > rounding and not held:
-            rule = "must be 0 with periodic sides on a smooth floor, which hold nothing"
-            raise NotAllowed(f"is the sum of the forces along x, {rule}", key=("loads",), value=sideways)
+        rule = "is the sum of the forces along x, must be 0 with periodic sides on a smooth floor, which hold nothing"
+        free = self.packing.periodic and not rough_floor and not held
+        must(not free or abs(sideways) <= rounding, rule, key=("loads",), value=sideways)
         if total := self.packing.disk_count:  # 0: only the file knows
             count = self.packing.row_count() if isinstance(self.packing, LatticePacking) else np.zeros(0, np.int64)
             for place, load in enumerate(self.loads):
-                if load.disk == TOP_CENTRE or isinstance(load.disk, TopSelector):  # chosen by positions
-                    continue
-                try:
-                    check_disk(load.disk, total, count)
-                except NotAllowed as problem:
-                    path = ("loads", place, "disk", *problem.key)
-                    raise NotAllowed(problem.allowed, key=path, value=problem.value) from None
+                if load.disk != TOP_CENTRE and not isinstance(load.disk, TopSelector):  # chosen by positions
+                    check_disk(load.disk, total, count, ("loads", place, "disk"))
         return self
 
     @model_validator(mode="after")
@@ -125,15 +117,15 @@ class Scene(Sparse):
         rule = "must be at-once with packing.springs, which bear the weights"
         must(given is None or gravity == "at-once", rule, key=("preparation", "gravity"), value=gravity)
         motion, total = self.motion, self.packing.disk_count
-        if np.any(np.asarray(motion.spin) != 0.0) and not self.contact.rubs and not self.resolved_wall.rubs:
-            raise NotAllowed(f"{_SMOOTH}, which alone turn disks", key=("motion", "spin"), value=motion.spin)
+        still = not np.any(np.asarray(motion.spin) != 0.0) or self.contact.rubs or self.resolved_wall.rubs
+        must(still, f"{_SMOOTH}, which alone turn disks", key=("motion", "spin"), value=motion.spin)
         for name in MOTION:
             given = getattr(motion, name)
             rule = "must be numbers, the packing is not from a file"
             must(given != COLUMN or isinstance(self.packing, FilePacking), rule, key=("motion", name), value=given)
-            if isinstance(given, tuple) and total and len(given) != total:
+            if isinstance(given, tuple) and total:
                 rule = f"must have one number for each of the {total} disks, has {len(given)}"
-                raise NotAllowed(rule, key=("motion", name), value=list(given))
+                must(len(given) == total, rule, key=("motion", name), value=list(given))
         return self
 
     def __repr__(self) -> str:

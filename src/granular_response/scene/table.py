@@ -16,7 +16,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, Valida
 from ..inputs import unreadable
 from . import formats
 from .arrays import ROUNDING, packed
-from .base import Overlaps, PackingDescription, Positive, Sides, Sparse, Vector, allowed
+from .base import Overlaps, PackingDescription, Positive, Sides, Vector, allowed
 from .errors import NotAllowed, SceneError, describe, must, show
 from .formats import csv_table
 from .packing import Packing, exact_mean
@@ -43,7 +43,7 @@ def _check_columns(value: Any) -> Any:
     return dict(value)
 
 
-class FilePacking(Sparse, PackingDescription):
+class FilePacking(PackingDescription):
     """Disks from a file: CSV with the columns x, z and radius, or what another program wrote (``scene.formats``).
 
     Lengths are in any one unit. Every centre lies above the floor and between the side walls; periodic sides take any
@@ -142,9 +142,8 @@ class FilePacking(Sparse, PackingDescription):
         several frames, of which the last is taken, and where ``y`` of a picture is taken as the height.
         """
         table = self._table()
-        left, floor, width = self._sides(table.box)
         try:
-            packing = packed(table, left, floor, width, self.periodic)
+            packing = packed(table, *self._sides(table.box), self.periodic)
         except NotAllowed as problem:
             *name, place = problem.key
             if isinstance(place, str):
@@ -163,11 +162,10 @@ class FilePacking(Sparse, PackingDescription):
         return replace(packing, contacts=self._read(read, "springs"))
 
     def _sides(self, box: formats.FileBox) -> tuple[float, float, float]:
-        """Left wall, floor and width in coordinates of the file; SceneError where they are not known or disagree."""
-        if box.periodic not in (None, self.periodic):
-            there, said = ("periodic", "is periodic") if box.periodic else ("walls", "is not periodic")
-            rule = f"must be {there}, the box of {show(self.path)} {said} in x"
-            raise SceneError(describe(("packing", "sides"), self.sides, rule))
+        """Left wall, floor and width in coordinates of the file; NotAllowed where they are not known or disagree."""
+        there, said = ("periodic", "is periodic") if box.periodic else ("walls", "is not periodic")
+        rule = f"must be {there}, the box of {show(self.path)} {said} in x"
+        must(box.periodic in (None, self.periodic), rule, key=("sides",), value=self.sides)
         known = box.periodic is not None or self.periodic or box is formats.NO_BOX
         width = self.width if self.width is not None else box.width if known else None
         left, floor = self.origin or (box.left if known else None, box.floor)
@@ -176,10 +174,10 @@ class FilePacking(Sparse, PackingDescription):
             both = ", and origin as [left wall, floor]" if left is None or floor is None else ""
             given = f"must be given{both}" if key == "width" else "must be given as [left wall, floor]"
             where = " in coordinates of the file" if both else ""
-            raise SceneError(describe(("packing", key), None, f"{given}{where}, {box.reason}"))
-        if box.periodic and box.width is not None and not math.isclose(width, box.width, rel_tol=ROUNDING):
+            raise NotAllowed(f"{given}{where}, {box.reason}", key=(key,), value=None)
+        if box.periodic and box.width is not None:
             rule = f"must be {box.width!r} or left out, the period of the box of {show(self.path)}"
-            raise SceneError(describe(("packing", "width"), width, rule))
+            must(math.isclose(width, box.width, rel_tol=ROUNDING), rule, key=("width",), value=width)
         return left, floor, width
 
     def _read(self, read: Callable[[], T], key: str = "path") -> T:

@@ -92,11 +92,7 @@ def _mistake(node: yaml.Node, problem: str) -> yaml.MarkedYAMLError:
 def read(text: str) -> Any:
     """The content of one YAML document; SceneError, with line and column, for what is not one of plain data."""
     try:
-        reader = _Reader(text)
-        try:
-            return reader.get_single_data()
-        finally:
-            reader.dispose()
+        return yaml.load(text, _Reader)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""

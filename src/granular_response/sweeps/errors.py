@@ -8,12 +8,9 @@ import numbers
 import reprlib
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import GranularError
-
-if TYPE_CHECKING:
-    from ..scene.base import Description
 
 #: Most characters by which a message names a task, and most tasks that it is told from.
 _LONGEST, _COMPARED = 400, 100
@@ -77,36 +74,30 @@ def parts(item: Any) -> dict[str, str]:
     {'number': '1.25', 'ndigits': '1'}
     """
     from ..scene.base import Description  # here: command lines import this module at their start
+    from ..scene.errors import show
+
+    def keys(key: str, value: Any) -> Iterator[tuple[str, str]]:
+        if isinstance(value, Description):
+            value = value.model_dump(mode="json", exclude_defaults=True)
+        elif not isinstance(value, Mapping) or not value:
+            yield key, show(value)
+            return
+        for name, one in value.items():
+            yield from keys(f"{key}.{name}" if key else name, one)
 
     if isinstance(item, Description):
-        return dict(_keys(item))
-    return dict(_arguments(item)) if isinstance(item, functools.partial) else {}
-
-
-def _keys(described: Description) -> Iterator[tuple[str, str]]:
-    from ..scene.errors import show
-
-    waiting = list(described.model_dump(mode="json", exclude_defaults=True).items())
-    while waiting:
-        key, value = waiting.pop(0)
-        if isinstance(value, Mapping) and value:
-            waiting[:0] = [(f"{key}.{name}", one) for name, one in value.items()]
-        else:
-            yield key, show(value)
-
-
-def _arguments(call: functools.partial) -> Iterator[tuple[str, str]]:
-    from ..scene.base import Description
-    from ..scene.errors import show
-
+        return dict(keys("", item))
+    if not isinstance(item, functools.partial):
+        return {}
     try:
-        given = inspect.signature(call.func).bind_partial(*call.args, **call.keywords).arguments
+        given = inspect.signature(item.func).bind_partial(*item.args, **item.keywords).arguments
     except (TypeError, ValueError):  # a function of C without a signature
-        given = {f"argument {k}": value for k, value in enumerate(call.args)} | call.keywords
+        given = {f"argument {k}": value for k, value in enumerate(item.args)} | item.keywords
+    found: dict[str, str] = {}
     for name, value in given.items():
+        many = value if isinstance(value, (list, tuple)) else [value]
         if isinstance(value, Description):
-            yield from _keys(value)
-        elif isinstance(value, (numbers.Number, str)) or value is None:
-            yield name, show(value)
-        elif isinstance(value, (list, tuple)) and all(isinstance(one, (numbers.Number, str)) for one in value):
-            yield name, show(list(value))
+            found |= keys("", value)
+        elif all(isinstance(one, (numbers.Number, str)) or one is None for one in many):
+            found[name] = show(list(many) if many is value else value)
+    return found

@@ -17,7 +17,6 @@ A folder is the caller's to remove; rest states of other sources alone go by the
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import hashlib
 import io
 import os
@@ -26,7 +25,7 @@ import re
 import shutil
 import time
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +38,7 @@ from .keys import Indistinct, key, sources
 MISSING: Any = object()
 
 _SHELF = re.compile("[0-9a-f]{32}")
-#: Endings of what stands on a shelf.
+#: Endings of what stands on a shelf; earlier versions had locks too.
 _OURS = (".kept", ".lock")
 #: Seconds after which values of other sources go.
 _OLD = 7 * 24 * 3600.0
@@ -144,22 +143,6 @@ class Memory:
             self.save(name, result)
         else:
             warn(f"{self.folder}: a file that a task reads changed while it ran, so its result is not kept")
-
-    @contextlib.contextmanager
-    def making(self, name: str) -> Iterator[None]:
-        """Let one process at a time make the value of a name, where the file system has locks."""
-        lock = self.shelf / f"{name}.lock"
-        held = None
-        with contextlib.suppress(OSError):
-            atomic.make_folder(lock)
-            held = os.open(lock, os.O_WRONLY | os.O_CREAT | os.O_NOFOLLOW, 0o600)
-            fcntl.flock(held, fcntl.LOCK_EX)
-        try:
-            yield
-        finally:
-            if held is not None:
-                lock.unlink(missing_ok=True)  # whoever waits for it goes on, and finds the value
-                os.close(held)
 
     def clear(self) -> None:
         """Remove what other sources have left and nobody has added to for a week."""

@@ -10,22 +10,20 @@ It holds within the block, in this thread, and for rest states in the worker pro
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 #: The name under which a progress is told how many tasks a checkpoint had, before the first one begins.
 KEPT = "kept"
 
 
-class Progress(Protocol):
-    """Anything that wants to know how far a computation is: ``progress(done, total, "load paths")``."""
-
-    def __call__(self, done: float, total: float, what: str = "", /) -> None: ...
+#: Anything that wants to know how far a computation is: ``progress(done, total, "load paths")``.
+Progress = Callable[[float, float, str], Any]
 
 
 @dataclass(frozen=True)

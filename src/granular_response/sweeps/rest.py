@@ -37,11 +37,8 @@ def rest_state(problem: Problem) -> State:
         return state
     if not os.path.isdir(memory.shelf):  # the first one of these sources
         memory.clear()
-    with memory.making(kept):
-        state = memory.load(kept)  # another process may just have made it
-        if not isinstance(state, State):
-            state = solvers.rest_state(problem)
-            memory.save(kept, state)
+    state = solvers.rest_state(problem)
+    memory.save(kept, state)
     return state
 
 
@@ -76,11 +73,4 @@ def name(problem: Problem) -> str:
             protocol.maximum_steps,
             protocol.static_finish,
         )
-    return key(
-        packing,
-        problem.laws,
-        problem.rule,
-        preparation,
-        method,
-        numerics,
-    )
+    return key(packing, problem.laws, problem.rule, preparation, method, numerics)

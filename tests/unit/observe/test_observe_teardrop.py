@@ -52,7 +52,6 @@ def test_second_neighbours_are_not_adjacent():
     # Two rows down on the axis is 3.46 away, four aside in one row is 4 away.
     region = teardrop(REST, opened(REST, row_pairs(5, 0.0, 4.0) + row_pairs(3, 0.0)), TOP)
     assert region.count == 1
-    assert teardrop(REST, opened(REST, row_pairs(5, 0.0) + row_pairs(3, 0.0)), TOP, reach=1.8).count == 2
 
 
 def test_equally_near_contacts_begin_the_region_together():
@@ -81,19 +80,16 @@ def test_region_reaches_the_floor_with_a_contact_of_two_floor_disks():
 def test_contacts_far_from_the_load_are_not_a_teardrop():
     both_sides = opened(REST, row_pairs(4, -11.0, 11.0))
     assert teardrop(REST, both_sides, TOP).count == 0
-    assert teardrop(REST, both_sides, TOP, start_distance=6.0).count == 2
-    assert teardrop(REST, opened(REST, row_pairs(4, -5.0)), TOP, start_distance=3.0).count == 0  # 6.08 away
-    assert teardrop(REST, opened(REST, row_pairs(5, -4.0)), TOP, start_distance=3.0).count == 1  # 4.36
+    assert teardrop(REST, opened(REST, row_pairs(4, -9.0, 9.0)), TOP).count == 2  # 9.6 away, 5 lattice constants are 10
 
 
 def test_start_narrows_where_the_region_begins():
-    at_wall, near = row_pairs(6, -19.0), row_pairs(3, 0.0)
-    start = interior_contacts(REST, WIDTH, 10.0)
-    wide = {"start_distance": 20.0}
-    assert teardrop(REST, opened(REST, at_wall), TOP, **wide).count == 1
-    assert teardrop(REST, opened(REST, at_wall), TOP, start=start, **wide).count == 0
+    aside, near = row_pairs(6, -9.0), row_pairs(3, 0.0)
+    start = interior_contacts(REST, WIDTH, 15.0)
+    assert teardrop(REST, opened(REST, aside), TOP).count == 1
+    assert teardrop(REST, opened(REST, aside), TOP, start=start).count == 0
     off_axis = np.abs(0.5 * (REST.position[REST.pairs.first] + REST.position[REST.pairs.second])[:, 0] - LONG) > 0.5
-    region = teardrop(REST, opened(REST, near + row_pairs(2, 5.0)), TOP, start=off_axis, **wide)
+    region = teardrop(REST, opened(REST, near + row_pairs(2, 5.0)), TOP, start=off_axis)
     assert np.flatnonzero(region.contacts).tolist() == row_pairs(2, 5.0)
 
 

@@ -11,7 +11,6 @@ from granular_response.observe.broke_in import broke_in
 from granular_response.scene.arrays import LEAST_MASS
 from granular_response.solvers import free, solution
 from granular_response.solvers.equilibrium import external_force
-from granular_response.solvers.solution import Solution
 from granular_response.solvers.system import StaticSystem
 
 FAR = np.linspace(0.05, 1.0, 20)
@@ -221,12 +220,6 @@ def test_a_motion_that_nothing_drives_goes_on_beyond_the_target(monkeypatch):
     near = gr.solve(SINKS, load_factors=[wanted], progress=False)
     assert near.certificate.stable and near.loaded[-1].load_factor == wanted
     assert any("reached from load factor" in event.reason for event in near.events)
-
-
-def test_solutions_are_asked_for_loads_once():
-    """The line of a solved result needs no dataset of it."""
-    result = gr.solve(SINKS, load_factors=[1e-3], progress=False)
-    assert isinstance(result._solution, Solution) and str(result) and result._dataset is None
 
 
 def test_what_moves_elastically_breaks_in_nowhere():

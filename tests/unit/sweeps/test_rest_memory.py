@@ -1,9 +1,7 @@
 """A packing of one material is settled once, and a kept rest state is exactly the computed one."""
 
-import multiprocessing
 import os
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -28,11 +26,6 @@ SCENE = Scene.from_dict(
 
 @pytest.fixture
 def computed(monkeypatch):
-    """How often a packing was settled."""
-    return counted(monkeypatch)
-
-
-def counted(monkeypatch):
     """The problems that are settled from now on."""
     calls = []
     original = solve.rest_state
@@ -146,26 +139,3 @@ def test_reading_a_state_runs_no_code(folder, computed, capsys):
     with pytest.warns(MemoryWarning, match="cannot be read are computed again: UnpicklingError: builtins.print is no"):
         settled.rest_state(Problem.from_scene(SCENE))
     assert len(computed) == 1 and capsys.readouterr().out == ""
-
-
-def settle_where(folder):
-    """Settle in this process; the number of times that it was computed here."""
-    with pytest.MonkeyPatch.context() as monkeypatch, using(rest_states=folder):
-        calls = counted(monkeypatch)
-        settled.rest_state(Problem.from_scene(SCENE))
-    return len(calls)
-
-
-def test_one_process_at_a_time_makes_a_state(tmp_path):
-    """The second one waits for the first, and takes what that has made."""
-    memory, name = Memory(tmp_path, settled._PARTS, states=True), settled.name(Problem.from_scene(SCENE))
-    with multiprocessing.get_context("forkserver").Pool(1) as pool:
-        with memory.making(name):
-            found = pool.apply_async(settle_where, [tmp_path])
-            lock = f":{(memory.shelf / f'{name}.lock').stat().st_ino} "
-            while not any("->" in line and lock in line for line in Path("/proc/locks").read_text().splitlines()):
-                assert not found.ready()
-                time.sleep(0.01)
-            memory.save(name, solve.rest_state(Problem.from_scene(SCENE)))
-        assert found.get(timeout=600) == 0
-    assert not list(tmp_path.rglob("*.lock"))

@@ -5,15 +5,13 @@ from __future__ import annotations
 #: Bytes of a file by which it is known.
 _HEAD = 4096
 #: Beginnings of files that hold no table of disks as they are.
+_COMPRESSED = {
+    b"\x1f\x8b": "gzip", b"\xfd7zXZ\x00": "xz", b"\x28\xb5\x2f\xfd": "zstd", b"\x04\x22\x4d\x18": "lz4",
+    b"\x1f\x9d": "compress", b"\x5d\x00\x00": "lzma", **dict.fromkeys((b"x\x01", b"x\x9c", b"x\xda"), "zlib"),
+    **dict.fromkeys((b"BZh%d1AY" % k for k in range(1, 10)), "bzip2"),
+}  # fmt: skip
 _BEGINNINGS = {
-    b"\x1f\x8b": "is compressed (gzip), must be unpacked first",
-    **dict.fromkeys((b"BZh%d1AY" % k for k in range(1, 10)), "is compressed (bzip2), must be unpacked first"),
-    b"\xfd7zXZ\x00": "is compressed (xz), must be unpacked first",
-    b"\x28\xb5\x2f\xfd": "is compressed (zstd), must be unpacked first",
-    b"\x04\x22\x4d\x18": "is compressed (lz4), must be unpacked first",
-    b"\x1f\x9d": "is compressed (compress), must be unpacked first",
-    b"\x5d\x00\x00": "is compressed (lzma), must be unpacked first",
-    **dict.fromkeys((b"x\x01", b"x\x9c", b"x\xda"), "is compressed (zlib), must be unpacked first"),
+    **{beginning: f"is compressed ({kind}), must be unpacked first" for beginning, kind in _COMPRESSED.items()},
     **dict.fromkeys((b"\x80\x04", b"\x80\x05"), "is a pickle of Python; gr.Scene.from_arrays takes arrays"),
     **dict.fromkeys((b"{", b"["), "is JSON or the like, must be a table in CSV"),
     b"Number of particles =": "is a LAMMPS dump of style cfg, must be one of style custom",
@@ -30,21 +28,14 @@ _BEGINNINGS = {
     **dict.fromkeys((b"CDF\x01", b"CDF\x02", b"CDF\x05"), "is a file of netCDF"),
     b"\x93NUMPY": "is an array of NumPy; gr.Scene.from_arrays takes arrays",
     b"\xd0\xcf\x11\xe0": "is a table of Excel, must be saved as CSV",
-    b"\x89PNG": "is a picture",
-    b"II*\x00": "is a picture",
-    b"MM\x00*": "is a picture",
-    b"\xff\xd8\xff": "is a picture",
+    **dict.fromkeys((b"\x89PNG", b"II*\x00", b"MM\x00*", b"\xff\xd8\xff"), "is a picture"),
     b"%PDF": "is a document (PDF)",
-    b"\xff\xfe": "is text in UTF-16, must be saved in UTF-8",
-    b"\xfe\xff": "is text in UTF-16, must be saved in UTF-8",
+    **dict.fromkeys((b"\xff\xfe", b"\xfe\xff"), "is text in UTF-16, must be saved in UTF-8"),
     b"LammpS RestartT": "is a restart file of LAMMPS; write_data and write_dump make files that can be read",
-    b"<?xml": "is XML; of the files for ParaView none is read",
-    b"<VTKFile": "is XML; of the files for ParaView none is read",
+    **dict.fromkeys((b"<?xml", b"<VTKFile"), "is XML; of the files for ParaView none is read"),
     b"# vtk DataFile": "is a file of VTK, which is not read",
 }
 _GSD = (0x65DF65DF65DF65DF).to_bytes(8, "little")
-#: Place and mark within the first block of an archive.
-_TAR = (257, b"ustar")
 
 
 def foreign(data: bytes) -> str:
@@ -53,8 +44,7 @@ def foreign(data: bytes) -> str:
     for beginning, said in _BEGINNINGS.items():
         if start.startswith(beginning):
             return said
-    at, mark = _TAR
-    if data[at : at + len(mark)] == mark:
+    if data[257:].startswith(b"ustar"):
         return "is a tar archive, must be unpacked first"
     first, second, *_ = [*_lines(start), "", ""]
     if any(line.startswith(("creator: LAMMPS", "timestep:", "natoms:")) for line in _lines(start)):

@@ -65,7 +65,6 @@ _ONE_OF = (_SIZES, frozenset(MATERIAL))
 def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
     """The disks of a table; errors name the line. ``columns`` says in which column x, z, radius, ... stand."""
     rows: list[list[float]] = []
-    moved: list[list[float]] = []
     places: list[str] = []
     header: list[str] = []
     cells_of: list[list[str]] = []
@@ -104,10 +103,8 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
                     raise FormatError(f"column {name} is given {times} times, must be given once", place)
             motion = {name: titles.index((name, "")) for name in MOTION if (name, "") in titles}
             continue
-        if len(cells) != len(header):
-            raise FormatError(f"has {len(cells)} values, must have {len(header)} as the header", place)
+        must(len(cells) == len(header), f"has {len(cells)} values, must have {len(header)} as the header", place)
         rows.append(numbers([cells[column] for column in chosen.values()], tuple(chosen), place))
-        moved.append([_or_nan(cells[column]) for column in motion.values()])
         cells_of.append(cells)
         places.append(place)
     must(rows, "has no disks, must have a header x,z,radius and a line for each disk")
@@ -116,7 +113,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
         must("mass" in chosen, "column mass is missing, which tables of granular-response have")
     others = [("", "") if k in chosen.values() else title for k, title in enumerate(titles)]
     kept, frame = _last_frame(others, cells_of, places)
-    rows, moved, places = [rows[k] for k in kept], [moved[k] for k in kept], [places[k] for k in kept]
+    rows, places, cells_of = [rows[k] for k in kept], [places[k] for k in kept], [cells_of[k] for k in kept]
     values = dict(zip(chosen, np.array(rows).T, strict=True))
     for name in turned:
         values[name] = -values[name]
@@ -128,7 +125,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None) -> Table:
         up = upward(values["y"], values["z"])
     radius = radii(values, places)
     mass = values["mass"] if "mass" in values else values["density"] * radius**2 if "density" in values else None
-    velocities = dict(zip(motion, np.array(moved).T, strict=True))
+    velocities = {name: np.array([_or_nan(cells[at]) for cells in cells_of]) for name, at in motion.items()}
     box = NO_BOX if mark is None else mark.box
     notes = [f"has several frames; taken is {frame}"] if frame else []
     if up == "y" and (unit in _PIXELS or _tracker(titles, chosen)):

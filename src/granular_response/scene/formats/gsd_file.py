@@ -46,114 +46,90 @@ _NAMES |= {f"configuration/{name}" for name in ("step", "dimensions", "box")}
 _GROUPS = ("bonds", "angles", "dihedrals", "impropers", "constraints", "pairs", "state", "log")
 
 
-class _Frames:
-    """The chunks of a file by name, of the last frame or, where it has none, of the first."""
+#: Chunks of a frame by name.
+_Chunks = dict[str, NDArray]
 
-    def __init__(self, data: bytes) -> None:
-        if len(data) < _HEADER.size or _HEADER.unpack_from(data)[0] != _MAGIC:
-            if said := foreign(data):
-                raise FormatError(said)
-            raise FormatError("is not a GSD file with particles: it does not begin as one")
-        _, index_at, index_size, names_at, names_size, _, _ = _HEADER.unpack_from(data)
-        self._data = data
-        names = self._bytes(names_at, names_size * _NAME_BYTES).split(b"\0")
-        self._names = [name.decode("ascii", "replace") for name in names if name]
-        index = np.frombuffer(self._bytes(index_at, index_size * _ENTRY.itemsize), _ENTRY)
-        used = int(np.argmin(index["at"] > 0)) if (index["at"] <= 0).any() else len(index)
-        must(not index[used:].tobytes().strip(b"\0"), f"{_DAMAGED}: its index goes on after its end")
-        self._index = index[:used]
-        must(len(self._index), "is not a GSD file with particles: it has no frame")
-        self.last = int(self._index["frame"].max())
-        lists = [(index_at, index_size * _ENTRY.itemsize), (names_at, names_size * _NAME_BYTES)]
-        self._check_index([(0, _HEADER.size), *lists])
 
-    def _check_index(self, regions: list[tuple[int, int]]) -> None:
-        """Raise FormatError unless frames are numbered one by one, and each chunk has a name and a place of its own."""
-        frame, name = self._index["frame"], self._index["name"]
-        if frame[0] != 0 or (np.diff(frame.astype(np.int64)) < 0).any() or len(np.unique(frame)) != self.last + 1:
-            raise FormatError(f"{_DAMAGED}: its frames are not numbered one by one")
-        rule = f"{_DAMAGED}: its list of names"
-        must(len(set(self._names)) >= len(self._names) and name.max() < len(self._names), rule)
-        rule = f"{_DAMAGED}: a chunk is given twice in a frame"
-        must(len(np.unique(np.stack([frame, name.astype(np.uint64)]), axis=1).T) >= len(frame), rule)
-        for one in self._names:
-            if one not in _NAMES and one.partition("/")[0] not in _GROUPS:
-                raise FormatError(f"{_DAMAGED}: its list of names has one that the format does not have")
-        kind = self._index["kind"]
-        if not ((kind >= 1) & (kind <= len(_KINDS))).all():
-            raise FormatError(f"{_DAMAGED}: a chunk has values of an unknown kind, code {int(kind.max())}")
-        sizes = np.array([np.dtype(one).itemsize for one in _KINDS])[kind - 1]
-        rows, columns, at = (self._index[one].tolist() for one in ("rows", "columns", "at"))
-        regions += [(a, r * c * s) for a, r, c, s in zip(at, rows, columns, sizes.tolist(), strict=True)]
-        regions = sorted((start, start + size) for start, size in regions if size)
-        rule = f"{_DAMAGED}: two of its parts stand in the same place"
-        must(not any(end > start for (_, end), (start, _) in pairwise(regions)), rule)
-        if (end := regions[-1][1]) != len(self._data):
-            raise FormatError(f"{_DAMAGED}: its parts end at byte {end}, it has {len(self._data)}")
-
-    def _bytes(self, start: int, size: int) -> bytes:
-        must(start + size <= len(self._data), _DAMAGED)
-        return self._data[start : start + size]
-
-    def _chunk(self, frame: int, name: str) -> NDArray | None:
-        if name not in self._names:
-            return None
-        here = self._index[(self._index["frame"] == frame) & (self._index["name"] == self._names.index(name))]
-        if not len(here):
-            return None
-        rows, columns, at, kind = (int(here[0][key]) for key in ("rows", "columns", "at", "kind"))
+def _frames(data: bytes) -> tuple[_Chunks, _Chunks, int]:
+    """The chunks of the last frame and of the first one, and how many frames there are."""
+    if len(data) < _HEADER.size or _HEADER.unpack_from(data)[0] != _MAGIC:
+        raise FormatError(foreign(data) or "is not a GSD file with particles: it does not begin as one")
+    _, index_at, index_size, names_at, names_size, _, _ = _HEADER.unpack_from(data)
+    lists = [(0, _HEADER.size), (index_at, index_size * _ENTRY.itemsize), (names_at, names_size * _NAME_BYTES)]
+    must(all(at + size <= len(data) for at, size in lists), _DAMAGED)
+    raw, listed = (data[at : at + size] for at, size in lists[1:])
+    names = [name.decode("ascii", "replace") for name in listed.split(b"\0") if name]
+    index = np.frombuffer(raw, _ENTRY)
+    used = int(np.argmin(index["at"] > 0)) if (index["at"] <= 0).any() else len(index)
+    must(not index[used:].tobytes().strip(b"\0"), f"{_DAMAGED}: its index goes on after its end")
+    index = index[:used]
+    must(len(index), "is not a GSD file with particles: it has no frame")
+    last = int(index["frame"].max())
+    _check(index, names, last, lists, len(data))
+    found: dict[int, _Chunks] = {0: {}, last: {}}
+    for frame, rows, at, columns, name, kind, _ in index[np.isin(index["frame"], [0, last])].tolist():
         number = np.dtype(_KINDS[kind - 1])
-        return np.frombuffer(self._bytes(at, rows * columns * number.itemsize), number).reshape(rows, columns)
+        values = np.frombuffer(data[at : at + rows * columns * number.itemsize], number)
+        found[frame][names[name]] = values.reshape(rows, columns)
+    return found[last], found[0], last + 1
 
-    def check(self, name: str, rows: int, columns: int) -> None:
-        """Raise FormatError where the last frame has a chunk of another shape."""
-        found = self._chunk(self.last, name)
-        if found is not None and found.shape != (rows, columns):
-            raise FormatError(f"chunk {name}: has {found.size} values, must have {rows * columns}")
 
-    def has(self, name: str) -> bool:
-        """Whether any frame that counts has the chunk."""
-        return any(self._chunk(frame, name) is not None for frame in (self.last, 0))
-
-    def values(self, name: str, default: float | None, shape: tuple[int, ...]) -> FloatArray:
-        """A chunk of that shape as numbers; ``default`` is what the format takes for a missing one, None: an error."""
-        kinds = "u" if name == "particles/N" else "f" if name.startswith(("particles/", "configuration/")) else "uif"
-        for frame in (self.last, 0):
-            if (found := self._chunk(frame, name)) is None:
-                continue
-            if found.dtype.kind not in kinds:
-                raise FormatError(f"chunk {name}: has values of another kind, {found.dtype}")
-            if found.size == math.prod(shape):
-                return found.astype(float).reshape(shape)
-            if frame == self.last:
-                raise FormatError(f"chunk {name}: has {found.size} values, must have {math.prod(shape)}")
-        must(default is not None, f"is not a GSD file with particles: chunk {name} is missing")
-        return np.full(shape, default)
+def _check(index: NDArray, names: list[str], last: int, regions: list[tuple[int, int]], size: int) -> None:
+    """Raise FormatError unless frames are numbered one by one, and each chunk has a name and a place of its own."""
+    frame, name, kind = index["frame"], index["name"], index["kind"]
+    if frame[0] != 0 or (np.diff(frame.astype(np.int64)) < 0).any() or len(np.unique(frame)) != last + 1:
+        raise FormatError(f"{_DAMAGED}: its frames are not numbered one by one")
+    rule = f"{_DAMAGED}: its list of names"
+    must(len(set(names)) >= len(names) and name.max() < len(names), rule)
+    rule = f"{_DAMAGED}: a chunk is given twice in a frame"
+    must(len(np.unique(np.stack([frame, name.astype(np.uint64)]), axis=1).T) >= len(frame), rule)
+    known = all(one in _NAMES or one.partition("/")[0] in _GROUPS for one in names)
+    must(known, f"{_DAMAGED}: its list of names has one that the format does not have")
+    if not ((kind >= 1) & (kind <= len(_KINDS))).all():
+        raise FormatError(f"{_DAMAGED}: a chunk has values of an unknown kind, code {int(kind.max())}")
+    sizes = np.array([np.dtype(one).itemsize for one in _KINDS])[kind - 1]
+    rows, columns, at = (index[one].tolist() for one in ("rows", "columns", "at"))
+    regions = [*regions, *((a, r * c * s) for a, r, c, s in zip(at, rows, columns, sizes.tolist(), strict=True))]
+    ends = sorted((start, start + length) for start, length in regions if length)
+    rule = f"{_DAMAGED}: two of its parts stand in the same place"
+    must(not any(end > start for (_, end), (start, _) in pairwise(ends)), rule)
+    must(ends[-1][1] == size, f"{_DAMAGED}: its parts end at byte {ends[-1][1]}, it has {size}")
 
 
 def read(path: Path) -> Table:
     """The particles as disks."""
-    frames = _Frames(read_bytes(path))
-    count = float(frames.values("particles/N", 0.0, ()))
-    must(0 < count < 2**31, "has no particles")
-    n = int(count)
+    last, first, count = _frames(read_bytes(path))
+
+    def values(name: str, default: float | None, shape: tuple[int, ...]) -> FloatArray:
+        """A chunk of that shape as numbers; ``default`` is what the format takes for a missing one, None: an error."""
+        kinds = "u" if name == "particles/N" else "f" if name.startswith(("particles/", "configuration/")) else "uif"
+        size, found = math.prod(shape), last.get(name, first.get(name))
+        if found is not None:
+            must(found.dtype.kind in kinds, f"chunk {name}: has values of another kind, {found.dtype}")
+            if found.size == size:
+                return found.astype(float).reshape(shape)
+            must(name not in last, f"chunk {name}: has {found.size} values, must have {size}")
+        must(default is not None, f"is not a GSD file with particles: chunk {name} is missing")
+        return np.full(shape, default)
+
+    number = float(values("particles/N", 0.0, ()))
+    must(0 < number < 2**31, "has no particles")
+    n = int(number)
     for name, columns in _OF_PARTICLES.items():
-        frames.check(f"particles/{name}", n, columns)
-    x, y, z = frames.values("particles/position", None, (n, 3)).T
-    diameter, mass = (frames.values(f"particles/{name}", 1.0, (n,)) for name in ("diameter", "mass"))
-    box = frames.values("configuration/box", None, (6,))
-    must(np.isfinite(box).all() and box[0] > 0.0, "the box must be of some size")
-    must(not box[3:].any(), "the box must not be tilted")
-    places = [f"particle {k}" for k in range(n)]
-    up, which = y if upward(y, z) == "y" else z, f"{frames.last + 1} of {frames.last + 1}"
-    return Table(x, up, 0.5 * diameter, places, mass, _file_box(frames, float(box[0])), frame=which)
-
-
-def _file_box(frames: _Frames, width: float) -> FileBox:
-    if not all(frames.has(f"log/{name}") for name in ("origin", "box_width", "periodic")):
-        return FileBox(-0.5 * width, width, reason=_REASON)
-    left, floor, _ = frames.values("log/origin", None, (3,)).tolist()
-    own, periodic = (float(frames.values(f"log/{name}", None, ())) for name in ("box_width", "periodic"))
-    rule = "log entries origin, box_width, periodic: must be places, a width and 0 or 1"
-    must(np.isfinite([left, floor, own]).all() and own > 0.0 and periodic in (0.0, 1.0), rule)
-    return FileBox(left, own, floor, bool(periodic))
+        chunk = last.get(f"particles/{name}", np.empty((n, columns)))
+        rule = f"chunk particles/{name}: has {chunk.size} values, must have {n * columns}"
+        must(chunk.shape == (n, columns), rule)
+    x, y, z = values("particles/position", None, (n, 3)).T
+    diameter, mass = (values(f"particles/{name}", 1.0, (n,)) for name in ("diameter", "mass"))
+    edges = values("configuration/box", None, (6,))
+    must(np.isfinite(edges).all() and edges[0] > 0.0, "the box must be of some size")
+    must(not edges[3:].any(), "the box must not be tilted")
+    box = FileBox(-0.5 * float(edges[0]), float(edges[0]), reason=_REASON)
+    if {"log/origin", "log/box_width", "log/periodic"} <= {*first, *last}:
+        left, floor, _ = values("log/origin", None, (3,)).tolist()
+        own, periodic = (float(values(f"log/{name}", None, ())) for name in ("box_width", "periodic"))
+        rule = "log entries origin, box_width, periodic: must be places, a width and 0 or 1"
+        must(np.isfinite([left, floor, own]).all() and own > 0.0 and periodic in (0.0, 1.0), rule)
+        box = FileBox(left, own, floor, bool(periodic))
+    places, up = [f"particle {k}" for k in range(n)], y if upward(y, z) == "y" else z
+    return Table(x, up, 0.5 * diameter, places, mass, box, frame=f"{count} of {count}")

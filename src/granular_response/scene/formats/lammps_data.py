@@ -8,6 +8,7 @@ our own files does.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -51,45 +52,31 @@ _SIZES = {"Atoms": ((7, 10), "id type diameter density x y z"), "Velocities": ((
 _NAMED_ONCE = {name for name, header in _SECTIONS.items() if header == "atom types"} | {"Velocities"}
 
 
-class _Header:
-    """What stands above the sections."""
-
-    def __init__(self) -> None:
-        self.counts: dict[str, int] = {}
-        self.sides: dict[str, tuple[float, float]] = {}
-        self.corner = 0.0  #: x from which edges are measured
-
-    def add(self, cells: list[str], place: str) -> str:
-        """Take a line; what it says. Raises FormatError for one that is no header."""
-        count = whole_number(cells[0])
-        name = " ".join(cells[1:])
-        if name in _COUNTS and count is not None:
-            self.counts[name] = count
-            return name
-        ends = tuple(cells[2:])
-        if ends in _BOUNDS:
-            low, high = numbers(cells[:2], ends, place)
-            self.sides[ends[0][0]] = bounds(low, high, ends[0][0], place)
-            return f"bounds in {ends[0][0]}"
-        values = cells[:3]
-        if cells[3:] == ["xy", "xz", "yz"]:
-            upright(numbers(values, cells[3:], place), place)
-            return "xy xz yz"
-        if cells[3:] == ["abc", "origin"]:
-            self.corner = numbers(values, ("x", "y", "z"), place)[0]
-            return "abc origin"
-        if len(cells) == 4 and cells[3] in _EDGES:
-            k = _EDGES.index(cells[3])
-            edge = numbers(values, ("x", "y", "z"), place)
-            upright(edge[:k] + edge[k + 1 :], place)
-            self.sides["xyz"[k]] = bounds(0.0, edge[k], "xyz"[k], place)
-            return f"bounds in {'xyz'[k]}"
-        raise FormatError(f"{shown(' '.join(cells))}: is no header of a LAMMPS data file", place)
+def _header(cells: list[str], place: str) -> tuple[str, Any]:
+    """What a line above the sections is about, and what it says. Raises FormatError for one that is no header."""
+    count, name = whole_number(cells[0]), " ".join(cells[1:])
+    if name in _COUNTS and count is not None:
+        return name, count
+    ends, values, last = tuple(cells[2:]), cells[:3], cells[3:]
+    if ends in _BOUNDS:
+        low, high = numbers(cells[:2], ends, place)
+        return f"bounds in {ends[0][0]}", bounds(low, high, ends[0][0], place)
+    if last == ["xy", "xz", "yz"]:
+        upright(numbers(values, last, place), place)
+        return "xy xz yz", None
+    if last == ["abc", "origin"]:
+        return "abc origin", numbers(values, "xyz", place)[0]
+    if len(last) == 1 and last[0] in _EDGES:
+        k, edge = _EDGES.index(last[0]), numbers(values, "xyz", place)
+        upright(edge[:k] + edge[k + 1 :], place)
+        return f"bounds in {'xyz'[k]}", bounds(0.0, edge[k], "xyz"[k], place)
+    raise FormatError(f"{shown(' '.join(cells))}: is no header of a LAMMPS data file", place)
 
 
 def read(path: Path) -> Table:
     """The disks of section Atoms."""
-    header, once = _Header(), Once()
+    header: dict[str, Any] = {}
+    once = Once()
     sections: dict[str, list[tuple[str, list[str]]]] = {}  #: lines of each, with their places
     section = ""
     lines, whole = lines_of(path)
@@ -101,44 +88,44 @@ def read(path: Path) -> Table:
             continue
         if cells[0][0].isalpha():
             section = " ".join(cells)
-            if section not in _SECTIONS:
-                rule = f"{shown(section)}: is no section that atoms of style sphere have"
-                raise FormatError(rule, place)
+            must(section in _SECTIONS, f"{shown(section)}: is no section that atoms of style sphere have", place)
             once.add(f"section {section}", place)
             sections[section] = []
             if section == "Atoms" and comment.strip() != "sphere":  # other styles have as many columns
                 raise FormatError("atoms must be of style sphere, and say so: Atoms # sphere", place)
         elif not section:
-            once.add(header.add(cells, place), place)
+            name, said = _header(cells, place)
+            once.add(name, place)
+            header[name] = said
         else:
-            if whole_number(cells[0]) is None:
-                rule = f"{shown(cells[0])}: a line of section {section} must begin with a whole number"
-                raise FormatError(rule, place)
+            rule = f"{shown(cells[0])}: a line of section {section} must begin with a whole number"
+            must(whole_number(cells[0]) is not None, rule, place)
             if section in _NAMED_ONCE:
                 once.add(f"{cells[0]} in section {section}", place)
             sections[section].append((place, cells))
     for name, (sizes, names) in _SIZES.items():
         for place, cells in sections.get(name, []):
-            if len(cells) not in sizes:
-                raise FormatError(f"has {len(cells)} values, must have {names}", place)
-    atoms, count = sections.get("Atoms", []), header.counts.get("atoms")
+            must(len(cells) in sizes, f"has {len(cells)} values, must have {names}", place)
+    atoms, count = sections.get("Atoms", []), header.get("atoms")
     places = [place for place, _ in atoms]
     rows = [numbers(cells[2:7], _COLUMNS, place) for place, cells in atoms]
     moving = {cells[0]: (place, numbers(cells[1:], _MOTION, place)) for place, cells in sections.get("Velocities", [])}
     rule = f"must have the headers atoms and xlo xhi, and as many atoms as it says (found {len(rows)})"
-    must(count is not None and "x" in header.sides and len(rows) == count, f"is not a whole LAMMPS data file, {rule}")
+    must(
+        count is not None and "bounds in x" in header and len(rows) == count, f"is not a whole LAMMPS data file, {rule}"
+    )
     for name, found in sections.items():
-        if len(found) != (said := header.counts.get(_SECTIONS[name], 0)):
+        if len(found) != (said := header.get(_SECTIONS[name], 0)):
             rule = f"must have {said}, as the header {_SECTIONS[name]} says"
             raise FormatError(f"section {name} has {len(found)} lines, {rule}")
     must(rows, "has no atoms")
-    most = header.counts.get("atom types", 0)
+    most = header.get("atom types", 0)
     for place, (_, kind, *_) in atoms:
         if not 1 <= (whole_number(kind) or 0) <= most and "Atom Type Labels" not in sections:
             raise FormatError(f"type = {shown(kind)}: must be from 1 to {most}, as the header atom types says", place)
     must(whole, "is cut: its last line has no end")
-    left, width = header.sides["x"]
-    left += header.corner
+    left, width = header["bounds in x"]
+    left += header.get("abc origin", 0.0)  # from which edges are measured
     if mark is not None:
         mark.check(len(rows), whole)
         rule = f"says width {mark.width!r}, the bounds xlo xhi {left!r} to {left + width!r}; must agree"

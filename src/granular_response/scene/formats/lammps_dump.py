@@ -115,8 +115,7 @@ def _last_frame(path: Path, rows: str = "ATOMS") -> tuple[dict[str, _Item], str]
     for k, one in enumerate(frames, start=1):
         count = _checked(one, "last frame" if k == len(frames) else f"frame {k} of {len(frames)}", rows)
     must(whole, "is cut: its last line has no end")
-    if not count:
-        raise FormatError(f"holds 0 of 0 {rows.lower()} in its last frame", frames[-1][rows].place)
+    must(count, f"holds 0 of 0 {rows.lower()} in its last frame", frames[-1][rows].place)
     frame, last = frames[-1], len(frames)
     return frame, f"{last} of {last}, time step {frame['TIMESTEP'].lines[0][1].strip()}"
 
@@ -146,8 +145,7 @@ def read(path: Path) -> Table:
     rows = [line.split() for _, line in atoms.lines]
     places = [place for place, _ in atoms.lines]
     for cells, place in zip(rows, places, strict=True):
-        if len(cells) != len(names):
-            raise FormatError(f"has {len(cells)} values, must have {len(names)} as ITEM: ATOMS", place)
+        must(len(cells) == len(names), f"has {len(cells)} values, must have {len(names)} as ITEM: ATOMS", place)
     ids = None
     if "id" in names:
         known = by_id([cells[names.index("id")] for cells in rows], places)
@@ -163,8 +161,7 @@ def read(path: Path) -> Table:
             if (name := _AXES[axis] + ending) in names:
                 values = column(names.index(name))
                 found[name] = low + size * values if scaled else values
-        if not found:
-            raise FormatError(f"column {_AXES[axis]} is missing; there are {listed(names)}", heading)
+        must(found, f"column {_AXES[axis]} is missing; there are {listed(names)}", heading)
         (first, values), *others = found.items()
         for name, other in others:
             agree((first, name), values, other, places, size if flags[axis : axis + 1] == ["pp"] else 0.0)

@@ -97,16 +97,13 @@ class Mark:
             must("granular-response" not in line.partition("#")[2], rule, place)
             return None
         width = number(match[2], "width", place)
-        if width <= 0.0:
-            raise FormatError(f"width = {shown(match[2])}: must be greater than 0", place)
+        must(width > 0.0, f"width = {shown(match[2])}: must be greater than 0", place)
         return cls(int(match[1]), width, match[3] == "periodic")
 
     def check(self, disks: int, whole: bool) -> None:
         """Raise FormatError unless there are as many disks as it says, and the last line is ``whole``."""
-        if disks != self.disks:
-            raise FormatError(f"holds {disks} of the {self.disks} disks of its first line")
-        if not whole:
-            raise FormatError("is cut: its last line has no end")
+        must(disks == self.disks, f"holds {disks} of the {self.disks} disks of its first line")
+        must(whole, "is cut: its last line has no end")
 
 
 #: What ends a line for Python beside \\n and \\r.
@@ -173,8 +170,7 @@ def listed(names: Sequence[str]) -> str:
 
 def numbers(cells: Sequence[str], names: Sequence[str], place: str) -> list[float]:
     """One number for each name. Raises FormatError for another count, too."""
-    if len(cells) != len(names):
-        raise FormatError(f"has {len(cells)} values, must have {' '.join(names)}", place)
+    must(len(cells) == len(names), f"has {len(cells)} values, must have {' '.join(names)}", place)
     return [number(cell, name, place) for cell, name in zip(cells, names, strict=True)]
 
 
