@@ -2,8 +2,8 @@
 
 Whatever happens in between (no space left, an error, a killed process), a file that stood there before is
 untouched. The folder has a random name, ``.granular-*.partial``, beside the target, and nobody else may enter it: no
-link or pipe that somebody planted can stand in its way. What a killed process leaves is such a folder. A process that
-writes beside it a day later removes it.
+link or pipe that somebody planted can stand in its way. What a killed process leaves is such a folder. The next
+process that writes beside it removes it; a lock tells it from the folder of a living one.
 
 Only a regular file is replaced: a link is followed and stays, a device, a pipe or a folder is refused, and so is a
 file that the same command reads (``check_writable``).
@@ -13,22 +13,24 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import fcntl
 import functools
 import os
+import re
+import secrets
 import shutil
 import stat
 import tempfile
-import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from ..inputs import check_regular
 
-#: How the name of a private folder begins and ends. It does not grow with the name of the file, which may be as long
-#: as the system allows.
-_PRIVATE = ".granular-", ".partial"
-#: Seconds after which nobody writes in a private folder any longer.
-_OLD = 24 * 3600.0
+#: Name of a private folder. It does not grow with the name of the file, which may be as long as the system allows.
+_PRIVATE = ".granular-{}.partial"
+_LEFTOVER = re.compile(_PRIVATE.format("[0-9a-f]{16}").replace(".", r"\."))
+#: How often a private folder is made that another process takes for a leftover before it is locked.
+_TRIALS = 10
 
 
 def write_bytes(path: str | os.PathLike[str], data: bytes, *, lasting: bool = True) -> None:
@@ -88,9 +90,41 @@ def scratch(beside: Path | None = None) -> Iterator[Path]:
     """
     parent = Path(tempfile.gettempdir()) if beside is None else beside
     _remove_leftovers(parent)
-    prefix, suffix = _PRIVATE
-    with tempfile.TemporaryDirectory(suffix, prefix, parent, ignore_cleanup_errors=True) as folder:
-        yield Path(folder)
+    for _ in range(_TRIALS):
+        folder = parent / _PRIVATE.format(secrets.token_hex(8))
+        folder.mkdir(mode=0o700)
+        try:
+            with _locked(folder, without=True) as own:
+                if own:
+                    yield folder
+                    return
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+    raise OSError(errno.EBUSY, "another process removes what is being written", os.fspath(parent))
+
+
+@contextlib.contextmanager
+def _locked(folder: Path, *, without: bool) -> Iterator[bool]:
+    """Hold the lock of a private folder; False where another process has it, or has removed the folder. No waiting.
+
+    ``without`` is what a file system that has no locks gives.
+    """
+    try:
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+    except FileNotFoundError:
+        yield False
+        return
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            held = os.path.exists(folder)
+        except BlockingIOError:
+            held = False
+        except OSError:
+            held = without
+        yield held
+    finally:
+        os.close(descriptor)
 
 
 @functools.cache
@@ -98,10 +132,10 @@ def _remove_leftovers(parent: Path) -> None:
     """Remove the private folders of this user's killed processes, once in each process and folder."""
     with contextlib.suppress(OSError), os.scandir(parent) as entries:
         for entry in entries:
-            ours = entry.name.startswith(_PRIVATE[0]) and entry.name.endswith(_PRIVATE[1])
-            if ours and entry.is_dir(follow_symlinks=False):
-                found = entry.stat()
-                if found.st_uid == os.geteuid() and found.st_mtime < time.time() - _OLD:
+            if not _LEFTOVER.fullmatch(entry.name) or entry.stat(follow_symlinks=False).st_uid != os.geteuid():
+                continue
+            with contextlib.suppress(OSError), _locked(Path(entry.path), without=False) as dead:
+                if dead:
                     shutil.rmtree(entry.path, ignore_errors=True)
 
 
