@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from granular_response.inputs import read_json
 from granular_response.scene import SceneError
@@ -26,8 +26,8 @@ from .claim import (
     OF_THE_TEXT,
     PREPARATION,
     ROBUSTNESS,
-    ROWS,
     SCHEME,
+    Case,
     Claim,
     ClaimsError,
     Data,
@@ -125,7 +125,7 @@ def document(entries: Sequence[Verdict], data: Data | None = None) -> dict[str, 
     number = Counter((entry.claim.part, entry.verdict) for entry in statements)
     return {
         "counts": {part: {key(kind): number[part, kind] for kind in MEANINGS} for part in PARTS},
-        "checks": {row: sum(entry.claim.row == row for entry in entries) for row in list(ROWS)[1:]},
+        "checks": {"check": len(entries) - len(statements)},
         "scheme": list(SCHEME),
         "verdicts": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
         "words": [{"word": word, "bound": bound, "sentence": sentence} for word, (bound, sentence) in WORDS.items()],
@@ -151,18 +151,18 @@ def _row(entry: Verdict) -> dict[str, Any]:
     }
 
 
-def _held(entry: Verdict, prepared: str) -> dict[str, Any]:
+def _held(entry: Verdict, prepared: Literal["gravity", "lattice"]) -> dict[str, Any]:
     """In how many preparations a sentence holds, of how many that were tried, and the words for it, also where not
     every number of it was asked. The primary case counts alone if it was prepared so.
     """
-    found, asked = entry.others(prepared), Counter(one.case for one in entry.tests if one.case.prepared == prepared)
+    found, asked = entry.others(prepared), Counter(one.case for one in entry.tests)
     by_outcome = {name: [case for case, one in found.items() if one == name] for name in ("yes", "no", "cannot tell")}
     own = {case: one for case, one in found.items() if entry.claim.primary in case} or found
     outcomes = Counter(own.values())
     holds, open_in, of = outcomes["yes"], outcomes["cannot tell"], len(own)
     literal = [one for case, one in own.items() if OF_THE_TEXT in case]
     said = "open in all" if open_in == of else f"holds in {holds}" + (f", open in {open_in}" if open_in else "")
-    whole = all(number == len(entry.claim.asks) for number in asked.values())
+    whole = all(asked[Case(case, prepared)] == len(entry.claim.asks) for case in own)
     said = f"{said} of {of}{'' if whole else ', asked in part'}" if of else "not tried"
     in_text = together(literal) if literal else ""
     return {"holds": holds, "of": of, "whole": whole, "text": said, "literal": in_text, **by_outcome}
@@ -186,8 +186,7 @@ def _tested(test: Test) -> dict[str, Any]:
 
 
 def _named(one: object, *names: str) -> dict[str, Any]:
-    found = {name: getattr(one, name) for name in names}
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in found.items()}
+    return {name: getattr(one, name) for name in names}
 
 
 def _interval(quantity: Quantity | None) -> dict[str, Any]:
@@ -252,7 +251,6 @@ def quoted(found: dict[str, Any]) -> str:
         return "\n".join(lines)
     statements = [row for row in own if row["row"] == "statement"]
     starred = sum(bool(row["star"]) for row in statements)
-    rest = ", ".join(f"{ROWS[row]} ({number})" for row, number in found["checks"].items() if number)
     tried = {name: [row[name] for row in statements if row[name]["of"]] for name in ("gravity", "lattice")}
     whole = {name: sum(one["holds"] == one["of"] and one["whole"] for one in some) for name, some in tried.items()}
     literal = [one["literal"] for one in tried["lattice"] if one["literal"]]
@@ -260,6 +258,7 @@ def quoted(found: dict[str, Any]) -> str:
         f"{starred} of these verdicts change if the threshold of a qualitative term is halved or doubled. With gravity "
         f"applied in other ways {whole['gravity']} of {len(tried['gravity'])} statements hold in every way, from "
         f"other initial lattices {whole['lattice']} of {len(tried['lattice'])}, from that of the text "
-        f"{literal.count('yes')} of {len(literal)}. Not counted: {rest}."
+        f"{literal.count('yes')} of {len(literal)}. Not counted: statements that can hardly fail "
+        f"({found['checks']['check']})."
     )
     return "\n".join(lines)

@@ -69,9 +69,8 @@ def chains(data: Data) -> Numbers:
 
 
 @claim(
-    "B21", "beyond the paper, II.B",
-    Ask("force straight below the load per that at 75 degrees", higher_by("visible")), figures=[15],
-    finds="any"
+    "B21", "beyond the paper, II.B", Ask("force straight below the load per that at 75 degrees", higher_by("visible")),
+    figures=[15], finds="any"
 )  # fmt: skip
 def vertical(data: Data) -> Numbers:
     """As B20.
@@ -105,8 +104,7 @@ def fading(data: Data) -> Numbers:
 @claim(
     "B23", "beyond the paper, II.B", Ask("exponent of the width, half maximum", about(1.0)),
     Ask("exponent of the width, half of the force", about(1.0)),
-    Ask("dip at x = 0 per largest", at_most("few per cent"), "%"),
-    finds="any"
+    Ask("dip at x = 0 per largest", at_most("few per cent"), "%"), finds="any"
 )  # fmt: skip
 def widens(data: Data) -> Numbers:
     """As B22.

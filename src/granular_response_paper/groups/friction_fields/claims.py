@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from granular_response.observe.peaks import central_dip
 from granular_response_paper.claims.bounds import at_least, at_most, higher_by, lower_by, more_than
-from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at, rise
-from granular_response_paper.claims.numbers import Quantity, needs
+from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
+from granular_response_paper.claims.numbers import needs
 
 GROUP = "friction_fields"
 claim = Claims(GROUP, {**SLAB, "force": 15.0, "frictions": [0.0, 0.2, 1.0]})
@@ -16,7 +18,7 @@ claim = Claims(GROUP, {**SLAB, "force": 15.0, "frictions": [0.0, 0.2, 1.0]})
 NEAR, FAINT = 6.0, 0.1
 
 
-def _stress(data: Data, name: str, friction: float) -> Quantity:
+def _stress(data: Data, name: str, friction: float) -> float:
     return data.value(GROUP, f"stress.{name}", friction=friction)
 
 
@@ -51,8 +53,8 @@ def chains(data: Data) -> Numbers:
     Remark: 0.57 degrees: a part of a hundred across the line. 15 degrees: nearer to the vertical than to a lattice
     line, 30 degrees off it"""
     off = [_stress(data, "misalignment", mu) for mu in (0.0, 1.0)]
-    share = [_stress(data, "axis_share", mu) for mu in (1.0, 0.0)]
-    yield *off, _stress(data, "axis_angle", 1.0), share[0].per(share[1])
+    share = _stress(data, "axis_share", 1.0) / _stress(data, "axis_share", 0.0)
+    yield *off, _stress(data, "axis_angle", 1.0), share
 
 
 @claim(
@@ -69,7 +71,7 @@ def isotropic(data: Data) -> Numbers:
     the next the difference falls by a factor of {2} at least.
     Remark: So does Sec. VIII: friction renders the response even closer to that predicted by isotropic elasticity"""
     off = [_stress(data, "distance_to_lattice", mu) for mu in (1.0, 0.2, 0.0)]
-    yield off[0], off[0].per(off[2]), rise(off)
+    yield off[0], off[0] / off[2], min(after / before for before, after in pairwise(off))
 
 
 @claim(

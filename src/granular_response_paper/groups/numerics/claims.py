@@ -23,8 +23,7 @@ def _stopped(data: Data, energy: float, friction: float, *errors: str) -> float:
 
 
 @claim(
-    "N1", "III.C",
-    Ask("largest error of a floor force, at rest and under load, per largest force", at_most(0.01), "%"),
+    "N1", "III.C", Ask("largest error of a floor force, at rest and under load, per largest force", at_most(0.01), "%"),
     Ask("error of the response with an energy of 1e-9", more_than(0.01), "%"), primary="friction 0.2"
 )  # fmt: skip
 def accurate(data: Data) -> Numbers:

@@ -1,9 +1,9 @@
 """Claims on disordered slabs (abstract, Secs. VI to VIII), by the survey's one definition of two peaks.
 
 The text starts from a lattice with twice the mean radius as its constant, in which disks of unequal size overlap.
-Packings
-from it have more contacts than the paper prints (claim D7a), and those of a start in which the largest disks touch have
-its number. That start is primary in every claim here; the literal one and those between and beyond are others.
+Packings from it have more contacts than the paper prints (claim D7a), and those of a start in which the largest disks
+touch have its number. That start is primary in every claim here; the literal one and those between and beyond are
+others.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import combinations, groupby, pairwise, product
+from itertools import combinations, pairwise, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,7 +34,7 @@ from granular_response_paper.claims.numbers import Quantity, needs
 from granular_response_paper.survey.crossover import ABOVE, BELOW, FOUND, counted
 
 GROUP = "phase_diagram"
-claim = Claims(GROUP, {"widths": [3.0, 6.0], "linear_width": 3.0, "numbers": [5, 15]})
+claim = Claims(GROUP, {"widths": [3.0, 6.0], "linear_width": 3.0, "numbers": [5, 15]}, disorder=True)
 
 #: The initial lattice of this project, and the literal one.
 USUAL, LITERAL = "touching-largest", "2.0"
@@ -70,11 +70,6 @@ class Slab(NamedTuple):
         """The one without disorder."""
         return self._replace(polydispersity=0.0, start=USUAL)
 
-    @property
-    def usual(self) -> bool:
-        """Whether it is prepared as in the primary cases."""
-        return self.start == USUAL and not self.ramp
-
     def case(self, name: str = "polydispersity {0:g}", further: str = "") -> Case:
         """Its name, with its initial lattice and its gravity if they are not the usual ones."""
         title = "" if self.start == USUAL else f"lattice constant {self.start}"
@@ -101,9 +96,12 @@ def _by_start(data: Data, name: str, *frictions: float) -> Iterator[list[Slab]]:
             yield wanted
 
 
-def _prepared(slab: Slab) -> tuple[Any, ...]:
-    """By which preparations are told apart, the usual one first."""
-    return (slab.start != USUAL, *slab[1:3])
+def _alike(slabs: Sequence[Slab], *names: str) -> list[list[Slab]]:
+    """Cases with the same values of these, in the order of the first of each."""
+    found: dict[tuple[Any, ...], list[Slab]] = {}
+    for slab in slabs:
+        found.setdefault(tuple(getattr(slab, name) for name in names), []).append(slab)
+    return list(found.values())
 
 
 def _with_interval(case: xr.Dataset, name: str, method: str = BOOTSTRAP) -> Quantity:
@@ -114,8 +112,7 @@ def _with_interval(case: xr.Dataset, name: str, method: str = BOOTSTRAP) -> Quan
 
 @claim(
     "D1", "VI, Fig. 19", Ask("dip at friction 0, 97.5 % quantile of means of 15 packings", at_least("marked"), "%"),
-    Ask("dip at friction 0.2, 2.5 % quantile of means of 15 packings", at_most("visible"), "%"), disorder=True,
-    finds="any"
+    Ask("dip at friction 0.2, 2.5 % quantile of means of 15 packings", at_most("visible"), "%"), finds="any"
 )  # fmt: skip
 def two_peaks_or_one(data: Data) -> Numbers:
     """As in the ordered case, the response is very different: there are two very distinct peaks in the frictionless
@@ -187,21 +184,18 @@ def trend(line: Sequence[Crossover]) -> Quantity:
     return of_draws(np.median(up - down), ends, "Kendall's tau of the draws", samples, "inverted_cdf")
 
 
-def _order(line: Sequence[Crossover]) -> tuple[Quantity, int]:
-    """How crossover forces rise along a line, and the steps against it that are clear of their intervals.
-
-    Those with two peaks at every force are below all others and of no order among themselves.
-    """
-    rest = [one for one in line if one.kind != BELOW]
-    steps = [after.per(before) for before, after in pairwise(line) if after.comparable(before)]
-    return trend(rest if len(rest) > 1 else line), sum(step.high < 1.0 for step in steps)
-
-
 def _lines(data: Data, slabs: Sequence[Slab], name: str) -> Numbers:
-    """The order along a line of cases by the crossovers of the mean, and by those of the median packings."""
-    for statistic, further in {"crossovers": "", "medians": "median packings"}.items():
-        if len(slabs) > 1:
-            yield slabs[0].case(name, further), *_order([crossover(data, slab, statistic) for slab in slabs])
+    """How crossover forces rise along a line of cases, and how many steps against it are clear of their intervals.
+
+    By the mean, and by the median packings. Cases with two peaks at every force are below all others and of no order
+    among themselves.
+    """
+    for statistic, further in (("crossovers", ""), ("medians", "median packings")) if len(slabs) > 1 else ():
+        line = [crossover(data, slab, statistic) for slab in slabs]
+        steps = [after.per(before) for before, after in pairwise(line) if after.comparable(before)]
+        rest = [one for one in line if one.kind != BELOW]
+        against = sum(step.high < 1.0 for step in steps)
+        yield slabs[0].case(name, further), trend(rest if len(rest) > 1 else line), against
 
 
 ORDER = (
@@ -210,7 +204,7 @@ ORDER = (
 )
 
 
-@claim("D3a", "VI.A, Figs. 21, 22", *ORDER, primary="polydispersity 0.01", disorder=True)
+@claim("D3a", "VI.A, Figs. 21, 22", *ORDER, primary="polydispersity 0.01")
 def rises_with_friction(data: Data) -> Numbers:
     """The larger the coefficient of friction, the larger the applied force at which the crossover from a single peaked
     to a double peaked response occurs, much like in ordered systems (Sec. V A.
@@ -218,11 +212,11 @@ def rises_with_friction(data: Data) -> Numbers:
     Here: At polydispersity 0.01 Kendall's τ of the crossover force with friction is {0} (1: it always rises); at 0.1 it
     is {polydispersity 0.1|0} and at 0.25 {polydispersity 0.25|0}.
     Remark: Crossovers are those of means over packings, as in Fig. 22. Where packings collapse they hang on a few"""
-    for _, line in groupby(_slabs(data), key=lambda slab: slab[:3]):
-        yield from _lines(data, list(line), "polydispersity {0:g}")  # with growing friction
+    for line in _alike(_slabs(data), "polydispersity", "start", "ramp"):
+        yield from _lines(data, line, "polydispersity {0:g}")  # with growing friction
 
 
-@claim("D3b", "VI.A, Figs. 21, 22", *ORDER, primary="friction 0.2", disorder=True)
+@claim("D3b", "VI.A, Figs. 21, 22", *ORDER, primary="friction 0.2")
 def falls_with_disorder(data: Data) -> Numbers:
     """As mentioned above, the crossover force decreases with increasing polydispersity, or disorder.
     Short: The crossover force decreases with polydispersity
@@ -230,22 +224,16 @@ def falls_with_disorder(data: Data) -> Numbers:
     {friction 0.05|0} and at 0.5 {friction 0.5|0}.
     Remark: From polydispersity 0.25 to 0.01, by means over packings. Without friction disorder has two peaks at every
     force, so that there is no order"""
-
-    def by_line(slab: Slab) -> tuple[Any, ...]:
-        return *_prepared(slab), slab.friction
-
-    falling = sorted(_slabs(data), key=lambda slab: (*by_line(slab), -slab.polydispersity))
-    for _, line in groupby(falling, key=by_line):
-        slabs = list(line)
-        found = [crossover(data, slab) for slab in slabs]
-        if any(after.comparable(before) for before, after in pairwise(found)):
-            yield from _lines(data, slabs, "friction {1:g}")
+    for line in _alike(_slabs(data), "start", "ramp", "friction"):
+        found = [crossover(data, slab) for slab in line]
+        if any(one.comparable(other) for one, other in pairwise(found)):
+            yield from _lines(data, line[::-1], "friction {1:g}")  # towards less disorder
 
 
 @claim(
     "D4", "VI.A",
     Ask("largest change of the dip or the asymmetry between neighbouring forces per largest response",
-    at_most("gradual"), "%"), primary="polydispersity 0.1", figures=[21], disorder=True
+    at_most("gradual"), "%"), primary="polydispersity 0.1", figures=[21]
 )  # fmt: skip
 def gradual(data: Data) -> Numbers:
     """For polydisperse systems we observed a rather gradual crossover even for µ = 1, unlike the sharp transition to a
@@ -264,7 +252,7 @@ def gradual(data: Data) -> Numbers:
 
 @claim(
     "D5", "VI.A", Ask("samples of five with a crossover", at_least(0.5), "part"),
-    primary="polydispersity 0.1, friction 0.2", figures=[21], disorder=True
+    primary="polydispersity 0.1, friction 0.2", figures=[21]
 )  # fmt: skip
 def five_enough(data: Data) -> Numbers:
     """It is quite remarkable that an average over a very small ensemble of only five realizations (with coarse
@@ -284,7 +272,7 @@ def five_enough(data: Data) -> Numbers:
 @claim(
     "D6", "VIII, Fig. 22", Ask("crossover force, above the smallest and up to the largest force", more_than(0.0), "mg"),
     Ask("the same per that of the lattice with the same friction", less_than(1.0, "visible")),
-    primary="polydispersity 0.01, friction 0.2", disorder=True
+    primary="polydispersity 0.01, friction 0.2"
 )  # fmt: skip
 def as_the_lattice(data: Data) -> Numbers:
     """The same behavior is observed in polydisperse systems, which is the typical case in nature, although in
@@ -309,7 +297,7 @@ def as_the_lattice(data: Data) -> Numbers:
 @claim(
     "D8", "VI.A",
     Ask("crossover force from the lattice constant 2 per that from touching disks", more_than(1.0, "visible")),
-    primary="friction 0.2", figures=[22], disorder=True, row="check"
+    primary="friction 0.2", figures=[22], row="check"
 )  # fmt: skip
 def preparation(data: Data) -> Numbers:
     """In any case, it is likely that the crossover does not depend on the polydispersity alone but also on the
@@ -325,7 +313,7 @@ def preparation(data: Data) -> Numbers:
 
 @claim(
     "D18", "IV.C", Ask("dip of the mean response under the smallest force", at_least("visible"), "%"),
-    primary="polydispersity 0.01", modal=True, disorder=True
+    primary="polydispersity 0.01", modal=True
 )  # fmt: skip
 def without_contacts(data: Data) -> Numbers:
     """However, as the stiffness increases, this requirement may be hard to comply with, as the particles must fit
@@ -341,8 +329,7 @@ def without_contacts(data: Data) -> Numbers:
 
 
 @claim(
-    "D19", "VII", Ask("crossover force", more_than(5.0), "mg"), primary="polydispersity 0.25, friction 1",
-    figures=[22], disorder=True
+    "D19", "VII", Ask("crossover force", more_than(5.0), "mg"), primary="polydispersity 0.25, friction 1", figures=[22]
 )  # fmt: skip
 def sand(data: Data) -> Numbers:
     """The experiments reported in [19, 20] used disordered systems with a rather small applied force (a few times the
@@ -359,7 +346,7 @@ def sand(data: Data) -> Numbers:
 @claim(
     "D20", "VI.A",
     Ask("asymmetry of a typical packing under the smallest force per largest response", at_least("visible"), "%"),
-    primary="polydispersity 0.1, friction 1", disorder=True, row="check"
+    primary="polydispersity 0.1, friction 1", row="check"
 )  # fmt: skip
 def asymmetric(data: Data) -> Numbers:
     """A possible explanation may be that for a single disordered realization, the response is not symmetric even for a
@@ -378,16 +365,7 @@ def asymmetric(data: Data) -> Numbers:
 COUNTED = {"contacts of disks": "", "walls counted": "_with_walls", "away from the boundaries": "_bulk"}
 
 
-def coordination(data: Data, slab: Slab) -> dict[str, Quantity]:
-    """Contacts per disk at rest, mean over packings, by what is counted."""
-    packings = slab.of(data, "packings")
-    return {name: over_realizations(packings[f"coordination_number{kind}"], np.mean) for name, kind in COUNTED.items()}
-
-
-@claim(
-    "D7a", "VII", Ask("contacts per disk", more_than(4.0), paper=4.25), primary="contacts of disks", disorder=True,
-    row="check"
-)  # fmt: skip
+@claim("D7a", "VII", Ask("contacts per disk", more_than(4.0), paper=4.25), primary="contacts of disks", row="check")
 def above_isostatic(data: Data) -> Numbers:
     """Note, however, that the mean coordination number in the frictionless polydisperse systems studied here (e.g., z ∼
     4.25 for δ = 0.01) is well above the isostatic limit of z = 4.
@@ -397,14 +375,15 @@ def above_isostatic(data: Data) -> Numbers:
     Remark: The text does not say what is counted; its number lies within ours. From the lattice constant 2 of the text
     a disk has more contacts. Without friction no stable packing has fewer than 4, so that this could hardly fail"""
     for (slab,) in _by_start(data, "packings", 0.0):
-        for name, found in coordination(data, slab).items():
-            yield slab.case(name), found
+        for name, kind in COUNTED.items():
+            number = slab.of(data, "packings")[f"coordination_number{kind}"]
+            yield slab.case(name), over_realizations(number, np.mean)
 
 
 @claim(
     "D7b", "VII", Ask("missing contacts per disk, of the two above the isostatic limit",
     at_least("marked"), "%", (6.0 - 4.25) / 2.0),
-    Ask("horizontal part of the missing contacts", at_least("marked"), "part"), disorder=True
+    Ask("horizontal part of the missing contacts", at_least("marked"), "part")
 )  # fmt: skip
 def missing_horizontal(data: Data) -> Numbers:
     """It is, however, much smaller than that of the ideal triangular lattice, z = 6, the "missing" contacts being
@@ -428,7 +407,7 @@ def missing_horizontal(data: Data) -> Numbers:
 
 @claim(
     "D9", "VI.A", Ask("difference of a typical packing from the mean below the crossover", at_most("similar"), "%"),
-    Ask("above the crossover", at_most("similar"), "%"), figures=[21], disorder=True
+    Ask("above the crossover", at_most("similar"), "%"), figures=[21]
 )  # fmt: skip
 def resembles(data: Data) -> Numbers:
     """It appears that, at least when the force is not too close to its crossover value, the fluctuations within the
@@ -440,9 +419,8 @@ def resembles(data: Data) -> Numbers:
     squares.
     Remark: w = 6, at forces that are known to be away from the crossover: by half more, and outside of its interval"""
     near = 1.0 + data.words["similar"]
-    for _, prepared in groupby(sorted(_slabs(data), key=_prepared), key=_prepared):
+    for slabs in _alike(_slabs(data), "start", "ramp"):
         typical: dict[str, list[float]] = {"below": [], "above": []}
-        slabs = list(prepared)
         for slab in slabs:
             single, shapes, case = (slab.of(data, n, width=WIDE) for n in ("realizations", "shapes", "crossovers"))
             off = single["difference"].median("realization")
@@ -485,7 +463,7 @@ def _evident_samples(without: FloatArray, full: FloatArray, least: float) -> Qua
 
 @claim(
     "D10", "VI, Fig. 19", Ask("standard deviation without friction per that with 0.2", more_than(1.0)),
-    Ask("samples of 15 and 15 packings in which 95 % of the pairs differ", rare("holds"), "part"), disorder=True
+    Ask("samples of 15 and 15 packings in which 95 % of the pairs differ", rare("holds"), "part")
 )  # fmt: skip
 def fluctuations(data: Data) -> Numbers:
     """The fluctuations are quite large even for this small degree of polydispersity (and larger for the frictionless
@@ -507,7 +485,7 @@ def fluctuations(data: Data) -> Numbers:
 
 @claim(
     "D16", "VI.A", Ask("packings that collapse", rare(), "part"), primary="polydispersity 0.25, friction 0.2",
-    figures=[21], modal=True, disorder=True
+    figures=[21], modal=True
 )  # fmt: skip
 def collapses(data: Data) -> Numbers:
     """In addition, it may be impossible to apply very large forces to polydisperse systems without causing major
@@ -583,8 +561,7 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
 
 
 @claim(
-    "D2", "VI.A, Fig. 20", Ask("packings with a shorter range", more_than(0.5), "part"),
-    primary="friction 0.2, 1 % off", disorder=True
+    "D2", "VI.A, Fig. 20", Ask("packings with a shorter range", more_than(0.5), "part"), primary="friction 0.2, 1 % off"
 )  # fmt: skip
 def shorter_range(data: Data) -> Numbers:
     """A notable difference between monodisperse and polydisperse systems is that in the latter, the range of linear
@@ -603,7 +580,7 @@ def shorter_range(data: Data) -> Numbers:
 @claim(
     "A5", "abstract", Ask("linear range of the lattice per that at polydispersity 0.01", more_than(1.0)),
     Ask("order of the realizations from 0.01 to 0.25 (Kendall's tau)", less_than(0.0)),
-    primary="friction 0.2, 1 % off", figures=[20], disorder=True
+    primary="friction 0.2, 1 % off", figures=[20]
 )  # fmt: skip
 def shorter_with_disorder(data: Data) -> Numbers:
     """Increasing the degree of polydispersity (for the range studied, up to 25%) decreases the range of elastic
@@ -614,8 +591,7 @@ def shorter_with_disorder(data: Data) -> Numbers:
     trend); without friction τ is {friction 0, 1 % off|1}.
     Remark: Smooth walls, w = 3, by the whole response, since that at x = 0 is near zero without friction. From the
     literal lattice only polydispersity 0.01 was simulated, so that the order is not asked there"""
-    for _, prepared in groupby(sorted(_slabs(data, "linear_range"), key=_prepared), key=_prepared):
-        slabs = list(prepared)
+    for slabs in _alike(_slabs(data, "linear_range"), "start", "ramp"):
         deltas = sorted({slab.polydispersity for slab in slabs})
         most = [slab for slab in slabs if slab.polydispersity == deltas[-1]]
         for slab, tolerance in product(most, TOLERANCES):

@@ -64,13 +64,12 @@ def criterion(data: Data) -> Numbers:
     search (K1a)"""
     slab = data.bracket(GROUP, "events", name="two_peaks_end")
     for case, rotations in (("rotations suppressed", "suppressed"), ("disks free to turn", "free")):
-        root = data.value(GROUP, "elastic.root", rotations=rotations)
+        root = Quantity.exact(data.value(GROUP, "elastic.root", rotations=rotations))
         yield case, root if rotations == "suppressed" else None, root.per(slab)
 
 
 @claim(
-    "K7", "V.B",
-    Ask("difference of the responses at friction 2 and 10 per largest response", at_most("nearly"), "%"),
+    "K7", "V.B", Ask("difference of the responses at friction 2 and 10 per largest response", at_most("nearly"), "%"),
     Ask("contacts at the Coulomb limit at friction 10", at_most(0.0), "count"), figures=[10, 12]
 )  # fmt: skip
 def immaterial(data: Data) -> Numbers:
