@@ -292,6 +292,18 @@ def test_other_preparations_stand_in_columns_of_their_own(good):
     assert table._row(judge(CLAIM["D7b"], good))["lattice"]["text"] == "holds in 1 of 1"
 
 
+def test_a_statement_is_asked_in_part_if_a_case_that_counts_is():
+    def held(*found):
+        claim = Claims("theory")
+        claim("F1", "I", Ask("a", more_than(0.0)), Ask("b", more_than(0.0)), primary="own")(lambda data: iter(found))
+        return table._row(judge(claim.rows[0], Data({})))["gravity"]["text"]
+
+    own, other = Case("own, gravity slow", "gravity"), Case("gravity slow", "gravity")
+    assert held(("own", 1.0, 1.0), (own, 1.0, 1.0), (other, 1.0, None)) == "holds in 1 of 1"
+    assert held(("own", 1.0, 1.0), (own, 1.0, None), (other, 1.0, 1.0)) == "holds in 1 of 1, asked in part"
+    assert held(("own", 1.0, 1.0), (other, 1.0, None)) == "holds in 1 of 1, asked in part"
+
+
 def test_claims_of_the_paper_read_no_dataset_of_an_extension(few_draws, good, entries):
     """But the summary of other preparations: the datasets of groups with extensions alone are not there."""
     own = {claim.group for claim in EVERY if claim.part != "extension"} | {"robustness"}
