@@ -241,23 +241,20 @@ def quoted(found: dict[str, Any]) -> str:
     lines = []
     for part, title in PARTS.items():
         number = found["counts"][part]
-        counted = {kind: number[key(kind)] for kind in MEANINGS if number[key(kind)]}
-        if counted:
-            held = counted.pop("supported", 0)
-            rest = "".join(f", {count} {kind}" for kind, count in counted.items())
-            lines.append(f"{held} of {sum(number.values())} statements on {title} are supported{rest}.")
-    own = [row for row in found["table"] if row["part"] != "extension"]
-    if not own:  # of a collection that goes beyond the paper
+        rest = "".join(f", {number[key(kind)]} {kind}" for kind in list(MEANINGS)[1:] if number[key(kind)])
+        if whole := sum(number.values()):
+            lines.append(f"{number['supported']} of {whole} statements on {title} are supported{rest}.")
+    statements = [row for row in found["table"] if row["part"] != "extension" and row["row"] == "statement"]
+    if not statements:  # of a collection that goes beyond the paper
         return "\n".join(lines)
-    statements = [row for row in own if row["row"] == "statement"]
     starred = sum(bool(row["star"]) for row in statements)
     tried = {name: [row[name] for row in statements if row[name]["of"]] for name in ("gravity", "lattice")}
-    whole = {name: sum(one["holds"] == one["of"] and one["whole"] for one in some) for name, some in tried.items()}
+    held = {name: sum(one["holds"] == one["of"] and one["whole"] for one in some) for name, some in tried.items()}
     literal = [one["literal"] for one in tried["lattice"] if one["literal"]]
     lines.append(
         f"{starred} of these verdicts change if the threshold of a qualitative term is halved or doubled. With gravity "
-        f"applied in other ways {whole['gravity']} of {len(tried['gravity'])} statements hold in every way, from "
-        f"other initial lattices {whole['lattice']} of {len(tried['lattice'])}, from that of the text "
+        f"applied in other ways {held['gravity']} of {len(tried['gravity'])} statements hold in every way, from "
+        f"other initial lattices {held['lattice']} of {len(tried['lattice'])}, from that of the text "
         f"{literal.count('yes')} of {len(literal)}. Not counted: statements that can hardly fail "
         f"({found['checks']['check']})."
     )

@@ -7,9 +7,10 @@ from itertools import pairwise
 import numpy as np
 
 from granular_response.observe.peaks import central_dip
-from granular_response_paper.claims.bounds import at_least, at_most, higher_by, lower_by, more_than
-from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
-from granular_response_paper.claims.numbers import needs
+
+from ...claims.bounds import at_least, at_most, higher_by, lower_by, more_than
+from ...claims.claim import SLAB, Ask, Claims, Data, Numbers, at
+from ...claims.numbers import needs
 
 GROUP = "friction_fields"
 claim = Claims(GROUP, {**SLAB, "force": 15.0, "frictions": [0.0, 0.2, 1.0]})
@@ -92,7 +93,6 @@ def antisymmetric(data: Data) -> Numbers:
     pressure = 0.5 * (study["stress_xx"].values + study["stress_zz"].values)
     there = pressure > FAINT * pressure.max(axis=(1, 2), keepdims=True)
     there &= np.hypot(x, z - float(study["load_height"])) < NEAR
-    needs(there.any(), "stress holds no pressure near the load")
     yield "per the largest pressure", study["antisymmetric_near"].values.max()
     yield "local", (odd[there] / pressure[there]).max()
     yield "root mean squares", study["antisymmetric_near_mean"].values.max()

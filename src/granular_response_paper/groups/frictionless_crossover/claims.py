@@ -8,18 +8,10 @@ import numpy as np
 import xarray as xr
 
 from granular_response.state import FloatArray
-from granular_response_paper.claims.bounds import (
-    about,
-    at_least,
-    at_most,
-    between,
-    hardly_lower,
-    less_than,
-    more_than,
-    within,
-)  # fmt: skip
-from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
-from granular_response_paper.claims.numbers import Quantity, needs
+
+from ...claims.bounds import about, at_least, at_most, between, hardly_lower, less_than, more_than, within
+from ...claims.claim import SLAB, Ask, Claims, Data, Numbers, at
+from ...claims.numbers import Quantity, needs
 
 GROUP = "frictionless_crossover"
 claim = Claims(GROUP, SLAB)
@@ -198,7 +190,6 @@ def stiffness_response(data: Data) -> Numbers:
     by_force = study["response_at_centre"].transpose("force", ...).values
     forces = study["force"].values.tolist()
     found = {force: np.ptp(one) / abs(one[-1]) for force, one in zip(forces, by_force, strict=True)}
-    needs(15.0 in found, "stiffness holds no response under 15 mg")
     yield "all forces", Quantity.over([found[15.0], *found.values()])
     for force, change in found.items():
         yield f"{force:g} mg", change

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from granular_response_paper.claims.bootstrap import DRAWS, of_draws
-from granular_response_paper.claims.bounds import at_least, at_most, less_than, more_than
-from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
-from granular_response_paper.claims.numbers import needs
+from ...claims.bootstrap import DRAWS, of_draws
+from ...claims.bounds import at_least, at_most, less_than, more_than
+from ...claims.claim import SLAB, Ask, Claims, Data, Numbers, at
+from ...claims.numbers import needs
 
 GROUP = "numerics"
 claim = Claims(GROUP, {**SLAB, "force": 15.0, "friction": 0.2, "frictions": [0.0, 0.2]})

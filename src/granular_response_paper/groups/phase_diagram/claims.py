@@ -19,19 +19,12 @@ import xarray as xr
 
 from granular_response.scene.lattice import SlabPacking
 from granular_response.state import FloatArray
-from granular_response_paper.claims.bootstrap import LEVELS, of_draws, over_brackets, over_realizations, part_of
-from granular_response_paper.claims.bounds import (
-    TOLERANCES,
-    Limits,
-    at_least,
-    at_most,
-    less_than,
-    more_than,
-    rare,
-)  # fmt: skip
-from granular_response_paper.claims.claim import OF_THE_TEXT, Ask, Case, Claims, Data, Numbers, at
-from granular_response_paper.claims.numbers import Quantity, needs
-from granular_response_paper.survey.crossover import ABOVE, BELOW, FOUND, counted
+
+from ...claims.bootstrap import LEVELS, of_draws, over_brackets, over_realizations, part_of
+from ...claims.bounds import TOLERANCES, Limits, at_least, at_most, less_than, more_than, rare
+from ...claims.claim import OF_THE_TEXT, Ask, Case, Claims, Data, Numbers, at
+from ...claims.numbers import Quantity, needs
+from ...survey.crossover import ABOVE, BELOW, FOUND, counted
 
 GROUP = "phase_diagram"
 claim = Claims(GROUP, {"widths": [3.0, 6.0], "linear_width": 3.0, "numbers": [5, 15]}, disorder=True)
@@ -497,9 +490,7 @@ def collapses(data: Data) -> Numbers:
     in Fig. 21(h), where nothing collapses; the paper lost two of five under a force that it does not name"""
     for slab in _slabs(data, "realizations"):
         one = slab.of(data, "realizations")
-        number = int(one["realizations"])
-        needs(number, "realizations holds no packings")
-        yield slab.case(WHOLE), part_of(np.isfinite(one["collapse_force"].values[:number]))
+        yield slab.case(WHOLE), part_of(np.isfinite(one["collapse_force"].values[: int(one["realizations"])]))
 
 
 def linear_ends(force: FloatArray, changes: FloatArray, tolerance: float) -> FloatArray:

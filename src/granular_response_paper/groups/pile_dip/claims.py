@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from granular_response_paper.claims.bounds import at_least, at_most, higher_by, same_size
-from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers
+from ...claims.bounds import at_least, at_most, higher_by, same_size
+from ...claims.claim import Ask, Claims, Data, Numbers
 
 GROUP = "pile_dip"
 claim = Claims(

@@ -5,9 +5,9 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import replace
 
-from granular_response_paper.claims.bounds import at_most
-from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
-from granular_response_paper.claims.numbers import NotMeasured, needs
+from ...claims.bounds import at_most
+from ...claims.claim import SLAB, Ask, Claims, Data, Numbers, at
+from ...claims.numbers import NotMeasured, needs
 
 GROUP = "sensitivity"
 claim = Claims(GROUP, {**SLAB, "force": 15.0, "friction": [0.2, 1.0]})

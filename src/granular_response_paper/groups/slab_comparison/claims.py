@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from granular_response_paper.claims.bounds import at_least, at_most
-from granular_response_paper.claims.claim import Ask, Case, Claims, Data, Numbers, at
-from granular_response_paper.records import alike
+from ...claims.bounds import at_least, at_most
+from ...claims.claim import Ask, Case, Claims, Data, Numbers, at
+from ...records import alike
 
 claim = Claims("slab_comparison", {"force": 0.01})
 

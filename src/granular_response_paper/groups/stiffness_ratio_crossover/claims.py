@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from granular_response_paper.claims.bounds import about, at_most, between, within
-from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
-from granular_response_paper.claims.numbers import Quantity, needs
+from ...claims.bounds import about, at_most, between, within
+from ...claims.claim import SLAB, Ask, Claims, Data, Numbers, at
+from ...claims.numbers import Quantity, needs
 
 GROUP = "stiffness_ratio_crossover"
 claim = Claims(GROUP, {**SLAB, "force": 15.0, "scene.contact.friction": 10.0})

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from granular_response_paper.claims.bootstrap import over_realizations, part_of
-from granular_response_paper.claims.bounds import lower_by, more_than
-from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
-from granular_response_paper.claims.numbers import needs
+from ...claims.bootstrap import over_realizations, part_of
+from ...claims.bounds import lower_by, more_than
+from ...claims.claim import SLAB, Ask, Claims, Data, Numbers, at
+from ...claims.numbers import needs
 
 GROUP = "superposition"
 claim = Claims(GROUP, {**SLAB, "scene.contact.friction": 0.05, "scene.packing.polydispersity": 0.01}, disorder=True)

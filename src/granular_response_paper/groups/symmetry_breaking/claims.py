@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from granular_response_paper.claims.bounds import between
-from granular_response_paper.claims.claim import ROBUSTNESS, SLAB, Ask, Claims, Data, Numbers
-from granular_response_paper.claims.numbers import Quantity
+from ...claims.bounds import between
+from ...claims.claim import ROBUSTNESS, SLAB, Ask, Claims, Data, Numbers
+from ...claims.numbers import Quantity
 
 GROUP, LOST = "symmetry_breaking", "loss_of_symmetry"
 claim = Claims(

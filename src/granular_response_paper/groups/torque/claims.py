@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from granular_response_paper.claims.bounds import at_least, at_most
-from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers
-from granular_response_paper.claims.numbers import needs
+from ...claims.bounds import at_least, at_most
+from ...claims.claim import Ask, Claims, Data, Numbers
+from ...claims.numbers import needs
 
 GROUP = "torque"
 claim = Claims(
