@@ -242,24 +242,22 @@ class Data:
         return list(names)
 
     def elsewhere(self, *measures: Callable[[Data], Quantity]) -> Numbers:
-        """The same in slabs of other width and stiffness, and in other preparations, that have the events for it."""
-        changed = [(Case(name), replace(self, variant=name)) for name in self.variants("width", "stiffness")]
-        for case, data in [*changed, *_preparations(self)]:
+        """The same in slabs of other width and stiffness that have the events for it, and in other preparations, beside
+        smooth walls and with the paper's dashpots.
+        """
+        changed = {Case(name): replace(self, variant=name) for name in self.variants("width", "stiffness")}
+        if PREPARATION in self.groups:
+            events = self.get(PREPARATION, "events")
+            fixed = {"wall_friction": 0.0, "damping_ratio": float(events["damping_ratio"][0])}
+            ways = set(zip(events["gravity"].values.tolist(), events["ramp_time"].values.tolist(), strict=True))
+            for gravity, ramp in sorted(ways, key=lambda way: (way[0] != "slow", way[1])):
+                name = "first without friction" if gravity == "frictionless" else f"ramped over {ramp:g} sqrt(R/g)"
+                if gravity != "at-once":
+                    prepared = {"gravity": gravity, "ramp_time": ramp} | fixed
+                    changed[Case(f"gravity {name}", "gravity")] = replace(self, prepared=prepared)
+        for case, data in changed.items():
             with suppress(NotMeasured):  # not every event is looked for in every slab
                 yield case, *(measure(data) for measure in measures)
-
-
-def _preparations(data: Data) -> Iterator[tuple[Case, Data]]:
-    """Other preparations beside smooth walls, with the paper's dashpots; none without their summary."""
-    if PREPARATION not in data.groups:
-        return
-    events = data.get(PREPARATION, "events")
-    fixed = {"wall_friction": 0.0, "damping_ratio": float(events["damping_ratio"][0])}
-    others = events.isel(event=events["gravity"].values != "at-once")
-    ways = set(zip(others["gravity"].values.tolist(), others["ramp_time"].values.tolist(), strict=True))
-    for gravity, ramp in sorted(ways, key=lambda way: (way[0] != "slow", way[1])):
-        name = f"gravity ramped over {ramp:g} sqrt(R/g)" if gravity == "slow" else "gravity first without friction"
-        yield Case(name, "gravity"), replace(data, prepared={"gravity": gravity, "ramp_time": ramp} | fixed)
 
 
 def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:

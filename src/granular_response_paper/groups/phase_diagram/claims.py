@@ -412,7 +412,8 @@ def resembles(data: Data) -> Numbers:
     squares.
     Remark: w = 6, at forces that are known to be away from the crossover: by half more, and outside of its interval"""
     near = 1.0 + data.words["similar"]
-    for slabs in _alike(_slabs(data), "start", "ramp"):
+    by_start = sorted(_slabs(data), key=lambda slab: (slab.start != USUAL, slab.start))
+    for slabs in _alike(by_start, "start", "ramp"):
         typical: dict[str, list[float]] = {"below": [], "above": []}
         for slab in slabs:
             single, shapes, case = (slab.of(data, n, width=WIDE) for n in ("realizations", "shapes", "crossovers"))
