@@ -23,12 +23,7 @@ import xarray as xr
 
 from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.groups.frictionless_crossover.parameters import Parameters
-from granular_response_paper.groups.frictionless_crossover.simulate.slab import (
-    EVENTS,
-    OrderedSlab,
-    SlabResponse,
-    solve,
-)
+from granular_response_paper.groups.frictionless_crossover.simulate.slab import EVENTS, OrderedSlab, SlabResponse, solve
 from granular_response_paper.records import axes, stacked, table, variables
 from granular_response_paper.slab_response import events_dataset
 from granular_response_paper.tasks import computed
