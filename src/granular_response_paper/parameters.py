@@ -143,7 +143,7 @@ def over(base: Scene, *decided: str) -> BeforeValidator:
         if isinstance(given, Scene):
             return given
         must(isinstance(given, Mapping), "must be a mapping with keys of a scene")
-        for path, value in _leaves(given):
+        for path, value in leaves(given):
             name = ".".join(path)
             must(name != "packing.kind" or value == kind, f"must be {kind} in this group", key=path, value=value)
             own = any(f"{name}.".startswith(f"{key}.") for key in refused)
@@ -156,11 +156,11 @@ def over(base: Scene, *decided: str) -> BeforeValidator:
     return BeforeValidator(complete)
 
 
-def _leaves(given: Mapping, above: Sequence[str] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+def leaves(given: Mapping, above: Sequence[str] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
     """Values with their paths, whether these are written dotted or nested."""
     for key, value in given.items():
         path = (*above, *str(key).split("."))
         if isinstance(value, Mapping):
-            yield from _leaves(value, path)
+            yield from leaves(value, path)
         else:
             yield path, value

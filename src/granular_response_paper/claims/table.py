@@ -6,7 +6,7 @@ import json
 import os
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -18,6 +18,7 @@ from granular_response.scene import text as yaml
 from granular_response.store import atomic
 from granular_response.store import files as store
 
+from ..parameters import leaves
 from ..registry import PAPER, Collection, group_member
 from . import preparations, printed
 from .bounds import WORDS
@@ -89,7 +90,8 @@ def collect(folder: str | os.PathLike[str], others: str | os.PathLike[str], coll
     paths = {path.stem: path for path in _paths(folder, collection) if path.exists()}
     groups = {name: store.read(path) for name, path in paths.items()}
     given = {name: store.read_attributes(path).get("parameters", "") for name, path in paths.items()}
-    parameters = {name: flat(_whole(name, yaml.read(one) or {})) for name, one in given.items()}
+    whole = {name: _whole(name, yaml.read(one) or {}) for name, one in given.items()}
+    parameters = {name: {".".join(path): value for path, value in leaves(of)} for name, of in whole.items()}
     for name, path in ((PREPARATION, Path(others)), (ROBUSTNESS, MOVES)):
         if path.exists():
             groups[name] = groups.get(name, {}) | store.read(path)
@@ -102,14 +104,6 @@ def _whole(group: str, given: dict[str, Any]) -> dict[str, Any]:
         return group_member(group, "parameters", "Parameters")(**given).model_dump(mode="json")
     except SceneError:
         return given
-
-
-def flat(parameters: Mapping[str, Any], above: str = "") -> dict[str, Any]:
-    """Parameters by their dotted keys."""
-    found: dict[str, Any] = {}
-    for name, value in parameters.items():
-        found |= flat(value, f"{above}{name}.") if isinstance(value, Mapping) else {f"{above}{name}": value}
-    return found
 
 
 def _paths(folder: str | os.PathLike[str], collection: Collection) -> list[Path]:
