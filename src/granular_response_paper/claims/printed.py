@@ -1,6 +1,4 @@
-"""The quantities for which the paper prints a number, beside ours: the data of one picture of the whole
-reproduction.
-"""
+"""The quantities for which the paper prints a number, beside ours: the data of a picture of the whole reproduction."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""Claims B19 to B26, beyond the paper: the experiments that it reviews, on packings like theirs (Secs. II.B and
-V.D).
-"""
+"""Claims B19 to B26, beyond the paper: the experiments that it reviews, on packings alike (Secs. II.B and V.D)."""
 
 from __future__ import annotations
 
