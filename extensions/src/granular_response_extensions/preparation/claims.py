@@ -18,12 +18,10 @@ FEWEST = 4
 EVENTS = {"linear_range": "end of the linear range", "first_opening": "first opening", "crossover": "two peaks"}
 
 
-@claim(
-    "B18", "beyond the paper, V", Ask("rank correlation", at_most("nearly", plus=-1.0)),
-    Ask("largest per smallest force without mobilized contacts", within("similar")),
-    primary="end of the linear range, contacts within 1% of the limit, friction 0.2",
-    source="hypothesis", finds="not supported"
-)  # fmt: skip
+@claim("B18", "beyond the paper, V", Ask("rank correlation", at_most("nearly", plus=-1.0)),
+       Ask("largest per smallest force without mobilized contacts", within("similar")),
+       primary="end of the linear range, contacts within 1% of the limit, friction 0.2", source="hypothesis",
+       finds="not supported")  # fmt: skip
 def mobilized(data: Data) -> Numbers:
     """The fraction of fully mobilized contacts in the initial equilibrium determines the response.
     Short: Fully mobilized contacts in the initial equilibrium decide the response

@@ -23,10 +23,8 @@ def _stress(data: Data, name: str, friction: float) -> float:
     return data.value(GROUP, f"stress.{name}", friction=friction)
 
 
-@claim(
-    "F13", "IV", Ask("dip with one-sided contacts per largest stress", at_least("visible"), "%"),
-    Ask("dip with two-sided springs per largest stress", at_most("visible"), "%"), figures=[14]
-)  # fmt: skip
+@claim("F13", "IV", Ask("dip with one-sided contacts per largest stress", at_least("visible"), "%"),
+       Ask("dip with two-sided springs per largest stress", at_most("visible"), "%"), figures=[14])  # fmt: skip
 def two_sided(data: Data) -> Numbers:
     """The stress distribution obtained for unilateral springs [29] is anisotropic, and shows two peaks at the floor.
     Short: With one-sided contacts the stress has two peaks at the floor
@@ -38,11 +36,10 @@ def two_sided(data: Data) -> Numbers:
     yield tuple(central_dip(x, study[name].values, interior=inside) for name in ("stress_zz", "stress_zz_lattice"))
 
 
-@claim(
-    "S1", "V.D, Fig. 13", Ask("mean angle to the contact lines without friction, degrees", at_most(0.57)),
-    Ask("the same at friction 1", more_than(0.57)), Ask("angle below the load to the vertical, degrees", at_most(15.0)),
-    Ask("share of the force per that without friction", higher_by("marked"))
-)  # fmt: skip
+@claim("S1", "V.D, Fig. 13", Ask("mean angle to the contact lines without friction, degrees", at_most(0.57)),
+       Ask("the same at friction 1", more_than(0.57)),
+       Ask("angle below the load to the vertical, degrees", at_most(15.0)),
+       Ask("share of the force per that without friction", higher_by("marked")))  # fmt: skip
 def chains(data: Data) -> Numbers:
     """The most prominent effect of friction on the force chains (Fig. 13) is that the forces (and hence the chains) no
     longer need to be aligned with the (here, triangular) lattice direction, as they are in the absence of tangential
@@ -58,11 +55,9 @@ def chains(data: Data) -> Numbers:
     yield *off, _stress(data, "axis_angle", 1.0), share
 
 
-@claim(
-    "S2", "V.D, Fig. 14", Ask("difference at friction 1", at_most("similar"), "%"),
-    Ask("difference at friction 1 per that without", lower_by("marked"), "%"),
-    Ask("fall from one friction to the next, smallest ratio", higher_by("visible"))
-)  # fmt: skip
+@claim("S2", "V.D, Fig. 14", Ask("difference at friction 1", at_most("similar"), "%"),
+       Ask("difference at friction 1 per that without", lower_by("marked"), "%"),
+       Ask("fall from one friction to the next, smallest ratio", higher_by("visible")))  # fmt: skip
 def isotropic(data: Data) -> Numbers:
     """In particular, the reduced anisotropy is apparent in the stress field (the stress field for µ = 1 is quite
     similar to that obtained in the case of an isotropic harmonic lattice [29]).
@@ -75,10 +70,8 @@ def isotropic(data: Data) -> Numbers:
     yield off[0], off[0] / off[2], min(after / before for before, after in pairwise(off))
 
 
-@claim(
-    "S3", "V.C", Ask("antisymmetric part per pressure, largest of all frictions", at_most("few per cent"), "%"),
-    primary="per the largest pressure", figures=[14]
-)  # fmt: skip
+@claim("S3", "V.C", Ask("antisymmetric part per pressure, largest of all frictions", at_most("few per cent"), "%"),
+       primary="per the largest pressure", figures=[14])  # fmt: skip
 def antisymmetric(data: Data) -> Numbers:
     """We verified (in the DEM simulations) that they are very small, even near the point of application of the external
     force, where the magnitude of the antisymmetric part of the stress is only a few percent of the pressure.
@@ -109,12 +102,10 @@ def fits(data: Data) -> Numbers:
     yield
 
 
-@claim(
-    "S4b", "V.D, Fig. 15",
-    Ask("largest force below the load per largest at its depth, friction 0", lower_by("marked"), "%"),
-    Ask("smallest force below the load per largest at its depth, friction 1", at_least("marked"), "%"),
-    requires={"profiles.force": 150.0}
-)  # fmt: skip
+@claim("S4b", "V.D, Fig. 15",
+       Ask("largest force below the load per largest at its depth, friction 0", lower_by("marked"), "%"),
+       Ask("smallest force below the load per largest at its depth, friction 1", at_least("marked"), "%"),
+       requires={"profiles.force": 150.0})  # fmt: skip
 def chain(data: Data) -> Numbers:
     """These are reproduced quite well by our DEM simulations with friction (see Sec. V).
     Short: Simulations with friction have the chain of the experiments

@@ -20,10 +20,8 @@ claim = Claims(GROUP, SLAB)
 ROW, DISK = float(np.sqrt(3.0)), 2.0
 
 
-@claim(
-    "F4a", "IV.A, Fig. 3", Ask("force at which two peaks appear", about(3.0), "mg", 3.0),
-    primary="rows of 61 and 60", figures=[3, 4]
-)  # fmt: skip
+@claim("F4a", "IV.A, Fig. 3", Ask("force at which two peaks appear", about(3.0), "mg", 3.0),
+       primary="rows of 61 and 60", figures=[3, 4])  # fmt: skip
 def crossover(data: Data) -> Numbers:
     """A crossover from a single peaked to a double peaked response occurs as the applied force is increased.
     Short: Without friction one peak turns into two as the force grows
@@ -40,11 +38,9 @@ def crossover(data: Data) -> Numbers:
             yield case, found
 
 
-@claim(
-    "F4b", "IV.A, Figs. 3, 4",
-    Ask("crossover force per force at which the region reaches the lowest row", within("slightly"), "%"),
-    Ask("the same", less_than(1.0), "%"), primary="rows of 61 and 60"
-)  # fmt: skip
+@claim("F4b", "IV.A, Figs. 3, 4",
+       Ask("crossover force per force at which the region reaches the lowest row", within("slightly"), "%"),
+       Ask("the same", less_than(1.0), "%"), primary="rows of 61 and 60")  # fmt: skip
 def near_the_floor(data: Data) -> Numbers:
     """Otherwise, the anisotropy induced by the external force reaches the floor (Fig. 4(c), inducing a double peaked
     response (the crossover actually occurs at slightly smaller forces, at which the "teardrop" almost reaches the
@@ -60,14 +56,12 @@ def near_the_floor(data: Data) -> Numbers:
     yield "rows of 60", ratio, ratio
 
 
-@claim(
-    "F5", "IV.A, Fig. 4", Ask("horizontal part of the opened contacts, smallest", hardly_lower("visible"), "part"),
-    Ask("widest row per the wider end", more_than(1.0)),
-    Ask("smallest growth with the force, rows (known to half a row)", at_least(-0.5)),
-    Ask("growth of the depth, rows", at_least(0.5)),
-    Ask("size per that at the next smaller of the frictions 0, 0.2 and 1, largest", less_than(1.0), "%"),
-    primary="width, 5 to 50 mg", figures=[4, 5, 8, 9], finds="any"
-)  # fmt: skip
+@claim("F5", "IV.A, Fig. 4", Ask("horizontal part of the opened contacts, smallest", hardly_lower("visible"), "part"),
+       Ask("widest row per the wider end", more_than(1.0)),
+       Ask("smallest growth with the force, rows (known to half a row)", at_least(-0.5)),
+       Ask("growth of the depth, rows", at_least(0.5)),
+       Ask("size per that at the next smaller of the frictions 0, 0.2 and 1, largest", less_than(1.0), "%"),
+       primary="width, 5 to 50 mg", figures=[4, 5, 8, 9], finds="any")  # fmt: skip
 def teardrop(data: Data) -> Numbers:
     """As the force is increased, horizontal contacts are opened in a teardrop shaped region below the point of
     application of the force, whose size increases with the force and decreases with friction.
@@ -111,10 +105,8 @@ def size_in_steps(size: FloatArray, step: float) -> Quantity:
     return Quantity(mean, mean - off, mean + off, "bracket")
 
 
-@claim(
-    "F6", "IV.B, Fig. 5", Ask("depth per that in 15 layers", hardly_lower("slightly")),
-    Ask("width per that in 15 layers", hardly_lower("slightly")), primary="all depths", finds="any"
-)  # fmt: skip
+@claim("F6", "IV.B, Fig. 5", Ask("depth per that in 15 layers", hardly_lower("slightly")),
+       Ask("width per that in 15 layers", hardly_lower("slightly")), primary="all depths", finds="any")  # fmt: skip
 def teardrop_and_depth(data: Data) -> Numbers:
     """However, Fig. 5 clearly demonstrates that the size of the "teardrop" only slightly decreases as the depth of the
     slab increases.
@@ -138,10 +130,8 @@ def teardrop_and_depth(data: Data) -> Numbers:
         yield name, *each
 
 
-@claim(
-    "F7", "IV.B, VIII", Ask("crossover force, deep per shallow", more_than(1.0)),
-    primary="20 x 82 against 15 x 61 disks", figures=[5]
-)  # fmt: skip
+@claim("F7", "IV.B, VIII", Ask("crossover force, deep per shallow", more_than(1.0)),
+       primary="20 x 82 against 15 x 61 disks", figures=[5])  # fmt: skip
 def deep_and_shallow(data: Data) -> Numbers:
     """For identical external loads, very deep systems should exhibit a single peaked response whereas relatively
     shallow ones, as studied in some experiments (Sec. II B), should exhibit two peaks.
@@ -173,10 +163,8 @@ def _between(data: Data) -> xr.Dataset:
     return study
 
 
-@claim(
-    "F8", "IV.C", Ask("change of the response at x = 0", between(0.0, 0.025), "%", 0.02), primary="all forces",
-    finds="any", figures=[5]
-)  # fmt: skip
+@claim("F8", "IV.C", Ask("change of the response at x = 0", between(0.0, 0.025), "%", 0.02), primary="all forces",
+       finds="any", figures=[5])  # fmt: skip
 def stiffness_response(data: Data) -> Numbers:
     """The response is also quite insensitive to the choice of stiffness for k_N ≳ 1000mg/R: at x = 0, it only changes
     by about 2% in the range 1000mg/R < k_N < 10⁵mg/R.
@@ -195,11 +183,9 @@ def stiffness_response(data: Data) -> Numbers:
         yield f"{force:g} mg", change
 
 
-@claim(
-    "F9", "IV.C", Ask("change of the depth from 2000 on", at_most("nearly"), "%"),
-    Ask("change of the width from 2000 on", at_most("nearly"), "%"), Ask("growth of the depth, rows", at_least(0.5)),
-    figures=[5]
-)  # fmt: skip
+@claim("F9", "IV.C", Ask("change of the depth from 2000 on", at_most("nearly"), "%"),
+       Ask("change of the width from 2000 on", at_most("nearly"), "%"), Ask("growth of the depth, rows", at_least(0.5)),
+       figures=[5])  # fmt: skip
 def stiffness_teardrop(data: Data) -> Numbers:
     """We performed simulations with different values of k_N, and found that the size of the "teardrop" did increase
     with the stiffness of the particles, but appeared to saturate for k_N ≳ 2000mg/R.
@@ -215,10 +201,8 @@ def stiffness_teardrop(data: Data) -> Numbers:
     yield *spread, (depth[-1] - depth[0])[use].max() / ROW
 
 
-@claim(
-    "F10", "IV.C", Ask("crossover force per that at the largest k_N, from 1000 on", within("nearly")),
-    primary="two peaks, each above the response at x = 0", figures=[5]
-)  # fmt: skip
+@claim("F10", "IV.C", Ask("crossover force per that at the largest k_N, from 1000 on", within("nearly")),
+       primary="two peaks, each above the response at x = 0", figures=[5])  # fmt: skip
 def crossover_and_stiffness(data: Data) -> Numbers:
     """We conclude that the crossover from a single peaked to a double peaked response is essentially independent of the
     particle rigidity (provided that the particles are sufficiently stiff; otherwise the particle "overlaps" may be

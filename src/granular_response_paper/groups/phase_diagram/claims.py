@@ -103,10 +103,9 @@ def _with_interval(case: xr.Dataset, name: str, method: str = BOOTSTRAP) -> Quan
     return Quantity(float(case[name]), low, high, "confidence", method, int(case["realizations"]))
 
 
-@claim(
-    "D1", "VI, Fig. 19", Ask("dip at friction 0, 97.5 % quantile of means of 15 packings", at_least("marked"), "%"),
-    Ask("dip at friction 0.2, 2.5 % quantile of means of 15 packings", at_most("visible"), "%"), finds="any"
-)  # fmt: skip
+@claim("D1", "VI, Fig. 19", Ask("dip at friction 0, 97.5 % quantile of means of 15 packings", at_least("marked"), "%"),
+       Ask("dip at friction 0.2, 2.5 % quantile of means of 15 packings", at_most("visible"), "%"),
+       finds="any")  # fmt: skip
 def two_peaks_or_one(data: Data) -> Numbers:
     """As in the ordered case, the response is very different: there are two very distinct peaks in the frictionless
     case, but one peak in the frictional case.
@@ -223,11 +222,8 @@ def falls_with_disorder(data: Data) -> Numbers:
             yield from _lines(data, line[::-1], "friction {1:g}")  # towards less disorder
 
 
-@claim(
-    "D4", "VI.A",
-    Ask("largest change of the dip or the asymmetry between neighbouring forces per largest response",
-    at_most("gradual"), "%"), primary="polydispersity 0.1", figures=[21]
-)  # fmt: skip
+@claim("D4", "VI.A", Ask("largest change of the dip or the asymmetry between neighbouring forces per largest response",
+           at_most("gradual"), "%"), primary="polydispersity 0.1", figures=[21])  # fmt: skip
 def gradual(data: Data) -> Numbers:
     """For polydisperse systems we observed a rather gradual crossover even for µ = 1, unlike the sharp transition to a
     highly asymmetric response in lattice configurations [Sec. V E].
@@ -243,10 +239,8 @@ def gradual(data: Data) -> Numbers:
             yield slab.case(further="median packing"), over_realizations(steps)
 
 
-@claim(
-    "D5", "VI.A", Ask("samples of five with a crossover", at_least(0.5), "part"),
-    primary="polydispersity 0.1, friction 0.2", figures=[21]
-)  # fmt: skip
+@claim("D5", "VI.A", Ask("samples of five with a crossover", at_least(0.5), "part"),
+       primary="polydispersity 0.1, friction 0.2", figures=[21])  # fmt: skip
 def five_enough(data: Data) -> Numbers:
     """It is quite remarkable that an average over a very small ensemble of only five realizations (with coarse
     graining) is sufficient to demonstrate the crossover from a single peak to a double peak, and even results (in some
@@ -262,11 +256,10 @@ def five_enough(data: Data) -> Numbers:
             yield slab.case(WHOLE), replace(seen, high=1.0) if case["kind"] == ABOVE else seen
 
 
-@claim(
-    "D6", "VIII, Fig. 22", Ask("crossover force, above the smallest and up to the largest force", more_than(0.0), "mg"),
-    Ask("the same per that of the lattice with the same friction", less_than(1.0, "visible")),
-    primary="polydispersity 0.01, friction 0.2"
-)  # fmt: skip
+@claim("D6", "VIII, Fig. 22",
+       Ask("crossover force, above the smallest and up to the largest force", more_than(0.0), "mg"),
+       Ask("the same per that of the lattice with the same friction", less_than(1.0, "visible")),
+       primary="polydispersity 0.01, friction 0.2")  # fmt: skip
 def as_the_lattice(data: Data) -> Numbers:
     """The same behavior is observed in polydisperse systems, which is the typical case in nature, although in
     polydisperse systems the forces at which induced anisotropy becomes large are smaller.
@@ -287,11 +280,9 @@ def as_the_lattice(data: Data) -> Numbers:
         yield slab.case(WHOLE), turns, per
 
 
-@claim(
-    "D8", "VI.A",
-    Ask("crossover force from the lattice constant 2 per that from touching disks", more_than(1.0, "visible")),
-    primary="friction 0.2", figures=[22], row="check"
-)  # fmt: skip
+@claim("D8", "VI.A",
+       Ask("crossover force from the lattice constant 2 per that from touching disks", more_than(1.0, "visible")),
+       primary="friction 0.2", figures=[22], row="check")  # fmt: skip
 def preparation(data: Data) -> Numbers:
     """In any case, it is likely that the crossover does not depend on the polydispersity alone but also on the
     preparation method (as observed in experiments on granular piles [15] and slabs [20]).
@@ -304,10 +295,8 @@ def preparation(data: Data) -> Numbers:
         yield f"friction {mu:g}", literal.per(usual)
 
 
-@claim(
-    "D18", "IV.C", Ask("dip of the mean response under the smallest force", at_least("visible"), "%"),
-    primary="polydispersity 0.01", modal=True
-)  # fmt: skip
+@claim("D18", "IV.C", Ask("dip of the mean response under the smallest force", at_least("visible"), "%"),
+       primary="polydispersity 0.01", modal=True)  # fmt: skip
 def without_contacts(data: Data) -> Numbers:
     """However, as the stiffness increases, this requirement may be hard to comply with, as the particles must fit
     exactly between the walls in order to remain in contact: in the limit k_N → ∞ most horizontal contacts may be absent
@@ -321,9 +310,8 @@ def without_contacts(data: Data) -> Numbers:
             yield slab.case(), _with_interval(slab.of(data, "shapes", width=NARROW).isel(step=0), "shape")
 
 
-@claim(
-    "D19", "VII", Ask("crossover force", more_than(5.0), "mg"), primary="polydispersity 0.25, friction 1", figures=[22]
-)  # fmt: skip
+@claim("D19", "VII", Ask("crossover force", more_than(5.0), "mg"), primary="polydispersity 0.25, friction 1",
+       figures=[22])  # fmt: skip
 def sand(data: Data) -> Numbers:
     """The experiments reported in [19, 20] used disordered systems with a rather small applied force (a few times the
     particle weight), for which a single peak was observed, in agreement with the phase diagram.
@@ -336,11 +324,9 @@ def sand(data: Data) -> Numbers:
             yield slab.case(WHOLE), crossover(data, slab).found
 
 
-@claim(
-    "D20", "VI.A",
-    Ask("asymmetry of a typical packing under the smallest force per largest response", at_least("visible"), "%"),
-    primary="polydispersity 0.1, friction 1", row="check"
-)  # fmt: skip
+@claim("D20", "VI.A",
+       Ask("asymmetry of a typical packing under the smallest force per largest response", at_least("visible"), "%"),
+       primary="polydispersity 0.1, friction 1", row="check")  # fmt: skip
 def asymmetric(data: Data) -> Numbers:
     """A possible explanation may be that for a single disordered realization, the response is not symmetric even for a
     small external force.
@@ -373,11 +359,8 @@ def above_isostatic(data: Data) -> Numbers:
             yield slab.case(name), over_realizations(number, np.mean)
 
 
-@claim(
-    "D7b", "VII", Ask("missing contacts per disk, of the two above the isostatic limit",
-    at_least("marked"), "%", (6.0 - 4.25) / 2.0),
-    Ask("horizontal part of the missing contacts", at_least("marked"), "part")
-)  # fmt: skip
+@claim("D7b", "VII", Ask("missing contacts per disk, of the two above the isostatic limit", at_least("marked"), "%",
+           (6.0 - 4.25) / 2.0), Ask("horizontal part of the missing contacts", at_least("marked"), "part"))  # fmt: skip
 def missing_horizontal(data: Data) -> Numbers:
     """It is, however, much smaller than that of the ideal triangular lattice, z = 6, the "missing" contacts being
     predominantly horizontal.
@@ -398,10 +381,8 @@ def missing_horizontal(data: Data) -> Numbers:
         yield slab.case(""), over_realizations(part, np.mean), over_realizations(whole, np.mean)
 
 
-@claim(
-    "D9", "VI.A", Ask("difference of a typical packing from the mean below the crossover", at_most("similar"), "%"),
-    Ask("above the crossover", at_most("similar"), "%"), figures=[21]
-)  # fmt: skip
+@claim("D9", "VI.A", Ask("difference of a typical packing from the mean below the crossover", at_most("similar"), "%"),
+       Ask("above the crossover", at_most("similar"), "%"), figures=[21])  # fmt: skip
 def resembles(data: Data) -> Numbers:
     """It appears that, at least when the force is not too close to its crossover value, the fluctuations within the
     ensemble are rather small for this choice of coarse graining length (see [91] for a detailed study of another set of
@@ -455,10 +436,8 @@ def _evident_samples(without: FloatArray, full: FloatArray, least: float) -> Qua
     return of_draws(part(without, full, 20000), drawn, f"samples of {SHOWN}, bootstrap", min(without.size, full.size))
 
 
-@claim(
-    "D10", "VI, Fig. 19", Ask("standard deviation without friction per that with 0.2", more_than(1.0)),
-    Ask("samples of 15 and 15 packings in which 95 % of the pairs differ", rare("holds"), "part")
-)  # fmt: skip
+@claim("D10", "VI, Fig. 19", Ask("standard deviation without friction per that with 0.2", more_than(1.0)),
+       Ask("samples of 15 and 15 packings in which 95 % of the pairs differ", rare("holds"), "part"))  # fmt: skip
 def fluctuations(data: Data) -> Numbers:
     """The fluctuations are quite large even for this small degree of polydispersity (and larger for the frictionless
     case), but for the magnitude of the applied force used in this case the difference between the frictionless and
@@ -477,10 +456,8 @@ def fluctuations(data: Data) -> Numbers:
         yield slabs[0].case(""), without.per(full), _evident_samples(first, second, least)
 
 
-@claim(
-    "D16", "VI.A", Ask("packings that collapse", rare(), "part"), primary="polydispersity 0.25, friction 0.2",
-    figures=[21], modal=True
-)  # fmt: skip
+@claim("D16", "VI.A", Ask("packings that collapse", rare(), "part"), primary="polydispersity 0.25, friction 0.2",
+       figures=[21], modal=True)  # fmt: skip
 def collapses(data: Data) -> Numbers:
     """In addition, it may be impossible to apply very large forces to polydisperse systems without causing major
     rearrangements.
@@ -552,9 +529,8 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
     return of_draws(value / number, (low / number, high / number), "Jonckheere's statistic, bootstrap", samples)
 
 
-@claim(
-    "D2", "VI.A, Fig. 20", Ask("packings with a shorter range", more_than(0.5), "part"), primary="friction 0.2, 1 % off"
-)  # fmt: skip
+@claim("D2", "VI.A, Fig. 20", Ask("packings with a shorter range", more_than(0.5), "part"),
+       primary="friction 0.2, 1 % off")  # fmt: skip
 def shorter_range(data: Data) -> Numbers:
     """A notable difference between monodisperse and polydisperse systems is that in the latter, the range of linear
     response is smaller (see Fig. 20 compared to Fig. 6).
@@ -569,11 +545,9 @@ def shorter_range(data: Data) -> Numbers:
             yield slab.case("friction {1:g}", f"{100 * tolerance:g} % off"), shorter(ends, lattice[0])
 
 
-@claim(
-    "A5", "abstract", Ask("linear range of the lattice per that at polydispersity 0.01", more_than(1.0)),
-    Ask("order of the realizations from 0.01 to 0.25 (Kendall's tau)", less_than(0.0)),
-    primary="friction 0.2, 1 % off", figures=[20]
-)  # fmt: skip
+@claim("A5", "abstract", Ask("linear range of the lattice per that at polydispersity 0.01", more_than(1.0)),
+       Ask("order of the realizations from 0.01 to 0.25 (Kendall's tau)", less_than(0.0)),
+       primary="friction 0.2, 1 % off", figures=[20])  # fmt: skip
 def shorter_with_disorder(data: Data) -> Numbers:
     """Increasing the degree of polydispersity (for the range studied, up to 25%) decreases the range of elastic
     response.

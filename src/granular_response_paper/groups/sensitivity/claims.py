@@ -29,10 +29,8 @@ def _difference(data: Data, friction: float, variant: str) -> float:
     return float(abs(other - own).max() / own.max())
 
 
-@claim(
-    "N9", "III.B", Ask("largest difference per largest response", at_most("quite well"), "%"),
-    primary="friction 0.2", figures=[]
-)  # fmt: skip
+@claim("N9", "III.B", Ask("largest difference per largest response", at_most("quite well"), "%"),
+       primary="friction 0.2", figures=[])  # fmt: skip
 def linear_forces(data: Data) -> Numbers:
     """For the typical deformations obtained in the experiments, a linear fit to the particle force law provides quite a
     good description [65], which further justifies our choice of modeling the normal force as that exerted by a linear
@@ -54,10 +52,8 @@ def _dashpots(data: Data, name: str, friction: float) -> float:
     return max(abs(one.high / own.high - 1.0) for one in changed)
 
 
-@claim(
-    "N10", "III.A", Ask("largest change with other dashpots", at_most("nearly"), "%"),
-    primary="most sensitive result at friction 0.2", figures=[6, 7], finds="not supported"
-)  # fmt: skip
+@claim("N10", "III.A", Ask("largest change with other dashpots", at_most("nearly"), "%"),
+       primary="most sensitive result at friction 0.2", figures=[6, 7], finds="not supported")  # fmt: skip
 def dissipation(data: Data) -> Numbers:
     """Since we focus on the static response and small deformations the results should not be sensitive to the precise
     choice of dissipation mechanism.

@@ -14,10 +14,8 @@ claim = Claims(
 )
 
 
-@claim(
-    "R5a", "V.E, Fig. 16b", Ask("force at which the response loses its symmetry", between(91.0, 95.0), "mg", 91.0),
-    primary="over the protocol", finds="any"
-)  # fmt: skip
+@claim("R5a", "V.E, Fig. 16b", Ask("force at which the response loses its symmetry", between(91.0, 95.0), "mg", 91.0),
+       primary="over the protocol", finds="any")  # fmt: skip
 def loss_of_symmetry(data: Data) -> Numbers:
     """However, when the force exceeds F_ext = 91mg, we obtain a sharp transition to a very different response shape
     [see Fig. 16(b)], which is very asymmetric (unlike the symmetric double peaked response obtained for lower friction
