@@ -19,9 +19,7 @@ from granular_response_paper.claims import bootstrap, bounds, preparations, prin
 from granular_response_paper.claims.bootstrap import RARE, over_brackets, over_realizations, part_of
 from granular_response_paper.claims.bounds import Limits, about, less_than, more_than, sampled
 from granular_response_paper.claims.claim import (
-    MEANINGS,
     PREPARATION,
-    SCHEME,
     Ask,
     Case,
     Claims,
@@ -103,7 +101,7 @@ def test_every_claim_has_its_texts_and_stands_at_its_section():
         assert claim.paper.endswith(".") and 3 <= len(claim.short.split()) <= 15, claim.id
         assert claim.here.endswith(".") or claim.id in NEVER, claim.id
         assert claim.place.startswith("beyond") == (claim.part == "extension")
-        assert claim.row in ("statement", "check") and claim.finds in (*MEANINGS, "any")
+        assert claim.row in ("statement", "check") and claim.finds in (*table.MEANINGS, "any")
     assert next(claim.id for claim in EVERY if claim.part == "ordered") == "A1"
 
 
@@ -634,7 +632,7 @@ def test_the_stored_table_is_the_one_file_of_verdicts(tmp_path):
     stored = json.loads((tmp_path / "claims.json").read_text())
     assert stored == found == table.read(tmp_path / "claims.json")
     assert [row["id"] for row in stored["table"]] == [claim.id for claim in table.claims_in(PAPER)]
-    assert stored["scheme"] == list(SCHEME)
+    assert stored["scheme"] == list(table.SCHEME)
     rows = {row["id"]: row for row in stored["table"]}
     assert {name for name in ("P1", "P3", "P4") if rows[name]["verdict"] == "supported"} == {"P1", "P3", "P4"}
     statements = [row for row in stored["table"] if row["row"] == "statement"]

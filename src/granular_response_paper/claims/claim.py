@@ -41,29 +41,7 @@ OF_THE_TEXT = "that of the text"
 #: The group whose events both have.
 ORDERED = "friction_linear_range"
 
-SCHEME = (
-    "Each sentence has one primary case, which its figure, its forces or its words fix; that case alone decides.",
-    "The sentence is supported, or not supported, if the number and its whole interval lie on one side of the bound; "
-    "otherwise the data cannot tell. What may be, and was not found, is not seen.",
-    "The interval is the 95 % confidence over packings, or for events of ordered slabs the range over what the text "
-    "leaves open or calls irrelevant: dashpots, time step, integrator, duration of the load ramp and displacements by "
-    "10⁻⁹ radii. A number of a single state has none.",
-    "Every other case says for what the sentence holds, fails or is open; so do other ways of applying gravity "
-    "and other initial lattices.",
-    "A star marks a verdict that changes if the threshold of a qualitative term is halved, or doubled to three "
-    "quarters at most.",
-)
-
 Kind = Literal["supported", "not supported", "cannot tell", "not seen", "not measured"]
-
-#: Every verdict and what it says.
-MEANINGS: dict[Kind, str] = {
-    "supported": "the sentence holds in its primary case",
-    "not supported": "it does not hold there",
-    "cannot tell": "the interval of the number straddles the bound",
-    "not seen": "the sentence says that something may be, and it was not found here",
-    "not measured": "no stored dataset decides it",
-}
 
 
 class ClaimsError(GranularError):
@@ -144,13 +122,7 @@ class Claims:
         self.group, self.requires, self.common, self.rows = group, requires or {}, common, list[Claim]()
 
     def __call__(
-        self,
-        id: str,
-        place: str,
-        *asks: Ask,
-        figures: Sequence[int] | None = None,
-        requires: Mapping[str, Any] | None = None,
-        **said: Any,
+        self, id: str, place: str, *asks: Ask, figures: Sequence[int] | None = None, requires: Any = None, **said: Any
     ) -> Callable[[Callable[[Data], Numbers]], Callable[[Data], Numbers]]:
         """Declare a claim by the function below and its docstring: the sentence, or "As R3a." for that of another claim
         of the group, then Short, Here and Remark. Figures are those of the place; ``requires`` are further parameters.

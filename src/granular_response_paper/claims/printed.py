@@ -53,11 +53,8 @@ def quantities(entries: Sequence[Verdict], data: Data) -> list[dict[str, Any]]:
         ask, primary = entry.claim.asks[printed.ask], entry.primary
         tests = [test for test in entry.tests if test.ask == ask]
         for own in (test for test in tests if test in primary):
-            others = [
-                {"case": test.case.name, "prepared": test.case.prepared, **_point(test.found)}
-                for test in tests
-                if test not in primary
-            ]
+            rest = [(test.case, test.found) for test in tests if test not in primary]
+            others = [{"case": case.name, "prepared": case.prepared, **_point(one)} for case, one in rest]
             found.append(_entry(printed, ask.paper, ask.unit, own.found, others))
     with suppress(NotMeasured):
         study = data.get("superposition", "linear_range")

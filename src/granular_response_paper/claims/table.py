@@ -23,15 +23,14 @@ from ..registry import PAPER, Collection, group_member
 from . import preparations, printed
 from .bounds import WORDS
 from .claim import (
-    MEANINGS,
     OF_THE_TEXT,
     PREPARATION,
     ROBUSTNESS,
-    SCHEME,
     Case,
     Claim,
     ClaimsError,
     Data,
+    Kind,
     Test,
     Verdict,
     judge,
@@ -47,6 +46,28 @@ PARTS = {
     "ordered": "ordered slabs, piles, theory and method",
     "disorder": "disordered packings",
     "extension": "questions beyond the paper",
+}
+
+SCHEME = (
+    "Each sentence has one primary case, which its figure, its forces or its words fix; that case alone decides.",
+    "The sentence is supported, or not supported, if the number and its whole interval lie on one side of the bound; "
+    "otherwise the data cannot tell. What may be, and was not found, is not seen.",
+    "The interval is the 95 % confidence over packings, or for events of ordered slabs the range over what the text "
+    "leaves open or calls irrelevant: dashpots, time step, integrator, duration of the load ramp and displacements by "
+    "10⁻⁹ radii. A number of a single state has none.",
+    "Every other case says for what the sentence holds, fails or is open; so do other ways of applying gravity "
+    "and other initial lattices.",
+    "A star marks a verdict that changes if the threshold of a qualitative term is halved, or doubled to three "
+    "quarters at most.",
+)
+
+#: Every verdict and what it says.
+MEANINGS: dict[Kind, str] = {
+    "supported": "the sentence holds in its primary case",
+    "not supported": "it does not hold there",
+    "cannot tell": "the interval of the number straddles the bound",
+    "not seen": "the sentence says that something may be, and it was not found here",
+    "not measured": "no stored dataset decides it",
 }
 
 #: What a stored table lists of each claim.

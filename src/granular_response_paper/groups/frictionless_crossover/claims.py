@@ -142,17 +142,14 @@ def deep_and_shallow(data: Data) -> Numbers:
     are left out"""
     for name in ("sizes", "widths"):
         study = data.get(GROUP, name).sortby("layers")
-        slabs = study.isel(
-            slab=np.isclose(study["normal_stiffness"].values, 3000.0) & (study["open_at_rest"].values == 0)
-        )
+        closed = study["open_at_rest"].values == 0
+        slabs = study.isel(slab=closed & np.isclose(study["normal_stiffness"].values, 3000.0))
         columns = (slabs[key].values.tolist() for key in ("layers", "disks_per_row", "crossover_bracket"))
         for (thin, few, shallow), (layers, row, deep) in combinations(zip(*columns, strict=True), 2):
             # of the first, the width grows with the depth; of the second, walls are at the same distance
             if thin == slabs["layers"].min() < layers and (name == "sizes" or abs(few - row) <= 1):
-                yield (
-                    f"{layers:g} x {row:g} against {thin:g} x {few:g} disks",
-                    Quantity.bracket(*deep).per(Quantity.bracket(*shallow)),
-                )
+                ratio = Quantity.bracket(*deep).per(Quantity.bracket(*shallow))
+                yield f"{layers:g} x {row:g} against {thin:g} x {few:g} disks", ratio
 
 
 def _between(data: Data) -> xr.Dataset:

@@ -405,14 +405,10 @@ def resembles(data: Data) -> Numbers:
             above = (force > max(high, case["force"] * near)) & (case["kind"] != ABOVE)
             typical["below"] += off.values[below].tolist()
             typical["above"] += off.values[above].tolist()
-        found = [
-            replace(over_realizations(values), method="bootstrap of the median over cases and forces")
-            if len(values) > 2
-            else None
-            for values in typical.values()
-        ]
-        if found[0] or found[1]:
-            yield slabs[0].case(""), *found
+        found = [over_realizations(values) if len(values) > 2 else None for values in typical.values()]
+        method = "bootstrap of the median over cases and forces"
+        if any(found):
+            yield slabs[0].case(""), *(one and replace(one, method=method) for one in found)
 
 
 def _at_15(data: Data, slab: Slab, name: str) -> xr.Dataset:

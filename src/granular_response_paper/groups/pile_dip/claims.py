@@ -7,15 +7,9 @@ from ...claims.claim import Ask, Claims, Data, Numbers
 
 GROUP = "pile_dip"
 claim = Claims(
-    GROUP,
-    {
-        "scene.packing.layers": 11,
-        "scene.contact.friction": 0.94,
-        "scene.wall.friction": 0.35,
-        "scene.contact.stiffness_ratio": 0.5,
-        "scene.preparation.gravity": "at-once",
-    },
-)
+    GROUP, {"scene.packing.layers": 11, "scene.contact.friction": 0.94, "scene.wall.friction": 0.35,
+            "scene.contact.stiffness_ratio": 0.5, "scene.preparation.gravity": "at-once"}
+)  # fmt: skip
 
 
 @claim("P1", "V.F, Fig. 17c, d",
