@@ -123,8 +123,7 @@ def within(word: str, of: float = 1.0) -> Bound:
     return Bound(lambda t: ((1.0 - t) * of, (1.0 + t) * of), word)
 
 
-def about(of: float) -> Bound:
-    return within("about", of)
+about = partial(within, "about")
 
 
 def sampled(force: float) -> Bound:

@@ -23,7 +23,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Seq
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -280,8 +280,6 @@ class Test:
     found: Quantity
     limits: Limits
     case: Case
-
-    __test__: ClassVar = False  # for pytest: no class of tests
 
     @property
     def outcome(self) -> Outcome:
