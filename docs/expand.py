@@ -17,9 +17,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import scene_keys
-
+from granular_response.cli.scene_reference import sections
 from granular_response.errors import GranularError
+from granular_response.scene import Scene
+from granular_response_paper.report.markdown import table
 
 ROOT = Path(__file__).resolve().parents[1]
 FRAGMENTS = ROOT / "docs" / "_generated"
@@ -139,8 +140,8 @@ def public_names() -> str:
         ("Modules", "gr.", {name: one for name, one in own.items() if inspect.ismodule(one)}),
         ("Errors", "gr.", {name: one for name, one in own.items() if _error(one)}),
     ):
-        rows = [f"| `{prefix}{name}` | {sentence(one)} |" for name, one in sorted(names.items())]
-        parts.append(f"## {title}\n\n| name | what it is |\n|---|---|\n" + "\n".join(rows))
+        rows = [(f"`{prefix}{name}`", sentence(one)) for name, one in sorted(names.items())]
+        parts += [f"## {title}", table(("name", "what it is"), rows)]
     return "\n\n".join(parts)
 
 
@@ -165,8 +166,26 @@ def goals() -> str:
     """What was measured beside the goals, from ``benchmarks/summary.json``."""
     found = json.loads((ROOT / "benchmarks" / "summary.json").read_text(encoding="utf-8"))["goals"]
     met = {True: "yes", False: "**no**"}
-    rows = [f"| {one['what']} | {one['goal']} | {one['measured']} | {met[one['met']]} |" for one in found]
-    return "\n".join(["| | goal | measured | met |\n|---|---|---|---|", *rows])
+    rows = [(one["what"], one["goal"], one["measured"], met[one["met"]]) for one in found]
+    return table(("", "goal", "measured", "met"), rows)
+
+
+def scene_keys() -> str:
+    """All keys of a scene, from their descriptions: the parts, then a table for each."""
+    found = [table(("part", "meaning"), [(f"`{k}`", info.description or "") for k, info in Scene.model_fields.items()])]
+    for section in sections():
+        rows = [
+            (
+                f"`{key.path}`",
+                f"`{key.default}`" if key.default else "must be given",
+                f"{key.allowed} [{key.unit}]" if key.unit else key.allowed,
+                key.meaning,
+            )
+            for key in section.listed()
+        ]
+        escaped = [[cell.replace("|", "\\|") for cell in row] for row in rows]  # a bar within a cell would end it
+        found += [f"## {section.title}", table(("key", "default", "allowed [unit]", "meaning"), escaped)]
+    return "\n\n".join(found)
 
 
 MADE: dict[str, Callable[[], str]] = {
@@ -175,7 +194,7 @@ MADE: dict[str, Callable[[], str]] = {
     "findings": findings,
     "figures-of-the-paper": gallery,
     "public-names": public_names,
-    "scene-keys": lambda: scene_keys.lines().strip(),
+    "scene-keys": scene_keys,
 }
 
 

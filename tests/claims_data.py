@@ -86,10 +86,7 @@ def friction_study():
     }
     forces = [90.0, 91.0, 93.0, 150.0, 300.0, 500.0]
     away = np.array([0.8, 0.3, 0.1, 0.05, 0.0])[:, None]
-    axis = {
-        "central_dip": [0.9, 0.5, -0.01, -0.03, -0.03],
-        "sliding_contacts": [0.0, 300.0, 200.0, 100.0, 50.0],
-    }
+    axis = {"central_dip": [0.9, 0.5, -0.01, -0.03, -0.03], "sliding_contacts": [0.0, 300.0, 200.0, 100.0, 50.0]}
     # a column of disks below the loaded one, whose contacts slide one after the other, and three disks beside it
     column = np.stack([np.zeros(14), -2.0 * np.arange(14.0)], axis=1)
     beside = column[3:6] + np.array([2.0, 0.0])
@@ -365,10 +362,7 @@ def phases_study():
     away = np.maximum(0.0, small / (apart * np.repeat(ends, 2)[:, None, None]) - 1.0)
     return {
         "crossovers": dataset(
-            labels,
-            **crossovers,
-            seen=("width case", 0.9),
-            seen_interval=("width case level", [0.8, 0.9, 0.95]),
+            labels, **crossovers, seen=("width case", 0.9), seen_interval=("width case level", [0.8, 0.9, 0.95])
         ).assign_attrs(tolerance=0.01),
         "medians": dataset(labels, **crossovers),
         "definitions": dataset(labels | {"tolerance": [0.005, 0.02]}, **by_tolerance, limits=crossovers["limits"]),

@@ -9,32 +9,34 @@ import numpy as np
 import xarray as xr
 
 from granular_response.store import atomic
+from granular_response_paper.groups.phase_diagram.simulate import simulate
+from granular_response_paper.pipeline.simulation import parameters
+from granular_response_paper.report.markdown import table
+from granular_response_paper.survey.crossover import ABOVE, BELOW, FOUND
+from granular_response_paper.survey.datasets import usual
 
 ROOT = Path(__file__).resolve().parents[2]
 NOTES = ROOT / "docs" / "_generated" / "survey.md"
-FOUND, BELOW, ABOVE = 0, 1, 2
 #: Of the smoothing, as in Fig. 22; the polydispersity of which the paper states what contacts are missing.
 WIDTH, STATED = 6.0, 0.01
 #: Places of the 2.5 and 97.5 per cent quantiles among the stored levels.
 ENDS = (0, -1)
 
 
-def crossovers(datasets: Mapping[str, xr.Dataset]) -> list[str]:
+def crossovers(datasets: Mapping[str, xr.Dataset]) -> str:
     """A line for each disordered case that starts with the largest disks touching, and for each lattice."""
-    from granular_response_paper.survey.datasets import usual
-
     found, single = usual(datasets["crossovers"]), usual(datasets["realizations"])
     w = found["width"].values.tolist().index(WIDTH)
     heads = ["δ", "µ", "realizations (collapsed)", "mean response", "median of realizations"]
-    lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
+    rows = []
     for case in np.lexsort((found["friction"].values, found["polydispersity"].values)):
         collapsed = int(np.isfinite(single["collapse_force"].values[case]).sum())
         count = int(found["realizations"].values[case])
         cells = [f"{found['polydispersity'].values[case]:g}", f"{found['friction'].values[case]:g}"]
         cells.append(f"{count} ({collapsed})" if collapsed else f"{count}")
         cells += [force(found, (w, case)), number(float(single["median"].values[w, case]))]
-        lines.append("|" + "".join(f" {cell} |" for cell in cells))
-    return lines
+        rows.append(cells)
+    return table(heads, rows)
 
 
 def force(data: xr.Dataset, place: tuple[int, ...]) -> str:
@@ -51,26 +53,28 @@ def number(value: float) -> str:
     return f"{value:.3g}" if np.isfinite(value) else ("beyond" if value > 0.0 else "below all")
 
 
-def starts(datasets: Mapping[str, xr.Dataset]) -> list[str]:
+def starts(datasets: Mapping[str, xr.Dataset]) -> str:
     """A line for each initial lattice: contacts without friction, and the dips with and without it."""
     data = datasets["starts"]
     heads = ["lattice constant", "coordination number", "horizontal fraction of the missing contacts"]
     heads += ["dip, µ = 0", "dip, µ = 0.2"]
-    lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
+    rows = []
     pairs = zip(data["distance"].values.tolist(), data["friction"].values.tolist(), strict=True)
     place = {(round(distance, 6), mu): case for case, (distance, mu) in enumerate(pairs)
              if data["polydispersity"].values[case] == STATED}  # fmt: skip
     for distance in sorted(distance for distance, mu in place if mu == 0.0 and (distance, 0.2) in place):
         without, full = place[distance, 0.0], place[distance, 0.2]
         name = str(data["lattice_constant"].values[without])
-        lines.append(
-            f"| {distance:.5g}{', largest disks touch' if name.startswith('touching') else ''} "
-            f"| {with_interval(data, 'contacts', (without,), 1.0, 3)} "
-            f"| {with_interval(data, 'missing_horizontal', (without,), 100.0, 0)} % "
-            f"| {with_interval(data, 'dip', (0, without), 100.0, 0)} % "
-            f"| {with_interval(data, 'dip', (0, full), 100.0, 1)} % |"
+        rows.append(
+            [
+                f"{distance:.5g}{', largest disks touch' if name.startswith('touching') else ''}",
+                with_interval(data, "contacts", (without,), 1.0, 3),
+                f"{with_interval(data, 'missing_horizontal', (without,), 100.0, 0)} %",
+                f"{with_interval(data, 'dip', (0, without), 100.0, 0)} %",
+                f"{with_interval(data, 'dip', (0, full), 100.0, 1)} %",
+            ]
         )
-    return lines
+    return table(heads, rows)
 
 
 def with_interval(data: xr.Dataset, name: str, place: tuple[int, ...], factor: float, digits: int) -> str:
@@ -85,21 +89,18 @@ def text(datasets: Mapping[str, xr.Dataset]) -> str:
         [
             "Crossover forces in mg (w = 6), with 95 % of the bootstrap draws:",
             "",
-            *crossovers(datasets),
+            crossovers(datasets),
             "",
             "Initial lattices at δ = 0.01, with half the width of the 95 % interval; contacts with walls counted, dips"
             " under 15 mg smoothed with w = 3:",
             "",
-            *starts(datasets),
+            starts(datasets),
         ]
     )
 
 
 def measured() -> dict[str, xr.Dataset]:
     """What the study ``phase_diagram`` makes of the stored survey."""
-    from granular_response_paper.groups.phase_diagram.simulate import simulate
-    from granular_response_paper.pipeline.simulation import parameters
-
     _, described = parameters("phase_diagram", ROOT / "params.yaml")
     return simulate(described.model_copy(update={"survey": str(ROOT / described.survey)}))  # type: ignore[attr-defined]
 

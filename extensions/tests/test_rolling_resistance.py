@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response_extensions.rolling_resistance.simulate.balance import balanced
+from granular_response_extensions.rolling_resistance.simulate import balanced
 from granular_response_extensions.rolling_resistance.simulate.couples import decay
 
 

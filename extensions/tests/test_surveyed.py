@@ -45,11 +45,7 @@ LOOPS = (
     {"polydispersity": 0.1, "friction": 0.2, "forces": [0.3, 1.0], "increments": 2, "realizations": 2},
     {"polydispersity": 0.1, "friction": 0.2, "forces": [0.3, 1.0], "increments": 2, "surveyed": 1},
 )
-PARTS = {
-    "moduli": ("cases", MODULI),
-    "crossover_scaling": ("series", SCALING),
-    "hysteresis": ("cases", LOOPS),
-}
+PARTS = {"moduli": ("cases", MODULI), "crossover_scaling": ("series", SCALING), "hysteresis": ("cases", LOOPS)}
 
 
 def simulate(group, section):

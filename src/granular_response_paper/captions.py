@@ -102,10 +102,7 @@ def _templates(group: str) -> dict[str, Any]:
 
 
 def of_group(
-    group: str,
-    parameters: Mapping[str, Mapping[str, Value]],
-    findings: Mapping[str, str] | None = None,
-    **fields: Any,
+    group: str, parameters: Mapping[str, Mapping[str, Value]], findings: Mapping[str, str] | None = None, **fields: Any
 ) -> dict[str, Caption]:
     """The captions of those pictures of a group that have ``parameters``, by file stem, from the group's templates.
 

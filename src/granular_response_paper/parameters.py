@@ -7,7 +7,7 @@ name is that of the group's own base, so one key of it can be tried alone
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import reduce
 from itertools import pairwise
 from typing import Annotated, Any, Self, TypeVar
@@ -22,43 +22,33 @@ from granular_response.scene.protocol import Method
 Entry = TypeVar("Entry")
 
 
-def _some(values: tuple[Entry, ...]) -> tuple[Entry, ...]:
-    must(values, "must have at least one entry")
-    return values
+def refused_unless(holds: Callable[[Any], object], rule: str) -> AfterValidator:
+    """Validates a value of which something must hold."""
+
+    def check(value: Any) -> Any:
+        must(holds(value), rule)
+        return value
+
+    return AfterValidator(check)
 
 
-def _several(values: tuple[Entry, ...]) -> tuple[Entry, ...]:
-    must(len(values) > 1, "must have at least two entries, to compare")
-    return values
-
-
-def _different(values: tuple[Entry, ...]) -> tuple[Entry, ...]:
-    must(len(set(values)) == len(values), "must have each entry once")
-    return values
-
-
-def _odd(number: int) -> int:
-    must(number % 2, "must be odd")
-    return number
-
-
-def _growing(values: tuple[float, ...]) -> tuple[float, ...]:
-    must(all(before < after for before, after in pairwise(values)), "must be growing numbers")
-    return values
-
+_EACH_ONCE = refused_unless(lambda values: len(set(values)) == len(values), "must have each entry once")
+_GROWING = refused_unless(lambda values: all(a < b for a, b in pairwise(values)), "must be growing numbers")
 
 #: Lists with an entry or more, with two or more, with different ones, with growing numbers, and curves of two or more.
-Some = Annotated[tuple[Entry, ...], AfterValidator(_some)]
-Several = Annotated[tuple[Entry, ...], AfterValidator(_several)]
-Different = Annotated[Some[Entry], AfterValidator(_different)]
-Growing = Annotated[Some[Positive], AfterValidator(_growing)]
-Curve = Annotated[Several[Entry], AfterValidator(_growing)]
+Some = Annotated[tuple[Entry, ...], refused_unless(len, "must have at least one entry")]
+Several = Annotated[
+    tuple[Entry, ...], refused_unless(lambda values: len(values) > 1, "must have at least two entries, to compare")
+]
+Different = Annotated[Some[Entry], _EACH_ONCE]
+Growing = Annotated[Some[Positive], _GROWING]
+Curve = Annotated[Several[Entry], _GROWING]
 Positives = Different[Positive]
 #: Coefficients of friction, ratios.
 Coefficients = Different[Ratio]
 Counts = Different[Count]
 #: With a middle one.
-Odd = AfterValidator(_odd)
+Odd = refused_unless(lambda number: number % 2, "must be odd")
 #: Of rows, or of disks over rows.
 Rows = Annotated[int, Field(strict=True, ge=2), allowed("must be a whole number from 2 on")]
 Path = Annotated[str, Field(strict=True, min_length=1), allowed("must be the path of a file")]
@@ -153,7 +143,7 @@ def over(base: Scene, *decided: str) -> BeforeValidator:
         if isinstance(given, Scene):
             return given
         must(isinstance(given, Mapping), "must be a mapping with keys of a scene")
-        for path, value in _leaves(given):
+        for path, value in leaves(given):
             name = ".".join(path)
             must(name != "packing.kind" or value == kind, f"must be {kind} in this group", key=path, value=value)
             own = any(f"{name}.".startswith(f"{key}.") for key in refused)
@@ -166,11 +156,11 @@ def over(base: Scene, *decided: str) -> BeforeValidator:
     return BeforeValidator(complete)
 
 
-def _leaves(given: Mapping, above: Sequence[str] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+def leaves(given: Mapping, above: Sequence[str] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
     """Values with their paths, whether these are written dotted or nested."""
     for key, value in given.items():
         path = (*above, *str(key).split("."))
         if isinstance(value, Mapping):
-            yield from _leaves(value, path)
+            yield from leaves(value, path)
         else:
             yield path, value

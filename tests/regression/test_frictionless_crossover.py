@@ -7,7 +7,7 @@ import reduced
 
 from granular_response.solvers.problem import Problem
 from granular_response_paper.groups.frictionless_crossover import simulate as study
-from granular_response_paper.groups.frictionless_crossover.simulate.slab import OrderedSlab, new_neighbours, settle
+from granular_response_paper.groups.frictionless_crossover.simulate import OrderedSlab, new_neighbours, settle
 
 BASE = study.Parameters(**reduced.parameters("frictionless_crossover")).base
 

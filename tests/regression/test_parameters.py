@@ -25,10 +25,10 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"series": [SERIES, SERIES]}, "must have different names"),
     ],
     "friction_fields": [
-        ({"profiles": {"frictions": [0.5], "force": 12.0, "rows": [1.5]}}, r"profiles\.frictions = \[0\.5\]"),
+        ({"profiles": {"frictions": [0.5], "force": 12.0, "rows": [1.5]}}, r"profiles\.frictions = \[0\.5\]")
     ],
     "friction_linear_range": [
-        ({"frictions": [0.0, 0.3, 1.0]}, r"frictions = \[0\.0, 0\.3, 1\.0\]: must have 0\.2 and 1 among them"),
+        ({"frictions": [0.0, 0.3, 1.0]}, r"frictions = \[0\.0, 0\.3, 1\.0\]: must have 0\.2 and 1 among them")
     ],
     "frictionless_crossover": [
         ({"scene": {"packing": {"layers": 0}}}, r"scene\.packing\.layers = 0: must be a whole number from 1"),
@@ -96,9 +96,7 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"cases": [BETWEEN | ROUGH]}, "floor = 'rough': must be smooth, or rough with friction above 0"),
         ({"cases": [BETWEEN | {"layers": [4.5]}]}, r"cases\[0\]\.layers\[0\] = 4\.5"),
     ],
-    "stiffness_ratio_crossover": [
-        ({"ratios": [0.3, 0.2]}, "ratios = .*: must be"),
-    ],
+    "stiffness_ratio_crossover": [({"ratios": [0.3, 0.2]}, "ratios = .*: must be")],
     "superposition": [
         ({"forces": [1.0, 0.5]}, r"forces = \[1.0, 0.5\]: must be growing numbers"),
         ({"forces": [0.2, 0.5]}, r"forces = \[0\.2, 0\.5\]: must have 0\.2 and 1 among them"),
@@ -109,9 +107,7 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"ray_angle": 90.0}, "ray_angle = .*: must be"),
         ({"points": 120}, "points = 120: must be odd"),
     ],
-    "torque": [
-        ({"torques": [1.0, 2.0]}, "torques = .*: must be"),
-    ],
+    "torque": [({"torques": [1.0, 2.0]}, "torques = .*: must be")],
 }
 
 

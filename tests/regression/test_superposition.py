@@ -5,7 +5,7 @@ import reduced
 
 from granular_response.scene import Scene
 from granular_response.sweeps.rest import rest_of
-from granular_response_paper.groups.superposition.simulate import loads as study
+from granular_response_paper.groups.superposition import simulate as study
 
 PARAMETERS = reduced.parameters("superposition")
 

@@ -19,9 +19,7 @@ from granular_response_paper.claims import bootstrap, bounds, preparations, prin
 from granular_response_paper.claims.bootstrap import RARE, over_brackets, over_realizations, part_of
 from granular_response_paper.claims.bounds import Limits, about, less_than, more_than, sampled
 from granular_response_paper.claims.claim import (
-    MEANINGS,
     PREPARATION,
-    SCHEME,
     Ask,
     Case,
     Claims,
@@ -88,13 +86,22 @@ def changed(data, group, name, /, **variables):
     return replace(data, groups={**data.groups, group: {**data.groups[group], name: study}})
 
 
+def moved(data, group, force, **labels):
+    """The data with two peaks from another force on, in the events with these labels."""
+    events = data.groups[group]["events"]
+    there = np.all([events[name].values == label for name, label in {"name": "crossover", **labels}.items()], axis=0)
+    return changed(
+        data, group, "events", **{end: np.where(there, force, events[end].values) for end in ("low", "high")}
+    )
+
+
 def test_every_claim_has_its_texts_and_stands_at_its_section():
     assert len(CLAIM) == len(EVERY)
     for claim in EVERY:
         assert claim.paper.endswith(".") and 3 <= len(claim.short.split()) <= 15, claim.id
         assert claim.here.endswith(".") or claim.id in NEVER, claim.id
         assert claim.place.startswith("beyond") == (claim.part == "extension")
-        assert claim.row in ("statement", "check") and claim.finds in (*MEANINGS, "any")
+        assert claim.row in ("statement", "check") and claim.finds in (*table.MEANINGS, "any")
     assert next(claim.id for claim in EVERY if claim.part == "ordered") == "A1"
 
 
@@ -256,40 +263,30 @@ def test_sliding_decides_if_the_control_without_it_stays_symmetric(good):
 def test_the_interval_of_an_event_is_that_of_the_protocol(good):
     """A crossover that dashpots move out of the bound cannot be told; one that the width moves is another case."""
 
-    def moved(variant, force):
-        events = good.groups["robustness"]["events"]
-        there = (events["variant"].values == variant) & (events["name"].values == "crossover")
-        there &= events["friction"].values == 0.2
-        low = np.where(there, force, events["low"].values)
-        return judge(
-            CLAIM["R3a"],
-            changed(good, "robustness", "events", low=low, high=np.where(there, force, events["high"].values)),
-        )
-
-    entry = moved("dashpots halved", 14.0)
+    entry = judge(CLAIM["R3a"], moved(good, "robustness", 14.0, friction=0.2, variant="dashpots halved"))
     assert entry.verdict == "cannot tell" and entry.primary[0].found.low == 14.0
-    entry = moved("121 disks a row", 14.0)
+    entry = judge(CLAIM["R3a"], moved(good, "robustness", 14.0, friction=0.2, variant="121 disks a row"))
     assert entry.verdict == "supported" and "Not for: 121 disks a row." in entry.cases
 
 
 def test_other_preparations_stand_in_columns_of_their_own(good):
-    events = good.groups[PREPARATION]["events"]
-    late = (events["name"].values == "crossover") & (events["gravity"].values == "slow")
-    data = changed(
-        good,
-        PREPARATION,
-        "events",
-        low=np.where(late, 40.0, events["low"].values),
-        high=np.where(late, 41.0, events["high"].values),
-    )
-    row = table._row(judge(CLAIM["R3a"], data))
-    assert (
-        row["verdict"] == "supported"
-        and row["gravity"]["text"] == "holds in 1 of 2"
-        and row["lattice"]["text"] == "not tried"
-    )
+    row = table._row(judge(CLAIM["R3a"], moved(good, PREPARATION, 40.0, gravity="slow")))
+    said = row["verdict"], row["gravity"]["text"], row["lattice"]["text"]
+    assert said == ("supported", "holds in 1 of 2", "not tried")
     assert row["gravity"]["no"] == ["gravity ramped over 20 sqrt(R/g)"]
     assert table._row(judge(CLAIM["D7b"], good))["lattice"]["text"] == "holds in 1 of 1"
+
+
+def test_a_statement_is_asked_in_part_if_a_case_that_counts_is():
+    def held(*found):
+        claim = Claims("theory")
+        claim("F1", "I", Ask("a", more_than(0.0)), Ask("b", more_than(0.0)), primary="own")(lambda data: iter(found))
+        return table._row(judge(claim.rows[0], Data({})))["gravity"]["text"]
+
+    own, other = Case("own, gravity slow", "gravity"), Case("gravity slow", "gravity")
+    assert held(("own", 1.0, 1.0), (own, 1.0, 1.0), (other, 1.0, None)) == "holds in 1 of 1"
+    assert held(("own", 1.0, 1.0), (own, 1.0, None), (other, 1.0, 1.0)) == "holds in 1 of 1, asked in part"
+    assert held(("own", 1.0, 1.0), (other, 1.0, None)) == "holds in 1 of 1, asked in part"
 
 
 def test_claims_of_the_paper_read_no_dataset_of_an_extension(few_draws, good, entries):
@@ -337,15 +334,12 @@ def test_a_row_spells_its_other_cases_out():
 
 
 def test_a_sentence_is_said_only_for_the_verdict_it_is_written_for():
-    failed = judge(a_claim(("a", NO), here="It holds, {0}."), Data({}))
-    assert (
-        failed.here == "Number: 2.5 (2.1 to 3.0)."
-        and judge(a_claim(("a", YES), here="{b|0}"), Data({})).here == "Number: 1.5 (1.0 to 2.0)."
-    )
-    assert (
-        judge(a_claim(("a", NO), here="It fails, {0}.", finds="not supported"), Data({})).here
-        == "It fails, 2.5 (2.1 to 3.0)."
-    )
+    def said(found, here, **of):
+        return judge(a_claim(("a", found), here=here, **of), Data({})).here
+
+    assert said(NO, "It holds, {0}.") == "Number: 2.5 (2.1 to 3.0)."
+    assert said(YES, "{b|0}") == "Number: 1.5 (1.0 to 2.0)."
+    assert said(NO, "It fails, {0}.", finds="not supported") == "It fails, 2.5 (2.1 to 3.0)."
 
 
 def test_a_claim_needs_as_many_numbers_as_bounds():
@@ -638,7 +632,7 @@ def test_the_stored_table_is_the_one_file_of_verdicts(tmp_path):
     stored = json.loads((tmp_path / "claims.json").read_text())
     assert stored == found == table.read(tmp_path / "claims.json")
     assert [row["id"] for row in stored["table"]] == [claim.id for claim in table.claims_in(PAPER)]
-    assert stored["scheme"] == list(SCHEME)
+    assert stored["scheme"] == list(table.SCHEME)
     rows = {row["id"]: row for row in stored["table"]}
     assert {name for name in ("P1", "P3", "P4") if rows[name]["verdict"] == "supported"} == {"P1", "P3", "P4"}
     statements = [row for row in stored["table"] if row["row"] == "statement"]

@@ -58,7 +58,8 @@ def block(group: str, parameter_file: Path) -> Block:
     tasks = tasks_of(group, parameters)
 
     def datasets(found: dict[Any, Any]) -> dict[str, xr.Dataset]:
-        return {DATASET: dataset({key: found[key] for key in tasks})}
+        outcomes = table([found[key] for key in tasks], ALONG).astype(np.float32)
+        return {DATASET: outcomes.assign_coords(table(list(tasks), ALONG).variables)}
 
     # the first argument of each is its scene
     ordered = dict(sorted(tasks.items(), key=lambda item: item[1].args[0].packing.disk_count))
@@ -75,12 +76,6 @@ def tasks_of(group: str, parameters: Any) -> dict[Any, partial[Any]]:
 def sources_of(group: str) -> tuple[str, ...]:
     """The sources that an outcome of a group's task depends on."""
     return (*MECHANICS, "theory", f"{COLLECTION.package}/{group}/simulate")
-
-
-def dataset(outcomes: Mapping[Any, Any]) -> xr.Dataset:
-    """Outcomes by their keys."""
-    found = table(list(outcomes.values()), ALONG).astype(np.float32)
-    return found.assign_coords(table(list(outcomes), ALONG).variables)
 
 
 def read(path: str | Path, key: type[Key], kind: type[Found]) -> dict[Key, Found]:
@@ -122,22 +117,15 @@ def measured(
 
     ``packings(group, surveyed=...)`` are what tells them apart, of the survey or all others; ``task`` simulates one.
 
-    Raises what :func:`chosen` and ``computed`` raise.
+    Raises what ``computed`` and, with packings of the survey, :func:`read` raise, and StoreError if one of them is not
+    there: the message names the first.
     """
     own = {place: task(group, key) for place, key in packings(group, surveyed=False).items()}
-    return computed(own, what, work=work) | chosen(group.survey_file, kind, packings(group, surveyed=True))
-
-
-def chosen(path: str | None, kind: type[Found], keys: Mapping[Place, Any]) -> dict[Place, Found]:
-    """The outcomes of some packings, by their places in a group; without any, no file is needed.
-
-    Raises what :func:`read` raises, and StoreError if one of them is not there: the message names the first.
-    """
-    if not keys:
-        return {}
-    stored = read(path or "", type(next(iter(keys.values()))), kind)
-    for key in keys.values():
+    found, left = computed(own, what, work=work), packings(group, surveyed=True)
+    stored = read(group.survey_file or "", type(next(iter(left.values()))), kind) if left else {}
+    for place, key in left.items():
         if key not in stored:
             named = ", ".join(f"{name} {value}" for name, value in asdict(key).items())
-            raise store.StoreError(f"{path}: has no packing of {named}; make survey simulates it")
-    return {place: stored[key] for place, key in keys.items()}
+            raise store.StoreError(f"{group.survey_file}: has no packing of {named}; make survey simulates it")
+        found[place] = stored[key]
+    return found

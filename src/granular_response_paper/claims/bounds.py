@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal, NamedTuple
 
 from .bootstrap import RARE
@@ -76,9 +77,7 @@ class Limits(NamedTuple):
 
     def text(self, unit: str = "") -> str:
         unit = "%" if unit == "part" else "" if unit == "count" else unit
-        least, most = shown(self.least, unit, 3) if self.least > -math.inf else "", ""
-        if self.most < math.inf:
-            most = shown(self.most, unit, 3)
+        least, most = (shown(end, unit, 3) if math.isfinite(end) else "" for end in (self.least, self.most))
         if not most:
             return f"{'more than' if self.strict else 'at least'} {least}"
         if not least:
@@ -107,11 +106,6 @@ def at_least(least: float | str) -> Bound:
     return Bound(lambda t: (t, math.inf), least) if isinstance(least, str) else Bound(lambda t: (least, math.inf))
 
 
-def rare(word: str = "") -> Bound:
-    """A part of samples that is not rare, as more than one in forty; ``word`` is the term that decides what counts."""
-    return Bound(lambda t: (RARE, math.inf), word)
-
-
 def less_than(most: float, word: str = "") -> Bound:
     return Bound(lambda t: (-math.inf, most), word, strict=True)
 
@@ -124,13 +118,12 @@ def between(least: float, most: float) -> Bound:
     return Bound(lambda t: (least, most))
 
 
-def within(word: str, of: float = 1.0, plus: float = 0.0) -> Bound:
-    """Within the threshold of a term, as a part of it, of a number, ``plus`` something."""
-    return Bound(lambda t: ((1.0 - t) * of + plus, (1.0 + t) * of + plus), word)
+def within(word: str, of: float = 1.0) -> Bound:
+    """Within the threshold of a term, as a part of it, of a number."""
+    return Bound(lambda t: ((1.0 - t) * of, (1.0 + t) * of), word)
 
 
-def about(of: float) -> Bound:
-    return within("about", of)
+about = partial(within, "about")
 
 
 def sampled(force: float) -> Bound:
@@ -138,21 +131,11 @@ def sampled(force: float) -> Bound:
     return Bound(lambda t: ((1.0 - t) * force, force), "about")
 
 
-def lower_by(word: str) -> Bound:
-    return Bound(lambda t: (-math.inf, 1.0 - t), word)
-
-
-def hardly_lower(word: str) -> Bound:
-    return Bound(lambda t: (1.0 - t, math.inf), word)
-
-
-def higher_by(word: str) -> Bound:
-    return Bound(lambda t: (1.0 + t, math.inf), word)
-
-
-def same_size(word: str) -> Bound:
-    return Bound(lambda t: (1.0 / (1.0 + t), 1.0 + t), word)
-
-
-def order_of_magnitude() -> Bound:
-    return Bound(lambda t: (10.0 ** (1.0 - t), 10.0 ** (1.0 + t)), "almost")
+#: A part of samples that is not rare, as more than one in forty; a term decides what counts, if one does.
+rare = partial(Bound, lambda t: (RARE, math.inf))
+#: Of ratios, by a term.
+lower_by = partial(Bound, lambda t: (-math.inf, 1.0 - t))
+hardly_lower = partial(Bound, lambda t: (1.0 - t, math.inf))
+higher_by = partial(Bound, lambda t: (1.0 + t, math.inf))
+same_size = partial(Bound, lambda t: (1.0 / (1.0 + t), 1.0 + t))
+order_of_magnitude = partial(Bound, lambda t: (10.0 ** (1.0 - t), 10.0 ** (1.0 + t)), "almost")

@@ -18,13 +18,12 @@ parameters of the paper: on other data nothing is measured.
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -42,35 +41,7 @@ OF_THE_TEXT = "that of the text"
 #: The group whose events both have.
 ORDERED = "friction_linear_range"
 
-SCHEME = (
-    "Each sentence has one primary case, which its figure, its forces or its words fix; that case alone decides.",
-    "The sentence is supported, or not supported, if the number and its whole interval lie on one side of the bound; "
-    "otherwise the data cannot tell. What may be, and was not found, is not seen.",
-    "The interval is the 95 % confidence over packings, or for events of ordered slabs the range over what the text "
-    "leaves open or calls irrelevant: dashpots, time step, integrator, duration of the load ramp and displacements by "
-    "10⁻⁹ radii. A number of a single state has none.",
-    "Every other case says for what the sentence holds, fails or is open; so do other ways of applying gravity "
-    "and other initial lattices.",
-    "A star marks a verdict that changes if the threshold of a qualitative term is halved, or doubled to three "
-    "quarters at most.",
-)
-
 Kind = Literal["supported", "not supported", "cannot tell", "not seen", "not measured"]
-
-#: Every verdict and what it says.
-MEANINGS: dict[Kind, str] = {
-    "supported": "the sentence holds in its primary case",
-    "not supported": "it does not hold there",
-    "cannot tell": "the interval of the number straddles the bound",
-    "not seen": "the sentence says that something may be, and it was not found here",
-    "not measured": "no stored dataset decides it",
-}
-
-#: What a row is: only statements are counted.
-ROWS = {
-    "statement": "statements",
-    "check": "statements that can hardly fail",
-}
 
 
 class ClaimsError(GranularError):
@@ -104,9 +75,8 @@ class Claim:
     """A sentence of the paper, or of whoever ``source`` says, and the function that measures it.
 
     ``here`` is our sentence, with {0}, {1} for numbers of the primary case, {case|1} for those of another one and
-    {0:4} for
-    four digits. It is written for the verdict ``finds`` or for any; else only the numbers are said. ``modal`` marks a
-    sentence that says what may be.
+    {0:4} for four digits. It is written for the verdict ``finds`` or for any; else only the numbers are said. ``modal``
+    marks a sentence that says what may be. Of the rows a statement is counted, a check can hardly fail.
     """
 
     id: str
@@ -143,25 +113,19 @@ SLAB = {
 
 
 class Claims:
-    """The claims of a figure group, in the order in which they are declared; ``requires`` are the paper's
-    parameters.
+    """The claims of a figure group, in the order in which they are declared; ``requires`` are the paper's parameters.
+
+    ``common`` is said of all of them.
     """
 
-    def __init__(self, group: str, requires: Mapping[str, Any] | None = None) -> None:
-        self.group, self.requires, self.rows = group, requires or {}, list[Claim]()
+    def __init__(self, group: str, requires: Mapping[str, Any] | None = None, **common: Any) -> None:
+        self.group, self.requires, self.common, self.rows = group, requires or {}, common, list[Claim]()
 
     def __call__(
-        self,
-        id: str,
-        place: str,
-        *asks: Ask,
-        figures: Sequence[int] | None = None,
-        requires: Mapping[str, Any] | None = None,
-        **said: Any,
+        self, id: str, place: str, *asks: Ask, figures: Sequence[int] | None = None, requires: Any = None, **said: Any
     ) -> Callable[[Callable[[Data], Numbers]], Callable[[Data], Numbers]]:
-        """Declare a claim by the function below and its docstring: the sentence, or "As R3a." for that of another
-        claim of
-        the group, then Short, Here and Remark. Figures are those of the place; ``requires`` are further parameters.
+        """Declare a claim by the function below and its docstring: the sentence, or "As R3a." for that of another claim
+        of the group, then Short, Here and Remark. Figures are those of the place; ``requires`` are further parameters.
         """
         if figures is None:
             figures = [int(number) for number in re.findall(r"\d+", "".join(re.findall(r"Figs?\. (.*)", place)))]
@@ -171,9 +135,9 @@ class Claims:
             if other := re.fullmatch(r"As (\w+)\.", paper):
                 paper = next(row.paper for row in self.rows if row.id == other[1])
             parts = {name.lower(): text for name, _, text in (one.partition(": ") for one in texts)}
+            about: dict[str, Any] = {"group": self.group, "figures": figures, **self.common, **said, **parts}
             needed = {**self.requires, **(requires or {})}
-            about: dict[str, Any] = {"group": self.group, "figures": figures, "requires": needed, **said, **parts}
-            self.rows.append(Claim(id, place, paper, asks, function, **about))
+            self.rows.append(Claim(id, place, paper, asks, function, requires=needed, **about))
             return function
 
         return declare
@@ -198,19 +162,16 @@ class Data:
         needs(name in self.groups[group], f"data/{group}.nc holds no dataset {name}")
         return self.groups[group][name]
 
-    def value(self, group: str, name: str, over: Callable[..., Any] | None = None, **labels: Any) -> Quantity:
+    def value(self, group: str, name: str, over: Callable[..., Any] = np.asarray, **labels: Any) -> float:
         """One number, ``dataset.variable``, at the given labels; ``over`` reduces what dimensions are left."""
         dataset, _, variable = name.rpartition(".")
-        values = at(self.get(group, dataset), **labels)[variable].values
-        if over is not None:
-            values = np.asarray(over(values))
+        values = np.asarray(over(at(self.get(group, dataset), **labels)[variable].values))
         needs(values.size == 1, f"{name}: {values.size} numbers in place of one")
-        return Quantity.exact(values.item())
+        needs(np.isfinite(values).all(), f"{name}: no number is stored")
+        return float(values.item())
 
     def event(self, name: str, friction: float, table: str = "events") -> Quantity:
-        """The bracket of an event of the ordered slab. Without friction there is one equilibrium, whatever came
-        before.
-        """
+        """The bracket of an event of the ordered slab; without friction it is the same whatever came before."""
         group: str = ORDERED
         labels: dict[str, Any] = {"name": name, "friction": friction}
         if self.variant:
@@ -221,9 +182,15 @@ class Data:
         return self.bracket(group, table, **labels)
 
     def bracket(self, group: str, table: str, /, **labels: Any) -> Quantity:
-        """That of the event at the given labels in a dataset."""
-        found = at(self.get(group, table), **labels)
-        return Quantity.bracket(float(found["low"]), float(found["high"]))
+        """That of the first event at the given labels in a dataset."""
+        return self.brackets(group, table, **labels)[0]
+
+    def brackets(self, group: str, table: str, /, **labels: Any) -> list[Quantity]:
+        """Those of all events at the given labels; raises NotMeasured if there is none."""
+        events = self.get(group, table)
+        found = events.isel(_places(events, labels))
+        ends = zip(found["low"].values.tolist(), found["high"].values.tolist(), strict=True)
+        return [Quantity.bracket(*one) for one in ends]
 
     def protocol(
         self, measure: Callable[[Data], Quantity], from_rest: str = "", friction: float = 0.0, *, dashpots: bool = True
@@ -235,11 +202,7 @@ class Data:
         others = (one for one in self.variants("protocol") if dashpots or not one.startswith("dashpots"))
         found = [measure(self), *(measure(replace(self, variant=name)) for name in others)]
         if from_rest:
-            ramps = self.get(ROBUSTNESS, "events_from_rest")
-            there = (ramps["name"].values.astype(str) == from_rest) & np.isclose(ramps["friction"].values, friction)
-            needs(there.any(), f"robustness holds no {from_rest} from rest")
-            ends = zip(ramps["low"].values[there].tolist(), ramps["high"].values[there].tolist(), strict=True)
-            found += [Quantity.bracket(*one) for one in ends]
+            found += self.brackets(ROBUSTNESS, "events_from_rest", name=from_rest, friction=friction)
         return Quantity.over(found, "protocol", "range over the protocol")
 
     def variants(self, *kinds: str) -> list[str]:
@@ -251,24 +214,22 @@ class Data:
         return list(names)
 
     def elsewhere(self, *measures: Callable[[Data], Quantity]) -> Numbers:
-        """The same in slabs of other width and stiffness, and in other preparations, that have the events for it."""
-        changed = [(Case(name), replace(self, variant=name)) for name in self.variants("width", "stiffness")]
-        for case, data in [*changed, *_preparations(self)]:
+        """The same in slabs of other width and stiffness that have the events for it, and in other preparations, beside
+        smooth walls and with the paper's dashpots.
+        """
+        changed = {Case(name): replace(self, variant=name) for name in self.variants("width", "stiffness")}
+        if PREPARATION in self.groups:
+            events = self.get(PREPARATION, "events")
+            fixed = {"wall_friction": 0.0, "damping_ratio": float(events["damping_ratio"][0])}
+            ways = set(zip(events["gravity"].values.tolist(), events["ramp_time"].values.tolist(), strict=True))
+            for gravity, ramp in sorted(ways, key=lambda way: (way[0] != "slow", way[1])):
+                name = "first without friction" if gravity == "frictionless" else f"ramped over {ramp:g} sqrt(R/g)"
+                if gravity != "at-once":
+                    prepared = {"gravity": gravity, "ramp_time": ramp} | fixed
+                    changed[Case(f"gravity {name}", "gravity")] = replace(self, prepared=prepared)
+        for case, data in changed.items():
             with suppress(NotMeasured):  # not every event is looked for in every slab
                 yield case, *(measure(data) for measure in measures)
-
-
-def _preparations(data: Data) -> Iterator[tuple[Case, Data]]:
-    """Other preparations beside smooth walls, with the paper's dashpots; none without their summary."""
-    if PREPARATION not in data.groups:
-        return
-    events = data.get(PREPARATION, "events")
-    fixed = {"wall_friction": 0.0, "damping_ratio": float(events["damping_ratio"][0])}
-    others = events.isel(event=events["gravity"].values != "at-once")
-    ways = set(zip(others["gravity"].values.tolist(), others["ramp_time"].values.tolist(), strict=True))
-    for gravity, ramp in sorted(ways, key=lambda way: (way[0] != "slow", way[1])):
-        name = f"gravity ramped over {ramp:g} sqrt(R/g)" if gravity == "slow" else "gravity first without friction"
-        yield Case(name, "gravity"), replace(data, prepared={"gravity": gravity, "ramp_time": ramp} | fixed)
 
 
 def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
@@ -276,6 +237,11 @@ def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
 
     Labels may be of several coordinates along one dimension, or of a scalar, which must have that value.
     """
+    return dataset.isel({dimension: found[0] for dimension, found in _places(dataset, labels).items()})
+
+
+def _places(dataset: xr.Dataset, labels: Mapping[str, float | str]) -> dict[Hashable, list[int]]:
+    """Along each dimension, which entries have all of the labels."""
     masks: dict[Hashable, np.ndarray] = {}
     for name, label in labels.items():
         needs(name in dataset.variables, f"{name} is not stored")
@@ -287,7 +253,7 @@ def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
         (dimension,) = dataset[name].dims
         masks[dimension] = masks.get(dimension, True) & same
         needs(masks[dimension].any(), f"nothing is stored at {name} = {label}")
-    return dataset.isel({dimension: int(np.flatnonzero(mask)[0]) for dimension, mask in masks.items()})
+    return {dimension: np.flatnonzero(mask).tolist() for dimension, mask in masks.items()}
 
 
 def rise(values: Iterable[Quantity]) -> Quantity:
@@ -315,8 +281,6 @@ class Test:
     limits: Limits
     case: Case
 
-    __test__: ClassVar = False  # for pytest: no class of tests
-
     @property
     def outcome(self) -> Outcome:
         return self.limits.outcome(self.found)
@@ -341,7 +305,7 @@ class Verdict:
     claim: Claim
     tests: Sequence[Test] = ()
     missing: str = ""
-    star: Sequence[str] = ()
+    star: Sequence[str] = field(default_factory=list)
 
     @property
     def primary(self) -> list[Test]:
@@ -357,28 +321,26 @@ class Verdict:
 
     def others(self, prepared: str = "") -> dict[str, Outcome]:
         """The outcomes of the other cases, or of those that are ``prepared`` in another way."""
-        chosen = [
-            test for test in self.tests if test.case.prepared == prepared and test.case != Case(self.claim.primary)
-        ]
-        names = dict.fromkeys(test.case.name for test in chosen)
-        return {name: together(test.outcome for test in chosen if test.case.name == name) for name in names}
+        found: dict[str, list[Outcome]] = {}
+        for test in self.tests:
+            if test.case.prepared == prepared and test.case != Case(self.claim.primary):
+                found.setdefault(test.case.name, []).append(test.outcome)
+        return {name: together(outcomes) for name, outcomes in found.items()}
 
     @property
     def here(self) -> str:
-        """What was measured, in a sentence: the claim's own if it is written for this verdict, and all its
-        numbers are there.
+        """What was measured, in a sentence: the claim's own if it is written for this verdict, and all its numbers are
+        there.
         """
         if self.missing:
             return self.missing
-        by_case: dict[str, list[Test]] = {}
-        for test in self.tests:
-            by_case.setdefault(test.case.name, []).append(test)
 
         def number(field: re.Match[str]) -> str:
-            test = by_case[field["case"] or self.claim.primary][int(field["place"])]
+            of = [test for test in self.tests if test.case.name == (field["case"] or self.claim.primary)]
+            test = of[int(field["place"])]
             return text(test.found, test.ask.unit, int(field["digits"] or 0))
 
-        with suppress(KeyError, IndexError):
+        with suppress(IndexError):
             if self.claim.finds in ("any", self.verdict):
                 return _NUMBER.sub(number, self.claim.here)
         found = "; ".join(f"{test.ask.what}: {text(test.found, test.ask.unit)}" for test in self.primary)
@@ -392,36 +354,26 @@ class Verdict:
         return " ".join(f"{title}: {'; '.join(some)}." for title, some in named.items() if some)
 
 
-def _checked(claim: Claim, data: Data) -> None:
-    """Raises NotMeasured unless the data are those of the parameters that the sentence is about."""
-    if claim.requires:
-        needs(claim.group in data.groups, f"data/{claim.group}.nc is missing")
-    stored = data.parameters.get(claim.group, {})
-    for key, asked in claim.requires.items():
-        needs(key in stored, f"data/{claim.group}.nc does not say its {key}")
-        found = stored[key]
-        wanted = asked if isinstance(asked, (list, tuple)) else [asked]
-        there = found if isinstance(found, (list, tuple)) else [found]
-        same = all(any(_same(one, other) for other in there) for one in wanted)
-        needs(same, f"the sentence is about {key} = {asked}; data/{claim.group}.nc has {found}")
-
-
-def _same(one: Any, other: Any) -> bool:
-    numbers = isinstance(one, (int, float)) and isinstance(other, (int, float))
-    return math.isclose(one, other, rel_tol=1e-9) if numbers else one == other
-
-
 def tests(claim: Claim, data: Data) -> list[Test]:
-    """Every number of a claim against its bound. Raises NotMeasured, ClaimsError for another number of numbers."""
-    _checked(claim, data)
+    """Every number of a claim against its bound.
+
+    Raises NotMeasured, for data of other parameters than the sentence is about too, and ClaimsError for another number
+    of numbers.
+    """
+    for key, asked in claim.requires.items():
+        needs(claim.group in data.groups, f"data/{claim.group}.nc is missing")
+        stored = data.parameters.get(claim.group, {})
+        needs(key in stored, f"data/{claim.group}.nc does not say its {key}")
+        wanted, there = (of if isinstance(of, (list, tuple)) else [of] for of in (asked, stored[key]))
+        same = all(one in there for one in wanted)
+        needs(same, f"the sentence is about {key} = {asked}; data/{claim.group}.nc has {stored[key]}")
     limits = [ask.bound.limits(data.words) for ask in claim.asks]
     found = []
     with np.errstate(divide="ignore", invalid="ignore"):  # divisions by 0 give no number, which no quantity can be
         yielded = list(claim.measure(data))
     for one in yielded:
-        case, *numbers = one if isinstance(one, tuple) else ("", one)
-        if not isinstance(case, (str, Case)):
-            case, numbers = "", [case, *numbers]
+        row = one if isinstance(one, tuple) else (one,)
+        case, *numbers = row if isinstance(row[0], (str, Case)) else ("", *row)
         case = Case(case) if isinstance(case, str) else case
         if len(numbers) != len(claim.asks):
             raise ClaimsError(f"{claim.group}: {claim.id}: {len(numbers)} numbers for {len(claim.asks)} bounds")

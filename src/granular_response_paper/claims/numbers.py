@@ -9,9 +9,8 @@ from typing import Literal
 
 from granular_response.errors import GranularError
 
-#: What an interval means: none (one deterministic run); the event lies inside; 95 % confidence over packings;
-#: smallest to
-#: largest value over what the text leaves open in the protocol; smallest to largest of several measures or places.
+#: What an interval means: none (one deterministic run); the event lies inside; 95 % confidence over packings; smallest
+#: to largest value over what the text leaves open in the protocol; smallest to largest of several measures or places.
 Kind = Literal["none", "bracket", "confidence", "protocol", "range"]
 
 
@@ -50,8 +49,8 @@ class Quantity:
 
     @classmethod
     def bracket(cls, low: float, high: float) -> Quantity:
-        """An event above ``low`` and not above ``high``; ``high`` nan or inf means that it does not happen up
-        to ``low``. What was looked for from ``high`` on alone, above 0, has no number.
+        """An event above ``low`` and not above ``high``; ``high`` nan or inf means that it does not happen up to
+        ``low``. Where nothing is known below ``high``, a ``low`` of 0, it has no value.
         """
         if not math.isfinite(high):
             return cls(None, float(low), math.inf, "bracket")

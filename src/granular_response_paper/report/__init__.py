@@ -11,8 +11,7 @@ import io
 import json
 import os
 import re
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from collections.abc import Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -74,23 +73,6 @@ def write(root: Path = Path(), *, collection: Collection = PAPER) -> Path:
     return root / FIGURES / PAGE
 
 
-def fragments(root: Path, collection: Collection = PAPER) -> dict[str, Callable[[], str]]:
-    """The tables that documents include, by file name, and what makes each from the datasets below ``root``."""
-    data = root / "data"
-    if collection == PAPER:
-        return {
-            "readings.md": partial(_made, readings.markdown, data / "sensitivity.nc"),
-            "figures.md": lambda: against.markdown(data),
-            "results.md": lambda: results(table.read(root / table.OUTPUT)),
-        }
-    made = {group: group_member(group, "tables", "markdown", optional=True) for group in collection.groups}
-    return {f"{name}.md": partial(_made, table, data / f"{name}.nc") for name, table in made.items() if table}
-
-
-def _made(table: Callable[[dict[str, Any]], str], path: Path) -> str:
-    return table(store.read(path))
-
-
 def results(claims: Mapping[str, Any]) -> str:
     """The table of the notes: statements of the paper in short, what is found, the verdict, other preparations."""
     by_id = {row["id"]: row for row in claims["table"]}
@@ -104,19 +86,31 @@ def results(claims: Mapping[str, Any]) -> str:
 
 
 def write_fragments(folder: Path, root: Path = Path(), *, collection: Collection = PAPER) -> list[Path]:
-    """Write the tables that documents include into a folder; returns the paths.
+    """Write the tables that documents include into a folder, made from the datasets below ``root``; returns the paths.
 
     Raises StoreError for a dataset that cannot be read, ReportError if a parameter is not the paper's and nothing says
     why, OSError if a file cannot be written.
     """
+
+    def stored(group: str) -> dict[str, Any]:
+        return store.read(root / "data" / f"{group}.nc")
+
     try:
-        made = {folder / name: lines() for name, lines in fragments(root, collection).items()}
+        if collection == PAPER:
+            made = {
+                "readings": readings.markdown(stored("sensitivity")),
+                "figures": against.markdown(root / "data"),
+                "results": results(table.read(root / table.OUTPUT)),
+            }
+        else:
+            of = {group: group_member(group, "tables", "markdown", optional=True) for group in collection.groups}
+            made = {group: markdown(stored(group)) for group, markdown in of.items() if markdown}
     except ValueError as error:
         raise ReportError(str(error)) from None
     folder.mkdir(parents=True, exist_ok=True)
-    for path, text in made.items():
-        atomic.write_bytes(path, f"{text}\n".encode())
-    return list(made)
+    for name, text in made.items():
+        atomic.write_bytes(folder / f"{name}.md", f"{text}\n".encode())
+    return [folder / f"{name}.md" for name in made]
 
 
 def files(root: Path, collection: Collection = PAPER) -> dict[str, bytes]:

@@ -164,15 +164,6 @@ def passed(force: FloatArray, fits: FloatArray, tolerance: float = 0.0) -> tuple
     return np.where(between, inside, np.where(last < 0, np.nan, force[k])), kind
 
 
-def crossover(force: FloatArray, shapes: FloatArray, tolerance: float = 0.0) -> tuple[float, int]:
-    """Crossover force of a path, and whether it was FOUND or is a bound (BELOW, ABOVE).
-
-    ``shapes`` (k,) may be nan from some force on; nan everywhere gives nan and ABOVE.
-    """
-    value, kind = passed(force, grown(shapes), tolerance)
-    return float(value), int(kind)
-
-
 def weights(realizations: int, draws: int, seed: int) -> FloatArray:
     """(draws, realizations) how often each is drawn, with replacement; alike for cases of as many realizations."""
     return counted(np.random.default_rng(seed).integers(0, realizations, (draws, realizations)), realizations)
@@ -270,8 +261,8 @@ def cross(ensemble: Ensemble, *, number: int, draws: int, seed: int, others: Seq
     def at(limit: float) -> Crossover:
         each, kinds = passed(ensemble.force, fits, limit)
         found = np.where(kinds == FOUND, each, np.where(kinds == BELOW, -np.inf, np.inf))  # bounds beyond every force
-        force, kind = crossover(ensemble.force, shapes, limit)
-        return Crossover(force, np.int8(kind), quantiles(found), found)
+        force, kind = passed(ensemble.force, grown(shapes), limit)
+        return Crossover(float(force), np.int8(kind), quantiles(found), found)
 
     used = ensemble.force[np.isfinite(shapes)]
     seen = seen_in_samples(ensemble, number, seed=seed)

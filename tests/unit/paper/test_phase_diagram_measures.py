@@ -25,7 +25,6 @@ from granular_response_paper.survey.crossover import (
     Ensemble,
     censored_medians,
     cross,
-    crossover,
     folded,
     grown,
     lean,
@@ -39,6 +38,11 @@ from granular_response_paper.survey.crossover import (
 )
 
 X = np.arange(0.0, 30.5, 0.5)
+
+
+def crossover(force, shapes, tolerance=0.0):
+    """Of one path."""
+    return passed(force, grown(shapes), tolerance)
 
 
 def bumps(distance: float) -> np.ndarray:

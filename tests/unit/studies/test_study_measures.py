@@ -9,7 +9,7 @@ from granular_response.scene import SlabPacking
 from granular_response.theory.lattice import poisson_ratio
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab
-from granular_response_paper.groups.friction_fields.simulate.stress import axis_measures
+from granular_response_paper.groups.friction_fields.simulate import axis_measures
 from granular_response_paper.harmonic import harmonic_lattice
 
 

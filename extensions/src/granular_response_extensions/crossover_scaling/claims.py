@@ -26,10 +26,8 @@ def _exponent(data: Data, series: str, event: str) -> Quantity:
     )
 
 
-@claim(
-    "B8", "beyond the paper, IV.B, VIII", Ask("exponent of the crossover force in the layers", more_than(0.0)),
-    primary=SERIES["walls"]
-)  # fmt: skip
+@claim("B8", "beyond the paper, IV.B, VIII", Ask("exponent of the crossover force in the layers", more_than(0.0)),
+       primary=SERIES["walls"])  # fmt: skip
 def grows(data: Data) -> Numbers:
     """For identical external loads, very deep systems should exhibit a single peaked response whereas relatively
     shallow ones, as studied in some experiments (Sec. II B), should exhibit two peaks.
@@ -40,10 +38,8 @@ def grows(data: Data) -> Numbers:
         yield name, _exponent(data, series, "crossover")
 
 
-@claim(
-    "B9", "beyond the paper, IV.C", Ask("exponent of the force in the layers", within("nearly", 2.0)),
-    primary=f"open region at the floor, {SERIES['walls']}", source="hypothesis", finds="not supported"
-)  # fmt: skip
+@claim("B9", "beyond the paper, IV.C", Ask("exponent of the force in the layers", within("nearly", 2.0)),
+       primary=f"open region at the floor, {SERIES['walls']}", source="hypothesis", finds="not supported")  # fmt: skip
 def as_the_weight(data: Data) -> Numbers:
     """Therefore, the opening of contacts is due to a "competition" between the compression due to gravity and the
     tensile (excess) forces due to the applied force, and is therefore determined directly by the stress, rather than

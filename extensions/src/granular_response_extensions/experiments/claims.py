@@ -1,6 +1,4 @@
-"""Claims B19 to B26, beyond the paper: the experiments that it reviews, on packings like theirs (Secs. II.B and
-V.D).
-"""
+"""Claims B19 to B26, beyond the paper: the experiments that it reviews, on packings alike (Secs. II.B and V.D)."""
 
 from __future__ import annotations
 
@@ -33,10 +31,8 @@ def _mean(data: Data, name: str, packing: str, force: float, angle: float = 90.0
     return Quantity(value, low, high, "confidence", "bootstrap of the mean", packings)
 
 
-@claim(
-    "B19", "beyond the paper, II.B", Ask("packings that hold the force", at_least("marked"), "part"),
-    primary="nearly equal", source="hypothesis"
-)  # fmt: skip
+@claim("B19", "beyond the paper, II.B", Ask("packings that hold the force", at_least("marked"), "part"),
+       primary="nearly equal", source="hypothesis")  # fmt: skip
 def holds(data: Data) -> Numbers:
     """Poured packings hold 150 times the particle weight on one disk of their top.
     Short: Packings like those of the experiment hold its force
@@ -49,11 +45,9 @@ def holds(data: Data) -> Numbers:
         yield packing, part_of(one["moved"].dropna("realization") <= one.attrs["largest_move"])
 
 
-@claim(
-    "B20", "beyond the paper, II.B",
-    Ask("direction of the largest force beside the vertical, degrees", within("nearly", 60.0)),
-    Ask("force at 60 degrees per that at 75", higher_by("marked")), primary="direction", figures=[15]
-)  # fmt: skip
+@claim("B20", "beyond the paper, II.B",
+       Ask("direction of the largest force beside the vertical, degrees", within("nearly", 60.0)),
+       Ask("force at 60 degrees per that at 75", higher_by("marked")), primary="direction", figures=[15])  # fmt: skip
 def chains(data: Data) -> Numbers:
     """These profiles exhibited strong dependence on the particle shapes: the ordered lattice of monodisperse disks
     exhibited two prominent "force chains" along the lattice directions (60° with respect to the horizontal), a result
@@ -68,11 +62,9 @@ def chains(data: Data) -> Numbers:
     yield "prominence", None, _mean(data, "contrast", "nearly equal", 150.0)
 
 
-@claim(
-    "B21", "beyond the paper, II.B",
-    Ask("force straight below the load per that at 75 degrees", higher_by("visible")), figures=[15],
-    finds="any"
-)  # fmt: skip
+@claim("B21", "beyond the paper, II.B",
+       Ask("force straight below the load per that at 75 degrees", higher_by("visible")), figures=[15],
+       finds="any")  # fmt: skip
 def vertical(data: Data) -> Numbers:
     """As B20.
     Short: A vertical force chain can be observed as well
@@ -85,10 +77,9 @@ def _excess(data: Data, packing: str, force: float) -> Quantity:
     return replace(found, value=(found.value or math.nan) - 1.0, low=found.low - 1.0, high=found.high - 1.0)
 
 
-@claim(
-    "B22", "beyond the paper, II.B",
-    Ask("excess force at 60 degrees per that of nearly equal disks", lower_by("marked")), primary="15 mg"
-)  # fmt: skip
+@claim("B22", "beyond the paper, II.B",
+       Ask("excess force at 60 degrees per that of nearly equal disks", lower_by("marked")),
+       primary="15 mg")  # fmt: skip
 def fading(data: Data) -> Numbers:
     """As the disorder is increased, the force chains "fade out", and for the random configuration of pentagonal
     particles in 2D the measured force profile possessed a single peak, the width of which varied linearly in the depth;
@@ -102,12 +93,9 @@ def fading(data: Data) -> Numbers:
         yield f"{force:g} mg", two.per(one)
 
 
-@claim(
-    "B23", "beyond the paper, II.B", Ask("exponent of the width, half maximum", about(1.0)),
-    Ask("exponent of the width, half of the force", about(1.0)),
-    Ask("dip at x = 0 per largest", at_most("few per cent"), "%"),
-    finds="any"
-)  # fmt: skip
+@claim("B23", "beyond the paper, II.B", Ask("exponent of the width, half maximum", about(1.0)),
+       Ask("exponent of the width, half of the force", about(1.0)),
+       Ask("dip at x = 0 per largest", at_most("few per cent"), "%"), finds="any")  # fmt: skip
 def widens(data: Data) -> Numbers:
     """As B22.
     Short: A disordered packing has one peak whose width grows linearly
@@ -117,10 +105,8 @@ def widens(data: Data) -> Numbers:
     yield *powers, _mean(data, "dip", "deep", 3.0)
 
 
-@claim(
-    "B24", "beyond the paper, II.B", Ask("exponent of the width in slabs of about ten diameters", about(0.5)),
-    primary="bidisperse, half maximum", modal=True, finds="not seen"
-)  # fmt: skip
+@claim("B24", "beyond the paper, II.B", Ask("exponent of the width in slabs of about ten diameters", about(0.5)),
+       primary="bidisperse, half maximum", modal=True, finds="not seen")  # fmt: skip
 def parabolic(data: Data) -> Numbers:
     """In this case, the response appeared to exhibit a parabolic envelope.
     Short: The response of a small slab has a parabolic envelope
@@ -130,11 +116,9 @@ def parabolic(data: Data) -> Numbers:
         yield f"{packing}, {text}", _mean(data, "power", packing, 3.0, definition=name)
 
 
-@claim(
-    "B25", "beyond the paper, II.B",
-    Ask("difference of the mean stress per load under 3 and 1.5 mg per largest stress", at_most("holds"), "%"),
-    finds="any"
-)  # fmt: skip
+@claim("B25", "beyond the paper, II.B",
+       Ask("difference of the mean stress per load under 3 and 1.5 mg per largest stress", at_most("holds"), "%"),
+       finds="any")  # fmt: skip
 def linear_force(data: Data) -> Numbers:
     """In this case the applied force was rather small (a few particle weights), and the response was verified to be
     linear in the applied force.
@@ -148,10 +132,8 @@ def linear_force(data: Data) -> Numbers:
     yield Quantity(None, found.low, found.high, "range", "range over depths", packings)
 
 
-@claim(
-    "B26", "beyond the paper, V.D", Ask("direction of the largest mean force, degrees", between(22.5, 52.5)),
-    Ask("the same under 30 degrees", between(15.0, 45.0)), modal=True, finds="not seen"
-)  # fmt: skip
+@claim("B26", "beyond the paper, V.D", Ask("direction of the largest mean force, degrees", between(22.5, 52.5)),
+       Ask("the same under 30 degrees", between(15.0, 45.0)), modal=True, finds="not seen")  # fmt: skip
 def oblique(data: Data) -> Numbers:
     """We have also been able to reproduce [86] force chains along non-lattice directions observed in experiments with
     an applied force at oblique angles [22], using similar simulations of frictional particles (with some

@@ -12,10 +12,8 @@ from granular_response_paper.claims.numbers import Quantity
 claim = Claims("hysteresis")
 
 
-@claim(
-    "B2", "beyond the paper, I and VII", Ask("reversible range per linear one", about(1.0)),
-    primary="polydispersity 0, friction 0.2", source="hypothesis", finds="not supported"
-)  # fmt: skip
+@claim("B2", "beyond the paper, I and VII", Ask("reversible range per linear one", about(1.0)),
+       primary="polydispersity 0, friction 0.2", source="hypothesis", finds="not supported")  # fmt: skip
 def ranges(data: Data) -> Numbers:
     """What is nonlinear is irreversible, and what is linear is reversible.
     Short: What is nonlinear is irreversible, and the reverse
@@ -30,10 +28,9 @@ def ranges(data: Data) -> Numbers:
             yield name, over_brackets([reversible.per(linear) for linear, reversible in pairs])
 
 
-@claim(
-    "B3", "beyond the paper, IV", Ask("part of the work dissipated again", at_most("visible"), "part"),
-    Ask("change of the response", at_most("visible"), "part"), primary="polydispersity 0, friction 0", modal=True
-)  # fmt: skip
+@claim("B3", "beyond the paper, IV", Ask("part of the work dissipated again", at_most("visible"), "part"),
+       Ask("change of the response", at_most("visible"), "part"), primary="polydispersity 0, friction 0",
+       modal=True)  # fmt: skip
 def repeated(data: Data) -> Numbers:
     """If the particle positions do not change significantly, so that only the contact network is modified in response
     to the applied stress, the behavior can possibly be modeled as "incrementally elastic".

@@ -15,10 +15,8 @@ claim = Claims("influence")
 CASES = ((0.0, 0.0), (0.0, 0.2), (0.01, 0.2), (0.1, 0.2), (0.25, 0.2), (0.1, 0.0))
 
 
-@claim(
-    "B1", "beyond the paper, VI", Ask("exponent of the decay with the distance", within("quite well", 2.0)),
-    primary="polydispersity 0, friction 0", source="hypothesis"
-)  # fmt: skip
+@claim("B1", "beyond the paper, VI", Ask("exponent of the decay with the distance", within("quite well", 2.0)),
+       primary="polydispersity 0, friction 0", source="hypothesis")  # fmt: skip
 def decays(data: Data) -> Numbers:
     """This explanation is similar to St. Venant's principle (see, e.g., [95]), which states (for a linear elastic
     system) that the difference in stresses and strains in the interior of an elastic body due to two separate but

@@ -22,10 +22,9 @@ def _described(data: Data, solid: str) -> Numbers:
         yield name, over_realizations(one["difference"].sel(solid=solid).values, np.mean)
 
 
-@claim(
-    "B4", "beyond the paper, I",
-    Ask("largest difference to the elastic slab of the measured moduli", at_most("nearly"), "%"), primary=OWN
-)  # fmt: skip
+@claim("B4", "beyond the paper, I",
+       Ask("largest difference to the elastic slab of the measured moduli", at_most("nearly"), "%"),
+       primary=OWN)  # fmt: skip
 def elastic(data: Data) -> Numbers:
     """More specifically, large systems subject to "small" applied forces (which is likely to be the case in many
     engineering applications), can be described by isotropic elasticity except in the near vicinity of the point of
@@ -38,10 +37,8 @@ def elastic(data: Data) -> Numbers:
     yield from _described(data, "free")
 
 
-@claim(
-    "B5", "beyond the paper, I", Ask("largest difference to the nearest isotropic slab", at_most("nearly"), "%"),
-    primary=OWN
-)  # fmt: skip
+@claim("B5", "beyond the paper, I", Ask("largest difference to the nearest isotropic slab", at_most("nearly"), "%"),
+       primary=OWN)  # fmt: skip
 def isotropic(data: Data) -> Numbers:
     """As B4.
     Short: Large systems under small forces are isotropic
@@ -59,10 +56,8 @@ def _slabs(data: Data) -> dict[str, xr.Dataset]:
     return {f"friction {float(mu):g}": found.isel(slab=k, step=known[k]) for k, mu in enumerate(found["friction"])}
 
 
-@claim(
-    "B27", "beyond the paper, V.C", Ask("force at which r < 0 reaches the floor per crossover force", about(1.0)),
-    primary="friction 0"
-)  # fmt: skip
+@claim("B27", "beyond the paper, V.C", Ask("force at which r < 0 reaches the floor per crossover force", about(1.0)),
+       primary="friction 0")  # fmt: skip
 def reach(data: Data) -> Numbers:
     """They found a criterion for the elastic moduli at which a crossover occurs from a single peaked response to a
     double peaked one [36]: two peaks are expected for r ≡ (1/bd)[ab − c(d + c)] < 0.
@@ -79,11 +74,9 @@ def reach(data: Data) -> Numbers:
             yield name, Quantity(float(ends.mean()), float(ends.min()), float(ends.max()), "range").per(crossover)
 
 
-@claim(
-    "B28", "beyond the paper, IV and VIII",
-    Ask("difference of the incremental response from the elastic slab per largest response", at_most("nearly"), "%"),
-    primary="friction 0.2, up to the crossover, averages over 2 R", modal=True, finds="not seen"
-)  # fmt: skip
+@claim("B28", "beyond the paper, IV and VIII",
+       Ask("difference of the incremental response from the elastic slab per largest response", at_most("nearly"), "%"),
+       primary="friction 0.2, up to the crossover, averages over 2 R", modal=True, finds="not seen")  # fmt: skip
 def incrementally_elastic(data: Data) -> Numbers:
     """If the particle positions do not change significantly, so that only the contact network is modified in response
     to the applied stress, the behavior can possibly be modeled as "incrementally elastic".
@@ -105,10 +98,8 @@ def incrementally_elastic(data: Data) -> Numbers:
                 )
 
 
-@claim(
-    "B29", "beyond the paper, IV and VIII", Ask("forces with another number of peaks", at_most(0.0), "count"),
-    primary="friction 0", modal=True, finds="not seen"
-)  # fmt: skip
+@claim("B29", "beyond the paper, IV and VIII", Ask("forces with another number of peaks", at_most(0.0), "count"),
+       primary="friction 0", modal=True, finds="not seen")  # fmt: skip
 def peaks(data: Data) -> Numbers:
     """As B28.
     Short: The behavior can possibly be modeled as incrementally elastic

@@ -43,12 +43,6 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
     )
 
 
-def _mean_and_spread(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
-    """Over realizations; no spread of fewer than two."""
-    count = values.notnull().sum("realization")
-    return values.mean("realization").values, values.std("realization", ddof=1).where(count > 1, 0.0).values
-
-
 def _findings(datasets: Datasets) -> dict[str, str]:
     """How far the response is off the slab with the measured moduli, and whether r is negative below the load."""
     data, slabs, off = datasets["packings"], datasets["slabs"], []
@@ -86,7 +80,8 @@ def _responses(data: xr.Dataset) -> Figure:
     place, texts = data["place"].values, []
     for case, ((name, _), axes) in enumerate(zip(cases, panels.flat, strict=False)):
         one = data.isel(case=case, size=int(np.nanargmax(data["layers"].values[case])), smoothing=0)
-        mean, spread = _mean_and_spread(one["response"])
+        mean = one["response"].mean("realization").values
+        spread = one["response"].std("realization", ddof=1).fillna(0.0).values  # none of a single one
         banded(axes, place, mean, (mean - spread, mean + spread), style.line(0), label="packings")
         for solid, look, label in (
             ("free", {"color": style.BLACK, "linestyle": (0, (4, 2))}, "slab with the measured moduli"),

@@ -21,11 +21,9 @@ def _mean(data: Data, name: str, state: str, delta: float, friction: float) -> Q
     return over_realizations(study[name].values, np.mean)
 
 
-@claim(
-    "B11", "beyond the paper, VI",
-    Ask("coefficient of variation of the excess of normal forces", within("nearly", 1.0)),
-    primary="rest, δ = 0.01, friction 0.2", source="literature", finds="not supported"
-)  # fmt: skip
+@claim("B11", "beyond the paper, VI",
+       Ask("coefficient of variation of the excess of normal forces", within("nearly", 1.0)),
+       primary="rest, δ = 0.01, friction 0.2", source="literature", finds="not supported")  # fmt: skip
 def exponential(data: Data) -> Numbers:
     """Normal forces above their mean are distributed exponentially, as in granular packings under pressure.
     Short: Normal forces above their mean are distributed exponentially
@@ -38,11 +36,9 @@ def exponential(data: Data) -> Numbers:
         yield f"{state}, δ = {delta:g}, friction {mu:g}", _mean(data, "tail_variation", state, delta, mu)
 
 
-@claim(
-    "B12", "beyond the paper, VI", Ask("contacts per disk, friction 0", within("nearly", 4.0)),
-    Ask("contacts per disk, friction 1", within("nearly", 3.0)),
-    primary="δ = 0.01", source="literature", finds="not supported"
-)  # fmt: skip
+@claim("B12", "beyond the paper, VI", Ask("contacts per disk, friction 0", within("nearly", 4.0)),
+       Ask("contacts per disk, friction 1", within("nearly", 3.0)), primary="δ = 0.01", source="literature",
+       finds="not supported")  # fmt: skip
 def isostatic(data: Data) -> Numbers:
     """Packings have the isostatic 4 contacts a disk without friction, and nearly the isostatic 3 at large friction.
     Short: z is 4 without friction and nearly 3 at large friction
@@ -52,10 +48,8 @@ def isostatic(data: Data) -> Numbers:
         yield f"δ = {delta:g}", *(_mean(data, "coordination_number", "rest", delta, mu) for mu in (0.0, 1.0))
 
 
-@claim(
-    "B13", "beyond the paper, VI", Ask("force components beyond equations, per equation", at_most("nearly"), "%"),
-    primary="δ = 0.01, friction 0.2", source="literature", finds="not supported"
-)  # fmt: skip
+@claim("B13", "beyond the paper, VI", Ask("force components beyond equations, per equation", at_most("nearly"), "%"),
+       primary="δ = 0.01, friction 0.2", source="literature", finds="not supported")  # fmt: skip
 def generalized(data: Data) -> Numbers:
     """Packings with friction are isostatic once fully mobilized contacts are counted (generalized isostaticity).
     Short: With mobilized contacts counted, packings are isostatic

@@ -9,7 +9,6 @@ from scipy.stats import spearmanr
 
 from granular_response_paper.claims.bounds import at_most, within
 from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers
-from granular_response_paper.claims.numbers import needs
 from granular_response_paper.records import alike
 
 claim = Claims("preparation")
@@ -19,12 +18,10 @@ FEWEST = 4
 EVENTS = {"linear_range": "end of the linear range", "first_opening": "first opening", "crossover": "two peaks"}
 
 
-@claim(
-    "B18", "beyond the paper, V", Ask("rank correlation", at_most("nearly", plus=-1.0)),
-    Ask("largest per smallest force without mobilized contacts", within("similar")),
-    primary="end of the linear range, contacts within 1% of the limit, friction 0.2",
-    source="hypothesis", finds="not supported"
-)  # fmt: skip
+@claim("B18", "beyond the paper, V", Ask("rank correlation", at_most("nearly", plus=-1.0)),
+       Ask("largest per smallest force without mobilized contacts", within("similar")),
+       primary="end of the linear range, contacts within 1% of the limit, friction 0.2", source="hypothesis",
+       finds="not supported")  # fmt: skip
 def mobilized(data: Data) -> Numbers:
     """The fraction of fully mobilized contacts in the initial equilibrium determines the response.
     Short: Fully mobilized contacts in the initial equilibrium decide the response
@@ -42,4 +39,3 @@ def mobilized(data: Data) -> Numbers:
             where = f"friction {mu:g}{', rough walls' if wall else ''}"
             name = f"{text}, contacts within {margin:.0%} of the limit, {where}"
             yield name, spearmanr(part, force).statistic, free.max() / free.min()
-    needs(len(study["case"]), "mobilized holds no ordered slabs")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from granular_response_paper.claims.bootstrap import DRAWS, of_draws
-from granular_response_paper.claims.bounds import at_least, at_most, less_than, more_than
-from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
-from granular_response_paper.claims.numbers import needs
+from ...claims.bootstrap import DRAWS, of_draws
+from ...claims.bounds import at_least, at_most, less_than, more_than
+from ...claims.claim import SLAB, Ask, Claims, Data, Numbers, at
+from ...claims.numbers import needs
 
 GROUP = "numerics"
 claim = Claims(GROUP, {**SLAB, "force": 15.0, "friction": 0.2, "frictions": [0.0, 0.2]})
@@ -22,11 +22,9 @@ def _stopped(data: Data, energy: float, friction: float, *errors: str) -> float:
     return max(float(found[name]) for name in errors)
 
 
-@claim(
-    "N1", "III.C",
-    Ask("largest error of a floor force, at rest and under load, per largest force", at_most(0.01), "%"),
-    Ask("error of the response with an energy of 1e-9", more_than(0.01), "%"), primary="friction 0.2"
-)  # fmt: skip
+@claim("N1", "III.C",
+       Ask("largest error of a floor force, at rest and under load, per largest force", at_most(0.01), "%"),
+       Ask("error of the response with an energy of 1e-9", more_than(0.01), "%"), primary="friction 0.2")  # fmt: skip
 def accurate(data: Data) -> Numbers:
     """We found that in order to obtain an accuracy of less than 1% for the forces on the floor in a given realization,
     which are used here to define the response of the system to a localized force, the system has to be relaxed to a
@@ -48,11 +46,9 @@ def accurate(data: Data) -> Numbers:
         yield f"response, friction {mu:g}, 1e-11", None, _stopped(data, 1e-11, mu, "response_error")
 
 
-@claim(
-    "N3", "III.C", Ask("steps with a fixed network", at_least(300.0), "count"),
-    Ask("sliding contacts", at_most(0.0), "count"), Ask("disks with fewer than two contacts", at_most(0.0), "count"),
-    Ask("mean acceleration in g", less_than(1.0e-5)), primary="stop when the energy stays small"
-)  # fmt: skip
+@claim("N3", "III.C", Ask("steps with a fixed network", at_least(300.0), "count"),
+       Ask("sliding contacts", at_most(0.0), "count"), Ask("disks with fewer than two contacts", at_most(0.0), "count"),
+       Ask("mean acceleration in g", less_than(1.0e-5)), primary="stop when the energy stays small")  # fmt: skip
 def criteria(data: Data) -> Numbers:
     """We verified that several other criteria for static equilibrium (see [78]) were satisfied: the contact network was
     fixed for at least several hundred time steps (and each particle had at least two contacts), there were no sliding
@@ -90,10 +86,8 @@ def gear(data: Data) -> Numbers:
     yield data.value(GROUP, "integrators.difference", integrator="gear")
 
 
-@claim(
-    "N6", "III.B", Ask("time to rest at half of critical per the shortest", at_most("nearly", plus=1.0)),
-    primary="the paper's integrator and step"
-)  # fmt: skip
+@claim("N6", "III.B", Ask("time to rest at half of critical per the shortest", at_most("nearly", plus=1.0)),
+       primary="the paper's integrator and step")  # fmt: skip
 def damping(data: Data) -> Numbers:
     """This value was found to produce the fastest relaxation of the system towards static equilibrium and is irrelevant
     in the state of mechanical equilibrium itself.

@@ -1,9 +1,9 @@
 """Claims on disordered slabs (abstract, Secs. VI to VIII), by the survey's one definition of two peaks.
 
 The text starts from a lattice with twice the mean radius as its constant, in which disks of unequal size overlap.
-Packings
-from it have more contacts than the paper prints (claim D7a), and those of a start in which the largest disks touch have
-its number. That start is primary in every claim here; the literal one and those between and beyond are others.
+Packings from it have more contacts than the paper prints (claim D7a), and those of a start in which the largest disks
+touch have its number. That start is primary in every claim here; the literal one and those between and beyond are
+others.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import combinations, groupby, pairwise, product
+from itertools import combinations, pairwise, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,22 +19,15 @@ import xarray as xr
 
 from granular_response.scene.lattice import SlabPacking
 from granular_response.state import FloatArray
-from granular_response_paper.claims.bootstrap import LEVELS, of_draws, over_brackets, over_realizations, part_of
-from granular_response_paper.claims.bounds import (
-    TOLERANCES,
-    Limits,
-    at_least,
-    at_most,
-    less_than,
-    more_than,
-    rare,
-)  # fmt: skip
-from granular_response_paper.claims.claim import OF_THE_TEXT, Ask, Case, Claims, Data, Numbers, at
-from granular_response_paper.claims.numbers import Quantity, needs
-from granular_response_paper.survey.crossover import ABOVE, BELOW, FOUND, counted
+
+from ...claims.bootstrap import LEVELS, of_draws, over_brackets, over_realizations, part_of
+from ...claims.bounds import TOLERANCES, Limits, at_least, at_most, less_than, more_than, rare
+from ...claims.claim import OF_THE_TEXT, Ask, Case, Claims, Data, Numbers, at
+from ...claims.numbers import Quantity, needs
+from ...survey.crossover import ABOVE, BELOW, FOUND, counted
 
 GROUP = "phase_diagram"
-claim = Claims(GROUP, {"widths": [3.0, 6.0], "linear_width": 3.0, "numbers": [5, 15]})
+claim = Claims(GROUP, {"widths": [3.0, 6.0], "linear_width": 3.0, "numbers": [5, 15]}, disorder=True)
 
 #: The initial lattice of this project, and the literal one.
 USUAL, LITERAL = "touching-largest", "2.0"
@@ -70,11 +63,6 @@ class Slab(NamedTuple):
         """The one without disorder."""
         return self._replace(polydispersity=0.0, start=USUAL)
 
-    @property
-    def usual(self) -> bool:
-        """Whether it is prepared as in the primary cases."""
-        return self.start == USUAL and not self.ramp
-
     def case(self, name: str = "polydispersity {0:g}", further: str = "") -> Case:
         """Its name, with its initial lattice and its gravity if they are not the usual ones."""
         title = "" if self.start == USUAL else f"lattice constant {self.start}"
@@ -101,9 +89,12 @@ def _by_start(data: Data, name: str, *frictions: float) -> Iterator[list[Slab]]:
             yield wanted
 
 
-def _prepared(slab: Slab) -> tuple[Any, ...]:
-    """By which preparations are told apart, the usual one first."""
-    return (slab.start != USUAL, *slab[1:3])
+def _alike(slabs: Sequence[Slab], *names: str) -> list[list[Slab]]:
+    """Cases with the same values of these, in the order of the first of each."""
+    found: dict[tuple[Any, ...], list[Slab]] = {}
+    for slab in slabs:
+        found.setdefault(tuple(getattr(slab, name) for name in names), []).append(slab)
+    return list(found.values())
 
 
 def _with_interval(case: xr.Dataset, name: str, method: str = BOOTSTRAP) -> Quantity:
@@ -112,11 +103,9 @@ def _with_interval(case: xr.Dataset, name: str, method: str = BOOTSTRAP) -> Quan
     return Quantity(float(case[name]), low, high, "confidence", method, int(case["realizations"]))
 
 
-@claim(
-    "D1", "VI, Fig. 19", Ask("dip at friction 0, 97.5 % quantile of means of 15 packings", at_least("marked"), "%"),
-    Ask("dip at friction 0.2, 2.5 % quantile of means of 15 packings", at_most("visible"), "%"), disorder=True,
-    finds="any"
-)  # fmt: skip
+@claim("D1", "VI, Fig. 19", Ask("dip at friction 0, 97.5 % quantile of means of 15 packings", at_least("marked"), "%"),
+       Ask("dip at friction 0.2, 2.5 % quantile of means of 15 packings", at_most("visible"), "%"),
+       finds="any")  # fmt: skip
 def two_peaks_or_one(data: Data) -> Numbers:
     """As in the ordered case, the response is very different: there are two very distinct peaks in the frictionless
     case, but one peak in the frictional case.
@@ -187,21 +176,18 @@ def trend(line: Sequence[Crossover]) -> Quantity:
     return of_draws(np.median(up - down), ends, "Kendall's tau of the draws", samples, "inverted_cdf")
 
 
-def _order(line: Sequence[Crossover]) -> tuple[Quantity, int]:
-    """How crossover forces rise along a line, and the steps against it that are clear of their intervals.
-
-    Those with two peaks at every force are below all others and of no order among themselves.
-    """
-    rest = [one for one in line if one.kind != BELOW]
-    steps = [after.per(before) for before, after in pairwise(line) if after.comparable(before)]
-    return trend(rest if len(rest) > 1 else line), sum(step.high < 1.0 for step in steps)
-
-
 def _lines(data: Data, slabs: Sequence[Slab], name: str) -> Numbers:
-    """The order along a line of cases by the crossovers of the mean, and by those of the median packings."""
-    for statistic, further in {"crossovers": "", "medians": "median packings"}.items():
-        if len(slabs) > 1:
-            yield slabs[0].case(name, further), *_order([crossover(data, slab, statistic) for slab in slabs])
+    """How crossover forces rise along a line of cases, and how many steps against it are clear of their intervals.
+
+    By the mean, and by the median packings. Cases with two peaks at every force are below all others and of no order
+    among themselves.
+    """
+    for statistic, further in (("crossovers", ""), ("medians", "median packings")) if len(slabs) > 1 else ():
+        line = [crossover(data, slab, statistic) for slab in slabs]
+        steps = [after.per(before) for before, after in pairwise(line) if after.comparable(before)]
+        rest = [one for one in line if one.kind != BELOW]
+        against = sum(step.high < 1.0 for step in steps)
+        yield slabs[0].case(name, further), trend(rest if len(rest) > 1 else line), against
 
 
 ORDER = (
@@ -210,7 +196,7 @@ ORDER = (
 )
 
 
-@claim("D3a", "VI.A, Figs. 21, 22", *ORDER, primary="polydispersity 0.01", disorder=True)
+@claim("D3a", "VI.A, Figs. 21, 22", *ORDER, primary="polydispersity 0.01")
 def rises_with_friction(data: Data) -> Numbers:
     """The larger the coefficient of friction, the larger the applied force at which the crossover from a single peaked
     to a double peaked response occurs, much like in ordered systems (Sec. V A.
@@ -218,11 +204,11 @@ def rises_with_friction(data: Data) -> Numbers:
     Here: At polydispersity 0.01 Kendall's τ of the crossover force with friction is {0} (1: it always rises); at 0.1 it
     is {polydispersity 0.1|0} and at 0.25 {polydispersity 0.25|0}.
     Remark: Crossovers are those of means over packings, as in Fig. 22. Where packings collapse they hang on a few"""
-    for _, line in groupby(_slabs(data), key=lambda slab: slab[:3]):
-        yield from _lines(data, list(line), "polydispersity {0:g}")  # with growing friction
+    for line in _alike(_slabs(data), "polydispersity", "start", "ramp"):
+        yield from _lines(data, line, "polydispersity {0:g}")  # with growing friction
 
 
-@claim("D3b", "VI.A, Figs. 21, 22", *ORDER, primary="friction 0.2", disorder=True)
+@claim("D3b", "VI.A, Figs. 21, 22", *ORDER, primary="friction 0.2")
 def falls_with_disorder(data: Data) -> Numbers:
     """As mentioned above, the crossover force decreases with increasing polydispersity, or disorder.
     Short: The crossover force decreases with polydispersity
@@ -230,23 +216,14 @@ def falls_with_disorder(data: Data) -> Numbers:
     {friction 0.05|0} and at 0.5 {friction 0.5|0}.
     Remark: From polydispersity 0.25 to 0.01, by means over packings. Without friction disorder has two peaks at every
     force, so that there is no order"""
-
-    def by_line(slab: Slab) -> tuple[Any, ...]:
-        return *_prepared(slab), slab.friction
-
-    falling = sorted(_slabs(data), key=lambda slab: (*by_line(slab), -slab.polydispersity))
-    for _, line in groupby(falling, key=by_line):
-        slabs = list(line)
-        found = [crossover(data, slab) for slab in slabs]
-        if any(after.comparable(before) for before, after in pairwise(found)):
-            yield from _lines(data, slabs, "friction {1:g}")
+    for line in _alike(_slabs(data), "start", "ramp", "friction"):
+        found = [crossover(data, slab) for slab in line]
+        if any(one.comparable(other) for one, other in pairwise(found)):
+            yield from _lines(data, line[::-1], "friction {1:g}")  # towards less disorder
 
 
-@claim(
-    "D4", "VI.A",
-    Ask("largest change of the dip or the asymmetry between neighbouring forces per largest response",
-    at_most("gradual"), "%"), primary="polydispersity 0.1", figures=[21], disorder=True
-)  # fmt: skip
+@claim("D4", "VI.A", Ask("largest change of the dip or the asymmetry between neighbouring forces per largest response",
+           at_most("gradual"), "%"), primary="polydispersity 0.1", figures=[21])  # fmt: skip
 def gradual(data: Data) -> Numbers:
     """For polydisperse systems we observed a rather gradual crossover even for µ = 1, unlike the sharp transition to a
     highly asymmetric response in lattice configurations [Sec. V E].
@@ -262,10 +239,8 @@ def gradual(data: Data) -> Numbers:
             yield slab.case(further="median packing"), over_realizations(steps)
 
 
-@claim(
-    "D5", "VI.A", Ask("samples of five with a crossover", at_least(0.5), "part"),
-    primary="polydispersity 0.1, friction 0.2", figures=[21], disorder=True
-)  # fmt: skip
+@claim("D5", "VI.A", Ask("samples of five with a crossover", at_least(0.5), "part"),
+       primary="polydispersity 0.1, friction 0.2", figures=[21])  # fmt: skip
 def five_enough(data: Data) -> Numbers:
     """It is quite remarkable that an average over a very small ensemble of only five realizations (with coarse
     graining) is sufficient to demonstrate the crossover from a single peak to a double peak, and even results (in some
@@ -281,11 +256,10 @@ def five_enough(data: Data) -> Numbers:
             yield slab.case(WHOLE), replace(seen, high=1.0) if case["kind"] == ABOVE else seen
 
 
-@claim(
-    "D6", "VIII, Fig. 22", Ask("crossover force, above the smallest and up to the largest force", more_than(0.0), "mg"),
-    Ask("the same per that of the lattice with the same friction", less_than(1.0, "visible")),
-    primary="polydispersity 0.01, friction 0.2", disorder=True
-)  # fmt: skip
+@claim("D6", "VIII, Fig. 22",
+       Ask("crossover force, above the smallest and up to the largest force", more_than(0.0), "mg"),
+       Ask("the same per that of the lattice with the same friction", less_than(1.0, "visible")),
+       primary="polydispersity 0.01, friction 0.2")  # fmt: skip
 def as_the_lattice(data: Data) -> Numbers:
     """The same behavior is observed in polydisperse systems, which is the typical case in nature, although in
     polydisperse systems the forces at which induced anisotropy becomes large are smaller.
@@ -306,11 +280,9 @@ def as_the_lattice(data: Data) -> Numbers:
         yield slab.case(WHOLE), turns, per
 
 
-@claim(
-    "D8", "VI.A",
-    Ask("crossover force from the lattice constant 2 per that from touching disks", more_than(1.0, "visible")),
-    primary="friction 0.2", figures=[22], disorder=True, row="check"
-)  # fmt: skip
+@claim("D8", "VI.A",
+       Ask("crossover force from the lattice constant 2 per that from touching disks", more_than(1.0, "visible")),
+       primary="friction 0.2", figures=[22], row="check")  # fmt: skip
 def preparation(data: Data) -> Numbers:
     """In any case, it is likely that the crossover does not depend on the polydispersity alone but also on the
     preparation method (as observed in experiments on granular piles [15] and slabs [20]).
@@ -323,10 +295,8 @@ def preparation(data: Data) -> Numbers:
         yield f"friction {mu:g}", literal.per(usual)
 
 
-@claim(
-    "D18", "IV.C", Ask("dip of the mean response under the smallest force", at_least("visible"), "%"),
-    primary="polydispersity 0.01", modal=True, disorder=True
-)  # fmt: skip
+@claim("D18", "IV.C", Ask("dip of the mean response under the smallest force", at_least("visible"), "%"),
+       primary="polydispersity 0.01", modal=True)  # fmt: skip
 def without_contacts(data: Data) -> Numbers:
     """However, as the stiffness increases, this requirement may be hard to comply with, as the particles must fit
     exactly between the walls in order to remain in contact: in the limit k_N → ∞ most horizontal contacts may be absent
@@ -340,10 +310,8 @@ def without_contacts(data: Data) -> Numbers:
             yield slab.case(), _with_interval(slab.of(data, "shapes", width=NARROW).isel(step=0), "shape")
 
 
-@claim(
-    "D19", "VII", Ask("crossover force", more_than(5.0), "mg"), primary="polydispersity 0.25, friction 1",
-    figures=[22], disorder=True
-)  # fmt: skip
+@claim("D19", "VII", Ask("crossover force", more_than(5.0), "mg"), primary="polydispersity 0.25, friction 1",
+       figures=[22])  # fmt: skip
 def sand(data: Data) -> Numbers:
     """The experiments reported in [19, 20] used disordered systems with a rather small applied force (a few times the
     particle weight), for which a single peak was observed, in agreement with the phase diagram.
@@ -356,11 +324,9 @@ def sand(data: Data) -> Numbers:
             yield slab.case(WHOLE), crossover(data, slab).found
 
 
-@claim(
-    "D20", "VI.A",
-    Ask("asymmetry of a typical packing under the smallest force per largest response", at_least("visible"), "%"),
-    primary="polydispersity 0.1, friction 1", disorder=True, row="check"
-)  # fmt: skip
+@claim("D20", "VI.A",
+       Ask("asymmetry of a typical packing under the smallest force per largest response", at_least("visible"), "%"),
+       primary="polydispersity 0.1, friction 1", row="check")  # fmt: skip
 def asymmetric(data: Data) -> Numbers:
     """A possible explanation may be that for a single disordered realization, the response is not symmetric even for a
     small external force.
@@ -378,16 +344,7 @@ def asymmetric(data: Data) -> Numbers:
 COUNTED = {"contacts of disks": "", "walls counted": "_with_walls", "away from the boundaries": "_bulk"}
 
 
-def coordination(data: Data, slab: Slab) -> dict[str, Quantity]:
-    """Contacts per disk at rest, mean over packings, by what is counted."""
-    packings = slab.of(data, "packings")
-    return {name: over_realizations(packings[f"coordination_number{kind}"], np.mean) for name, kind in COUNTED.items()}
-
-
-@claim(
-    "D7a", "VII", Ask("contacts per disk", more_than(4.0), paper=4.25), primary="contacts of disks", disorder=True,
-    row="check"
-)  # fmt: skip
+@claim("D7a", "VII", Ask("contacts per disk", more_than(4.0), paper=4.25), primary="contacts of disks", row="check")
 def above_isostatic(data: Data) -> Numbers:
     """Note, however, that the mean coordination number in the frictionless polydisperse systems studied here (e.g., z ∼
     4.25 for δ = 0.01) is well above the isostatic limit of z = 4.
@@ -397,15 +354,13 @@ def above_isostatic(data: Data) -> Numbers:
     Remark: The text does not say what is counted; its number lies within ours. From the lattice constant 2 of the text
     a disk has more contacts. Without friction no stable packing has fewer than 4, so that this could hardly fail"""
     for (slab,) in _by_start(data, "packings", 0.0):
-        for name, found in coordination(data, slab).items():
-            yield slab.case(name), found
+        for name, kind in COUNTED.items():
+            number = slab.of(data, "packings")[f"coordination_number{kind}"]
+            yield slab.case(name), over_realizations(number, np.mean)
 
 
-@claim(
-    "D7b", "VII", Ask("missing contacts per disk, of the two above the isostatic limit",
-    at_least("marked"), "%", (6.0 - 4.25) / 2.0),
-    Ask("horizontal part of the missing contacts", at_least("marked"), "part"), disorder=True
-)  # fmt: skip
+@claim("D7b", "VII", Ask("missing contacts per disk, of the two above the isostatic limit", at_least("marked"), "%",
+           (6.0 - 4.25) / 2.0), Ask("horizontal part of the missing contacts", at_least("marked"), "part"))  # fmt: skip
 def missing_horizontal(data: Data) -> Numbers:
     """It is, however, much smaller than that of the ideal triangular lattice, z = 6, the "missing" contacts being
     predominantly horizontal.
@@ -426,10 +381,8 @@ def missing_horizontal(data: Data) -> Numbers:
         yield slab.case(""), over_realizations(part, np.mean), over_realizations(whole, np.mean)
 
 
-@claim(
-    "D9", "VI.A", Ask("difference of a typical packing from the mean below the crossover", at_most("similar"), "%"),
-    Ask("above the crossover", at_most("similar"), "%"), figures=[21], disorder=True
-)  # fmt: skip
+@claim("D9", "VI.A", Ask("difference of a typical packing from the mean below the crossover", at_most("similar"), "%"),
+       Ask("above the crossover", at_most("similar"), "%"), figures=[21])  # fmt: skip
 def resembles(data: Data) -> Numbers:
     """It appears that, at least when the force is not too close to its crossover value, the fluctuations within the
     ensemble are rather small for this choice of coarse graining length (see [91] for a detailed study of another set of
@@ -440,9 +393,9 @@ def resembles(data: Data) -> Numbers:
     squares.
     Remark: w = 6, at forces that are known to be away from the crossover: by half more, and outside of its interval"""
     near = 1.0 + data.words["similar"]
-    for _, prepared in groupby(sorted(_slabs(data), key=_prepared), key=_prepared):
+    by_start = sorted(_slabs(data), key=lambda slab: (slab.start != USUAL, slab.start))
+    for slabs in _alike(by_start, "start", "ramp"):
         typical: dict[str, list[float]] = {"below": [], "above": []}
-        slabs = list(prepared)
         for slab in slabs:
             single, shapes, case = (slab.of(data, n, width=WIDE) for n in ("realizations", "shapes", "crossovers"))
             off = single["difference"].median("realization")
@@ -452,14 +405,10 @@ def resembles(data: Data) -> Numbers:
             above = (force > max(high, case["force"] * near)) & (case["kind"] != ABOVE)
             typical["below"] += off.values[below].tolist()
             typical["above"] += off.values[above].tolist()
-        found = [
-            replace(over_realizations(values), method="bootstrap of the median over cases and forces")
-            if len(values) > 2
-            else None
-            for values in typical.values()
-        ]
-        if found[0] or found[1]:
-            yield slabs[0].case(""), *found
+        found = [over_realizations(values) if len(values) > 2 else None for values in typical.values()]
+        method = "bootstrap of the median over cases and forces"
+        if any(found):
+            yield slabs[0].case(""), *(one and replace(one, method=method) for one in found)
 
 
 def _at_15(data: Data, slab: Slab, name: str) -> xr.Dataset:
@@ -483,10 +432,8 @@ def _evident_samples(without: FloatArray, full: FloatArray, least: float) -> Qua
     return of_draws(part(without, full, 20000), drawn, f"samples of {SHOWN}, bootstrap", min(without.size, full.size))
 
 
-@claim(
-    "D10", "VI, Fig. 19", Ask("standard deviation without friction per that with 0.2", more_than(1.0)),
-    Ask("samples of 15 and 15 packings in which 95 % of the pairs differ", rare("holds"), "part"), disorder=True
-)  # fmt: skip
+@claim("D10", "VI, Fig. 19", Ask("standard deviation without friction per that with 0.2", more_than(1.0)),
+       Ask("samples of 15 and 15 packings in which 95 % of the pairs differ", rare("holds"), "part"))  # fmt: skip
 def fluctuations(data: Data) -> Numbers:
     """The fluctuations are quite large even for this small degree of polydispersity (and larger for the frictionless
     case), but for the magnitude of the applied force used in this case the difference between the frictionless and
@@ -505,10 +452,8 @@ def fluctuations(data: Data) -> Numbers:
         yield slabs[0].case(""), without.per(full), _evident_samples(first, second, least)
 
 
-@claim(
-    "D16", "VI.A", Ask("packings that collapse", rare(), "part"), primary="polydispersity 0.25, friction 0.2",
-    figures=[21], modal=True, disorder=True
-)  # fmt: skip
+@claim("D16", "VI.A", Ask("packings that collapse", rare(), "part"), primary="polydispersity 0.25, friction 0.2",
+       figures=[21], modal=True)  # fmt: skip
 def collapses(data: Data) -> Numbers:
     """In addition, it may be impossible to apply very large forces to polydisperse systems without causing major
     rearrangements.
@@ -519,9 +464,7 @@ def collapses(data: Data) -> Numbers:
     in Fig. 21(h), where nothing collapses; the paper lost two of five under a force that it does not name"""
     for slab in _slabs(data, "realizations"):
         one = slab.of(data, "realizations")
-        number = int(one["realizations"])
-        needs(number, "realizations holds no packings")
-        yield slab.case(WHOLE), part_of(np.isfinite(one["collapse_force"].values[:number]))
+        yield slab.case(WHOLE), part_of(np.isfinite(one["collapse_force"].values[: int(one["realizations"])]))
 
 
 def linear_ends(force: FloatArray, changes: FloatArray, tolerance: float) -> FloatArray:
@@ -582,10 +525,8 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
     return of_draws(value / number, (low / number, high / number), "Jonckheere's statistic, bootstrap", samples)
 
 
-@claim(
-    "D2", "VI.A, Fig. 20", Ask("packings with a shorter range", more_than(0.5), "part"),
-    primary="friction 0.2, 1 % off", disorder=True
-)  # fmt: skip
+@claim("D2", "VI.A, Fig. 20", Ask("packings with a shorter range", more_than(0.5), "part"),
+       primary="friction 0.2, 1 % off")  # fmt: skip
 def shorter_range(data: Data) -> Numbers:
     """A notable difference between monodisperse and polydisperse systems is that in the latter, the range of linear
     response is smaller (see Fig. 20 compared to Fig. 6).
@@ -600,11 +541,9 @@ def shorter_range(data: Data) -> Numbers:
             yield slab.case("friction {1:g}", f"{100 * tolerance:g} % off"), shorter(ends, lattice[0])
 
 
-@claim(
-    "A5", "abstract", Ask("linear range of the lattice per that at polydispersity 0.01", more_than(1.0)),
-    Ask("order of the realizations from 0.01 to 0.25 (Kendall's tau)", less_than(0.0)),
-    primary="friction 0.2, 1 % off", figures=[20], disorder=True
-)  # fmt: skip
+@claim("A5", "abstract", Ask("linear range of the lattice per that at polydispersity 0.01", more_than(1.0)),
+       Ask("order of the realizations from 0.01 to 0.25 (Kendall's tau)", less_than(0.0)),
+       primary="friction 0.2, 1 % off", figures=[20])  # fmt: skip
 def shorter_with_disorder(data: Data) -> Numbers:
     """Increasing the degree of polydispersity (for the range studied, up to 25%) decreases the range of elastic
     response.
@@ -614,8 +553,7 @@ def shorter_with_disorder(data: Data) -> Numbers:
     trend); without friction τ is {friction 0, 1 % off|1}.
     Remark: Smooth walls, w = 3, by the whole response, since that at x = 0 is near zero without friction. From the
     literal lattice only polydispersity 0.01 was simulated, so that the order is not asked there"""
-    for _, prepared in groupby(sorted(_slabs(data, "linear_range"), key=_prepared), key=_prepared):
-        slabs = list(prepared)
+    for slabs in _alike(_slabs(data, "linear_range"), "start", "ramp"):
         deltas = sorted({slab.polydispersity for slab in slabs})
         most = [slab for slab in slabs if slab.polydispersity == deltas[-1]]
         for slab, tolerance in product(most, TOLERANCES):

@@ -32,6 +32,7 @@ from granular_response_paper.panels import (
     titles,
     zero,
 )
+from granular_response_paper.records import alike
 
 from .parameters import Parameters
 
@@ -50,13 +51,11 @@ OVER: dict[str, Any] = {
     "columnspacing": 0.7, "borderpad": 0.0, "borderaxespad": 0.2,
 }  # fmt: skip
 
-#: The initial lattice of the paper's text.
-LITERAL = "2.0"
-
+#: Initial lattices; the last is that of the paper's text.
 START_NAMES = {
     "2.0075": "lattice constant $2.0075\\bar R$",
     "touching-largest": "largest disks touch",
-    LITERAL: "lattice constant $2\\bar R$",
+    "2.0": "lattice constant $2\\bar R$",
 }
 
 #: Contacts of a disk without friction at ``delta`` = 0.01 in the paper (Sec. VII).
@@ -110,27 +109,18 @@ def captions(datasets: Datasets, parameters: Parameters) -> dict[str, Caption]:
 def _findings(datasets: Datasets) -> dict[str, str]:
     """What the data show, a sentence for each picture."""
     single, averages, packings = (datasets[name] for name in ("individual", "averages", "packings"))
-    x, mean = single["x"].values, single["response"].mean("realization").values
-    dips = []
-    for case, friction in enumerate(single["friction"].values):
-        even = 0.5 * (mean[case] + mean[case][::-1])
-        dips.append(f"{100.0 * central_dip(x, even):.2g} % at µ = {friction:g}")
-    grown, total = 0, 0
-    w = smoothed_by(averages)
-    rubbed = (averages["polydispersity"].values > 0.0) & (averages["friction"].values > 0.0)
-    for index in np.flatnonzero(rubbed).tolist():
-        one = averages.isel(case=index, width=w)
-        usable = np.flatnonzero((one["count_at_rest"].values >= 2) & np.isfinite(one["force"].values))
-        if usable.size and index in _shown(averages):
-            total += 1
-            grown += int(not is_double_peaked(averages["x"].values, one["mean"].values[usable[0]]))
-    data = datasets["linear_range"]
-    shorter, compared = 0, 0
-    for friction in different(data["friction"]):
-        same = data.isel(path=data["friction"].values == friction).sortby("polydispersity")  # the lattice first
-        ends = same["linear_until"].values
-        compared += len(ends) > 1
-        shorter += bool(ends[-1] < ends[0])
+    mean = single["response"].mean("realization").values
+    even = zip(single["friction"].values, 0.5 * (mean + mean[:, ::-1]), strict=True)
+    dips = [f"{100.0 * central_dip(single['x'].values, one):.2g} % at µ = {friction:g}" for friction, one in even]
+    double = []
+    for index in _shown(averages).tolist():
+        one = averages.isel(case=index, width=smoothed_by(averages))
+        usable = _usable(one)
+        if usable.size and one["polydispersity"] > 0.0 and one["friction"] > 0.0:
+            double.append(is_double_peaked(averages["x"].values, one["mean"].values[usable[0]]))
+    data = datasets["linear_range"].sortby("polydispersity")  # the lattice first
+    ends = [same["linear_until"].values for same in alike(data, "path", "friction").values()]
+    shorter, compared = sum(one[-1] < one[0] for one in ends), sum(len(one) > 1 for one in ends)
     shown = _shown(packings)
     z = np.nanmean(packings["coordination_number_with_walls"].values[shown], axis=1)
     rest, under = _contact_forces(datasets["forces"])
@@ -145,7 +135,7 @@ def _findings(datasets: Datasets) -> dict[str, str]:
             "frictions."
         ),
         "fig21_disordered_forces": (
-            f"With friction {grown} of {total} averages have one peak at the smallest force."
+            f"With friction {double.count(False)} of {len(double)} averages have one peak at the smallest force."
         ),
         "packings": f"The coordination number is between {np.nanmin(z):.2f} and {np.nanmax(z):.2f}.",
     }  # fmt: skip
@@ -353,9 +343,14 @@ def _averages(data: xr.Dataset) -> Figure:
     return figure
 
 
+def _usable(one: xr.Dataset) -> NDArray[np.intp]:
+    """The forces of a case that have a mean with an error."""
+    return np.flatnonzero((one["count_at_rest"].values >= 2) & np.isfinite(one["force"].values))
+
+
 def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
     """Mean responses with bands of one standard error at a few forces of a case; their key stands over the panel."""
-    usable = np.flatnonzero((one["count_at_rest"].values >= 2) & np.isfinite(one["force"].values))
+    usable = _usable(one)
     steps = usable[np.unique(np.linspace(0, len(usable) - 1, min(MOST_FORCES, len(usable))).round().astype(int))]
     if not usable.size:
         return

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from granular_response_paper.claims.bounds import at_least, at_most
-from granular_response_paper.claims.claim import Ask, Case, Claims, Data, Numbers, at
-from granular_response_paper.records import alike
+from ...claims.bounds import at_least, at_most
+from ...claims.claim import Ask, Case, Claims, Data, Numbers, at
+from ...records import alike
 
 claim = Claims("slab_comparison", {"force": 0.01})
 
 
-@claim(
-    "A4", "abstract, VIII", Ask("difference from the elastic slab in the deepest one", at_most("holds"), "%"),
-    Ask("that per the one in the thinnest", at_most(1.0)),
-    Ask("dip per peak in a small slab under a large force", at_least("marked"), "%"),
-    primary="friction 0, smooth floor, 8 disks a row per layer", figures=[1, 3]
-)  # fmt: skip
+@claim("A4", "abstract, VIII", Ask("difference from the elastic slab in the deepest one", at_most("holds"), "%"),
+       Ask("that per the one in the thinnest", at_most(1.0)),
+       Ask("dip per peak in a small slab under a large force", at_least("marked"), "%"),
+       primary="friction 0, smooth floor, 8 disks a row per layer", figures=[1, 3])  # fmt: skip
 def large_systems(data: Data) -> Numbers:
     """The results indicate that in large systems (typically considered by engineers), the response is close to that
     predicted by isotropic elasticity whereas the response of small systems (or when sufficiently large forces are

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from granular_response_paper.claims.bounds import about, at_most, between, within
-from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
-from granular_response_paper.claims.numbers import Quantity, needs
+from ...claims.bounds import about, at_most, between, within
+from ...claims.claim import SLAB, Ask, Claims, Data, Numbers, at
+from ...claims.numbers import Quantity, needs
 
 GROUP = "stiffness_ratio_crossover"
 claim = Claims(GROUP, {**SLAB, "force": 15.0, "scene.contact.friction": 10.0})
@@ -23,10 +23,8 @@ def ratio(data: Data) -> Numbers:
     yield data.bracket(GROUP, "events", name="two_peaks_end")
 
 
-@claim(
-    "K1b", "V.B, Fig. 10", Ask("largest change of the response per largest response", at_most("nearly"), "%"),
-    primary="from 0.4 or 0.5 on", finds="any"
-)  # fmt: skip
+@claim("K1b", "V.B, Fig. 10", Ask("largest change of the response per largest response", at_most("nearly"), "%"),
+       primary="from 0.4 or 0.5 on", finds="any")  # fmt: skip
 def independent(data: Data) -> Numbers:
     """For larger values of k_T/k_N, the response is nearly independent of k_T/k_N.
     Short: Above it the response is nearly independent of the ratio
@@ -47,11 +45,9 @@ def independent(data: Data) -> Numbers:
     yield from found.items()
 
 
-@claim(
-    "K6", "V.C", Ask("root of r(β) without horizontal springs", between(0.29145, 0.29155), paper=0.2915),
-    Ask("root per ratio of the slab", within("quite well"), paper=0.2915 / 0.3), primary="rotations suppressed",
-    figures=[10, 11]
-)  # fmt: skip
+@claim("K6", "V.C", Ask("root of r(β) without horizontal springs", between(0.29145, 0.29155), paper=0.2915),
+       Ask("root per ratio of the slab", within("quite well"), paper=0.2915 / 0.3), primary="rotations suppressed",
+       figures=[10, 11])  # fmt: skip
 def criterion(data: Data) -> Numbers:
     """Nevertheless, the estimate obtained using this criterion fits our result for the finite slab quite well: for the
     model used here (with no horizontal springs), r = (β² + 10β − 3)/(β² + 6β + 9), where β ≡ k_2^t/k_2^n. Hence (in the
@@ -64,15 +60,13 @@ def criterion(data: Data) -> Numbers:
     search (K1a)"""
     slab = data.bracket(GROUP, "events", name="two_peaks_end")
     for case, rotations in (("rotations suppressed", "suppressed"), ("disks free to turn", "free")):
-        root = data.value(GROUP, "elastic.root", rotations=rotations)
+        root = Quantity.exact(data.value(GROUP, "elastic.root", rotations=rotations))
         yield case, root if rotations == "suppressed" else None, root.per(slab)
 
 
-@claim(
-    "K7", "V.B",
-    Ask("difference of the responses at friction 2 and 10 per largest response", at_most("nearly"), "%"),
-    Ask("contacts at the Coulomb limit at friction 10", at_most(0.0), "count"), figures=[10, 12]
-)  # fmt: skip
+@claim("K7", "V.B",
+       Ask("difference of the responses at friction 2 and 10 per largest response", at_most("nearly"), "%"),
+       Ask("contacts at the Coulomb limit at friction 10", at_most(0.0), "count"), figures=[10, 12])  # fmt: skip
 def immaterial(data: Data) -> Numbers:
     """When µ is sufficiently large (and F_ext sufficiently small), its value is essentially immaterial, since sliding
     is never reached.

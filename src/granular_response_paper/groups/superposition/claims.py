@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from granular_response_paper.claims.bootstrap import over_realizations, part_of
-from granular_response_paper.claims.bounds import lower_by, more_than
-from granular_response_paper.claims.claim import SLAB, Ask, Claims, Data, Numbers, at
-from granular_response_paper.claims.numbers import needs
+from ...claims.bootstrap import over_realizations, part_of
+from ...claims.bounds import lower_by, more_than
+from ...claims.claim import SLAB, Ask, Claims, Data, Numbers, at
+from ...claims.numbers import needs
 
 GROUP = "superposition"
-claim = Claims(GROUP, {**SLAB, "scene.contact.friction": 0.05, "scene.packing.polydispersity": 0.01})
+claim = Claims(GROUP, {**SLAB, "scene.contact.friction": 0.05, "scene.packing.polydispersity": 0.01}, disorder=True)
 
 #: Errors by what they are of.
 ERRORS = {"floor forces": "floor_error_largest", "all contact forces": "contact_error_largest"}
@@ -23,11 +23,9 @@ def _hold(data: Data, force: float, word: str) -> Numbers:
         yield case, part_of(errors.max("distance") <= data.words[word])
 
 
-@claim(
-    "U1", "VI.B, Fig. 23",
-    Ask("packings in which sum and whole differ by a twentieth at most", more_than(0.5, "holds"), "part"),
-    primary="floor forces", disorder=True
-)  # fmt: skip
+@claim("U1", "VI.B, Fig. 23",
+       Ask("packings in which sum and whole differ by a twentieth at most", more_than(0.5, "holds"), "part"),
+       primary="floor forces")  # fmt: skip
 def holds(data: Data) -> Numbers:
     """As shown in Fig. 23, superposition holds even on the microscopic scale, i.e., for individual forces without
     coarse graining.
@@ -39,11 +37,9 @@ def holds(data: Data) -> Numbers:
     yield from _hold(data, 0.2, "holds")
 
 
-@claim(
-    "U3", "VI.B, Fig. 24",
-    Ask("packings in which sum and whole differ by a fifth at most", more_than(0.5, "quite well"), "part"),
-    primary="floor forces", disorder=True
-)  # fmt: skip
+@claim("U3", "VI.B, Fig. 24",
+       Ask("packings in which sum and whole differ by a fifth at most", more_than(0.5, "quite well"), "part"),
+       primary="floor forces")  # fmt: skip
 def quite_well(data: Data) -> Numbers:
     """Interestingly, we find that superposition holds quite well even beyond the linear regime, as shown in Fig. 24
     (for F_ext = mg).
@@ -54,10 +50,8 @@ def quite_well(data: Data) -> Numbers:
     yield from _hold(data, 1.0, "quite well")
 
 
-@claim(
-    "U4", "VI.B, VIII", Ask("rms deviation in the deepest row per the largest of any row", lower_by("marked"), "%"),
-    primary="loads 2 apart", figures=[24], disorder=True
-)  # fmt: skip
+@claim("U4", "VI.B, VIII", Ask("rms deviation in the deepest row per the largest of any row", lower_by("marked"), "%"),
+       primary="loads 2 apart", figures=[24])  # fmt: skip
 def falls_with_depth(data: Data) -> Numbers:
     """The validity of superposition beyond the linear elastic regime indicates that sufficiently far from the applied
     load, the system responds (nearly) elastically even though it is not elastic everywhere.

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from granular_response_paper.claims.bounds import at_least, at_most
-from granular_response_paper.claims.claim import Ask, Claims, Data, Numbers
-from granular_response_paper.claims.numbers import needs
+from ...claims.bounds import at_least, at_most
+from ...claims.claim import Ask, Claims, Data, Numbers
+from ...claims.numbers import needs
 
 GROUP = "torque"
 claim = Claims(
@@ -27,10 +27,8 @@ def change(data: Data) -> Numbers:
     yield rings["force_change"].values[rings["ring_outer"].values <= NEAR].mean()
 
 
-@claim(
-    "T1b", "V.G", Ask("change far from the load per near it", at_most("small"), "%"),
-    primary="antisymmetric part, mean over the area", figures=[18]
-)  # fmt: skip
+@claim("T1b", "V.G", Ask("change far from the load per near it", at_most("small"), "%"),
+       primary="antisymmetric part, mean over the area", figures=[18])  # fmt: skip
 def near_the_load(data: Data) -> Numbers:
     """Although the effect on the stress field (in particular, its asymmetric part) is typically confined to a region
     close to the point of application, this may indicate that for some effects it is important to extend the continuum

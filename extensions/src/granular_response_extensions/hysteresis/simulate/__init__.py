@@ -1,8 +1,7 @@
 """Loading, unloading and loading again: what is nonlinear, and what of that is irreversible.
 
-Each packing is loaded along one path of equilibria. From every force F at which the load turns it goes back to none
-and up to F again; the paths begin at the state that loading has reached, so that each loop is the first one of its
-packing.
+Each packing is loaded along one path of equilibria. From every force F at which the load turns it goes back to none and
+up to F again; the paths begin at the state that loading has reached, so that each loop is the first one of its packing.
 
 Events, along the first loading: the first opening of a contact, the end of the linear range (the response at x = 0
 differs by 1 % from that to the smallest force, as in Figs. 6 and 20), and the end of the reversible range: a loop to

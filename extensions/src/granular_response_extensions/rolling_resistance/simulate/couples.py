@@ -83,7 +83,8 @@ def respond(parameters: Parameters, friction: float, rolling: float) -> RollingS
 def fit(problem: Problem, rest: State, loaded: State, points: FloatArray, width: float) -> tuple[float, float, float]:
     """The numbers of :class:`CosseratFit` by the stress at ``points`` (..., 2)."""
     contact = problem.scene.contact
-    couple = _couple_stress(problem, rest, loaded, points, width)
+    after, before = (coarse.couple_stress(state, problem.packing.radius, points, width) for state in (loaded, rest))
+    couple = after - before
     # gradient of the mean turn of the disks, weighted by the stress's Gaussian
     away, turn = points[..., None, :] - rest.position, loaded.angle - rest.angle
     weight = np.exp(-(away**2).sum(axis=-1) / width**2)
@@ -115,12 +116,6 @@ def decay(scene: Scene, depth: FloatArray, couple: FloatArray) -> tuple[float, f
 
     found = minimize_scalar(left, bounds=(0.1, float(depth.max())), method="bounded", options={"xatol": 1e-9})
     return float(found.fun), float(found.x / ratio)
-
-
-def _couple_stress(problem: Problem, rest: State, loaded: State, points: FloatArray, width: float) -> FloatArray:
-    """(..., 2) couple stress that the load adds at ``points`` (..., 2)."""
-    after, before = (coarse.couple_stress(state, problem.packing.radius, points, width) for state in (loaded, rest))
-    return after - before
 
 
 def couples(problem: Problem, state: State, parts: NDArray[np.bool_]) -> FloatArray:

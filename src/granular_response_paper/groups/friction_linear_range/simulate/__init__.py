@@ -1,10 +1,9 @@
 """The response of an ordered slab with friction against the force (Secs. V.A, V.B, V.D and V.E).
 
-Figs. 6 to 9 (linear range, profiles, contact changes), Fig. 12 (friction at one force), Fig. 16 (large
-forces), and the forces at which things happen. One load path per coefficient of friction serves every force
-and tells its events. At large forces with much friction symmetric equilibria lose their stability, and which
-one is reached depends on the transient: there the paper's protocol is followed, dynamics from rest to each
-force; its ramp time is not told.
+Figs. 6 to 9 (linear range, profiles, contact changes), Fig. 12 (friction at one force), Fig. 16 (large forces), and the
+forces at which things happen. One load path per coefficient of friction serves every force and tells its events. At
+large forces with much friction symmetric equilibria lose their stability, and which one is reached depends on the
+transient: there the paper's protocol is followed, dynamics from rest to each force; its ramp time is not told.
 """
 
 from __future__ import annotations

@@ -78,11 +78,7 @@ def bracket(
 
 
 def narrowed(
-    asked: Parameters,
-    path: studies.LoadPath,
-    protocol: LoadRamp,
-    time_step: float,
-    first: tuple[float, float] | None,
+    asked: Parameters, path: studies.LoadPath, protocol: LoadRamp, time_step: float, first: tuple[float, float] | None
 ) -> slab.Event:
     """Where the states of a path lose their symmetry; see :func:`bracket`."""
     measures, above = studies.Measures(path), asked.asymmetry
