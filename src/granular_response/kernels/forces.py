@@ -21,11 +21,8 @@ from ..machine.lanes import WIDTH, gather, put, select, spread, take
 from ..machine.machine_code import kernel
 from .model import Motion
 
-#: Pairs of a run of close indices whose forces are held back before they are added to their second disks: memory
-#: that one vector has just written at another offset cannot be read again at once.
-_BLOCK = 64
-#: Length of the scratch that this takes.
-SCRATCH = 4 * _BLOCK
+#: Length of the scratch for what single pairs add.
+SCRATCH = 4 * WIDTH
 
 
 @kernel(forceinline=True)
@@ -92,40 +89,16 @@ def _add_run(r, spring, rolls, pairs, motion):
     j = pairs.runs[r, 1]
     k = pairs.runs[r, 2]
     s = pairs.runs[r, 3]
-    scratch = pairs.scratch
     while k % WIDTH:
         k -= 1
         px, pz, pt, pc = _forces_at(0.0, i + k, j + k, s + k, spring, rolls, pairs, motion)
         _add(i + k, px, pz, pt, pc, spring, rolls, motion)
         _add(j + k, -px, -pz, pt, -pc, spring, rolls, motion)
-    like = spread(0.0)
-    if j - i >= WIDTH:
-        while k:
-            k -= WIDTH
-            px, pz, pt, pc = _forces_at(like, i + k, j + k, s + k, spring, rolls, pairs, motion)
-            _add(i + k, px, pz, pt, pc, spring, rolls, motion)
-            _add(j + k, -px, -pz, pt, -pc, spring, rolls, motion)
-        return
     while k:
-        end = k
-        start = max(k - _BLOCK, 0)
-        while k > start:
-            k -= WIDTH
-            px, pz, pt, pc = _forces_at(like, i + k, j + k, s + k, spring, rolls, pairs, motion)
-            _add(i + k, px, pz, pt, pc, spring, rolls, motion)
-            put(scratch, k - start, px)
-            put(scratch, _BLOCK + k - start, pz)
-            if spring is not None:
-                put(scratch, 2 * _BLOCK + k - start, pt)
-            if rolls is not None:
-                put(scratch, 3 * _BLOCK + k - start, pc)
-        while end > start:
-            end -= WIDTH
-            px = take(scratch, end - start, like)
-            pz = take(scratch, _BLOCK + end - start, like)
-            pt = take(scratch, 2 * _BLOCK + end - start, like)
-            pc = take(scratch, 3 * _BLOCK + end - start, like)
-            _add(j + end, -px, -pz, pt, -pc, spring, rolls, motion)
+        k -= WIDTH
+        px, pz, pt, pc = _forces_at(spread(0.0), i + k, j + k, s + k, spring, rolls, pairs, motion)
+        _add(i + k, px, pz, pt, pc, spring, rolls, motion)
+        _add(j + k, -px, -pz, pt, -pc, spring, rolls, motion)
 
 
 @kernel
@@ -138,15 +111,15 @@ def _add_single_pairs(start, spring, rolls, pairs, motion):
     like = spread(0.0)
     for r in range(start, whole, WIDTH):
         s = runs[r, 3]
-        dx = take(pairs.dx, s, like) + (gather(q, 0, runs, r, 0) - gather(q, 0, runs, r, 1))
-        dz = take(pairs.dz, s, like) + (gather(q, n, runs, r, 0) - gather(q, n, runs, r, 1))
-        du = gather(v, 0, runs, r, 0) - gather(v, 0, runs, r, 1)
-        dw = gather(v, n, runs, r, 0) - gather(v, n, runs, r, 1)
+        dx = take(pairs.dx, s, like) + (gather(q, 0, runs, r, 0, like) - gather(q, 0, runs, r, 1, like))
+        dz = take(pairs.dz, s, like) + (gather(q, n, runs, r, 0, like) - gather(q, n, runs, r, 1, like))
+        du = gather(v, 0, runs, r, 0, like) - gather(v, 0, runs, r, 1, like)
+        dw = gather(v, n, runs, r, 0, like) - gather(v, n, runs, r, 1, like)
         rims = spin = like
         if spring is not None:
-            rims = gather(rim, 0, runs, r, 0) + gather(rim, 0, runs, r, 1)
+            rims = gather(rim, 0, runs, r, 0, like) + gather(rim, 0, runs, r, 1, like)
         if rolls is not None:
-            spin = gather(v, 2 * n, runs, r, 0) - gather(v, 2 * n, runs, r, 1)
+            spin = gather(v, 2 * n, runs, r, 0, like) - gather(v, 2 * n, runs, r, 1, like)
         px, pz, pt, pc = _forces(s, dx, dz, (du, dw, rims, spin), spring, rolls, pairs, motion)
         put(scratch, 0, px)
         put(scratch, WIDTH, pz)

@@ -14,7 +14,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..state import FloatArray
-from .factor import Factor, Renewable, Storage
+from .factor import Factor
+from .multifrontal import LU
+from .ordering import Storage
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,7 @@ class Sequence:
 class Nearby:
     """A factorisation that serves other matrices as long as that pays."""
 
-    def __init__(self, factor: Renewable):
+    def __init__(self, factor: LU):
         self.factor = factor
         #: what solutions have cost so far, the first one with the factorisation, and the last one
         self._spent, self._solutions, self._last = factor.price, 0, 0

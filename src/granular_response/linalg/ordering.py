@@ -9,10 +9,14 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from ..state import FloatArray
-from .band import Band
+from .band import Band, BandLU
 from .dissection import Dissection
-from .factor import Storage
-from .multifrontal import Multifrontal
+from .multifrontal import LU, Multifrontal
+
+#: Factorises all matrices of one pattern; of a symmetric one both triangles are given.
+Storage = Band | Multifrontal
+#: L U of any matrix. Where the number of its ``negative_pivots`` changes a real eigenvalue may have passed zero.
+Eliminated = BandLU | LU
 
 #: Half-bandwidth (in unknowns) up to which the banded factorisations are the faster ones.
 WIDEST_BAND = 130

@@ -131,7 +131,7 @@ class Dynamics:
         self.angle0 = state.angle.copy()
         self.v = aligned(np.concatenate([state.velocity.T.ravel(), state.angular_velocity])[: n * freedoms])
         self.q = aligned_zeros(n * freedoms)
-        rows = aligned_zeros(self.integrator.scheme.rows + 1, n * freedoms + -n * freedoms % WIDTH)
+        rows = aligned_zeros(self.integrator.rows + 1, n * freedoms + -n * freedoms % WIDTH)
         self.history = rows[:-1]
         b, c = ([*self.history[1:], None, None])[:2]
         self.rows = Memory(self.history[0], b, c, force=rows[-1], seen=aligned_zeros(n * freedoms))
@@ -171,7 +171,7 @@ class Dynamics:
         self.history[:] = 0.0
         gravity, load = self._now(self.gravity), self._now(self.load)
         accelerations(self.q, self.v, self.history[0, : self.q.size], gravity, load, 0.0, self.model)
-        self.integrator.scheme.begin(self.history)
+        self.integrator.begin(self.history)
 
     def _now(self, ramp: Ramp) -> float:
         """Where a ramp is now."""
@@ -211,7 +211,7 @@ class Dynamics:
             start, taken = (0.0, self.steps - self.began) if self.uncut else (self.time, 0)
             schedule = Schedule(start, *map(float, self.gravity), *map(float, self.load))
             done = advance(
-                self.integrator.scheme, left, self.time_step, schedule, self.candidates.limit,
+                self.integrator, left, self.time_step, schedule, self.candidates.limit,
                 self.q, self.v, self.rows, self.model, taken,
             )  # fmt: skip
             self.steps += done

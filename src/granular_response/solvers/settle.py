@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from ..errors import EquilibriumError, SolveError
-from ..kernels.integrators import INTEGRATORS
+from ..kernels.integrators import INTEGRATORS, lead
 from ..state import FloatArray, Reached, State
 from .dynamics import OPTIONS as MOTION
 from .dynamics import Dynamics, Ramp, Stop, relax
@@ -147,7 +147,7 @@ def not_settled(problem: Problem, state: State, what: str) -> str:
 
 def in_step(settled: State, integrator: str) -> State:
     """A state in motion with its disks where its springs, which are ahead of them, are already."""
-    time = INTEGRATORS[integrator].lead * (settled.reached.time_step or 0.0)
+    time = lead(INTEGRATORS[integrator]) * (settled.reached.time_step or 0.0)
     position, angle = settled.position + time * settled.velocity, settled.angle + time * settled.angular_velocity
     return replace(settled, position=position, angle=angle)
 
