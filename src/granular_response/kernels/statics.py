@@ -15,6 +15,7 @@ Vectors are laid out ``[x | z | angle]`` as everywhere in ``kernels``. For conta
 from __future__ import annotations
 
 import math
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ from numpy.typing import NDArray
 from ..contact.coulomb import cut, limit, limit_slope
 from ..contact.geometry import at_wall, displaced
 from ..contact.law import elastic_force, energy, stiffness
+from ..contact.rolling import FREE
 from ..machine.lanes import WIDTH, anywhere, gather, magnitude, put, quotient_where, root, select, spread, take
 from ..machine.machine_code import kernel
 from ..state import AT_LIMIT, OPEN, SLIDING, STICKING
@@ -45,11 +47,17 @@ class Listed(NamedTuple):
     shape: Floats | None  #: (m + w,) what the law needs of the radii
     pair_law: Any  #: named tuples of ``contact``, of one class
     wall_law: Any
-    arm: Floats  #: (m + w,) reduced radii, or (0,) where no contact resists rolling
     pair_rolling: Any  #: contact.rolling.Rolling, of zeros for contacts that do not resist
     wall_rolling: Any
+    arm: Floats  #: (m + w,) reduced radii, or (0,) where no contact resists rolling
     radius: Floats  #: (n,) of all disks
     loaded: NDArray[Any]  #: (n,) ties that loads count as
+
+
+def of_rows(laws) -> dict[str, Any]:
+    """The laws of :class:`Listed` from those between disks and at walls in each row (``state.ROWS``) that there is."""
+    names = "pair_law", "wall_law", "pair_rolling", "wall_rolling"
+    return dict(zip(names, chain(*laws, (FREE, FREE)), strict=False))
 
 
 class Increment(NamedTuple):
@@ -325,7 +333,7 @@ def contacts(step, pair_spring, wall_spring, listed, room, out, force):
     step, listed : :class:`Increment` and :class:`Listed`.
     pair_spring, wall_spring : ``step.spring``, None where these contacts have no friction.
     room : (2 WIDTH,) numbers.
-    out : :class:`Response`, filled; what belongs to the rolling by :func:`along_rolling`.
+    out : :class:`Response`, filled.
     force : (dof,) generalised contact force, added to.
 
     Returns
@@ -352,12 +360,13 @@ def contacts(step, pair_spring, wall_spring, listed, room, out, force):
         force[n + j] -= fz
         if turns:
             force[2 * n + j] -= radius[j] * tangential
-    return bend, max(worst, wrong)
+    further = _along_rolling(step, step.fixed, listed, out, force) if out.status.size > listed.gap.size else 0.0
+    return bend, max(worst, wrong, further)
 
 
 @kernel
-def along_rolling(step, fixed, listed, out, force):
-    """Rolling resistance of contacts of which :func:`contacts` has made the rest; arguments as there.
+def _along_rolling(step, fixed, listed, out, force):
+    """Fill in rolling resistance after all else of :func:`contacts`; arguments as there.
 
     ``fixed`` : ``step.fixed``. Returns the largest force by which those with kept statuses differ from those by the
     return map.

@@ -423,7 +423,7 @@ class LU:
         pattern = self._pattern
         front_of = pattern.front_of_entries(matrix)
         anew = np.zeros(len(pattern.own), np.bool_)
-        frontal.mark(front_of, matrix.data, self._entries, change, anew)
+        anew[front_of[np.abs(matrix.data - self._entries) > change]] = True
         ranges = [span for span in pattern.ranges if anew[span.first : span.last].any()]
         for span in ranges:
             anew[span.first : span.last] = True
@@ -436,7 +436,7 @@ class LU:
         _Elimination(pattern, matrix, self._fronts).run(ranges, above)
         if self._fronts.failed:
             raise RuntimeError("Factor is exactly singular")
-        frontal.keep(front_of, matrix.data, anew, self._entries)
+        np.copyto(self._entries, matrix.data, where=anew[front_of])
         return True
 
 
