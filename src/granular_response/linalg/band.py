@@ -32,8 +32,7 @@ class Band(Entries):
         self.n = len(indptr) - 1
         column = np.repeat(np.arange(self.n), np.diff(indptr))
         below = indices - column
-        self.half_width = int(below.max(initial=0))
-        self._b = band_lu.rounded(self.half_width)
+        self._b = band_lu.rounded(int(below.max(initial=0)))
         #: (e,) where the entries go in the rows
         self._place = indices * band_lu.stride(self._b) + (self._b - below)
 

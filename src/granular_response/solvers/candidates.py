@@ -46,9 +46,6 @@ class Candidates:
         """(slots,) what listed pairs have (m,), and 0 in other slots."""
         return _in_slots(values, self.slot, len(self.reach))
 
-    def __repr__(self) -> str:
-        return f"Candidates({len(self.first)} pairs, {len(self.wall_disk)} at walls, limit={self.limit:g})"
-
 
 def _in_slots(values: FloatArray, slot: NDArray[np.int64], slots: int) -> FloatArray:
     room = aligned_zeros(slots)

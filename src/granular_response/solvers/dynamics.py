@@ -28,7 +28,7 @@ from ..errors import SolveError
 from ..kernels.forces import SCRATCH, accelerations
 from ..kernels.integrators import INTEGRATORS, LOOK_EVERY, Memory, advance
 from ..kernels.model import Model, Pairs, Schedule, Walls, rows, springs_of
-from ..kernels.neighbours import count_closed, mark_closed, rolling
+from ..kernels.neighbours import count_closed, mark_closed
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..state import FLOOR, FloatArray, Reached, State, wall_normals
 from .candidates import Candidates
@@ -309,9 +309,11 @@ class Dynamics:
 
         They bear no load and may roll for ever. ``touching``, ``count`` : closed contacts, and how many each disk has.
         """
-        c = self.candidates
-        rollers, energy = rolling(touching, len(c.first), count, c.wall_disk, c.wall, self.v, self.problem.inverse_mass)
-        return rollers, energy / self.problem.n
+        c, n = self.candidates, self.problem.n
+        on_floor = c.wall_disk[touching[len(c.first) :] & (c.wall == FLOOR)]
+        rollers = on_floor[count[on_floor] == 1]
+        energies = (0.5 * self.v**2 / self.problem.inverse_mass).reshape(-1, n)[::2, rollers]
+        return len(rollers), float(np.cumsum(np.append(0.0, energies.T))[-1]) / n  # one after the other
 
     def in_flight(self, touching: NDArray[np.bool_]) -> bool:
         """Whether some disks fall: no chain of closed contacts leads to what could bear their weight."""

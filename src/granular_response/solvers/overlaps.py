@@ -17,6 +17,7 @@ import numpy as np
 from ..scene import Packing, SceneError
 from ..state import FloatArray, State
 from ..state.box import WALL_NORMAL, bodies
+from .candidates import SKIN
 from .close_pairs import close_pairs
 
 if TYPE_CHECKING:
@@ -33,8 +34,7 @@ class RemovalOptions:
     part: float = 0.5
     #: Part of its last step by which it moves on, for the same reason no more.
     kept: float = 0.5
-    #: Gap up to which pairs are listed, and most steps.
-    skin: float = 0.25
+    #: Most steps.
     steps: int = 20_000
 
 
@@ -80,11 +80,11 @@ def without_overlaps(packing: Packing) -> Packing:
     position, box, radius = packing.position.copy(), packing.box, packing.radius
     step = np.zeros_like(position)
     listed = position
-    first, second = close_pairs(position, radius, OPTIONS.skin, box.period)
+    first, second = close_pairs(position, radius, SKIN, box.period)
     for _ in range(OPTIONS.steps):
-        if np.abs(position - listed).max() > 0.25 * OPTIONS.skin:
+        if np.abs(position - listed).max() > 0.25 * SKIN:
             listed = position
-            first, second = close_pairs(position, radius, OPTIONS.skin, box.period)
+            first, second = close_pairs(position, radius, SKIN, box.period)
         push, largest = _push(packing, position, first, second)
         if largest <= OPTIONS.left:
             return replace(packing, position=position)

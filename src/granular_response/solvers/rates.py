@@ -193,11 +193,5 @@ class RateProblem:
 
     def _bears_nothing(self, trial: Trial, contacts: np.ndarray) -> np.ndarray:
         """Of each of ``contacts`` whether no contact of one of its disks bears a force: a load holds that disk."""
-        system = self.system
-        between, at_wall = system.split(trial.normal)
-        bears = np.zeros(system.problem.n)
-        for disk, normal in ((system.first, between), (system.second, between), (system.wall_disk, at_wall)):
-            np.maximum.at(bears, disk, normal)
-        first = np.concatenate([system.first, system.wall_disk])[contacts]
-        second = np.concatenate([system.second, system.wall_disk])[contacts]
-        return np.minimum(bears[first], bears[second]) <= OPTIONS.bare
+        borne = np.append(self.system.state(trial, 0.0).largest_normal_force(), np.inf)  # at last of walls, disk -1
+        return borne[self.system.listed.disks[contacts]].min(axis=1) <= OPTIONS.bare

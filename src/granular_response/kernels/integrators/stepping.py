@@ -10,7 +10,6 @@ higher derivatives costs it two orders). ``begin(history)`` fills (rows, dof) me
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -83,24 +82,13 @@ def _write(row, k, value):
         put(row, k, value)
 
 
-@kernel
-def _begin(integrator, q, v, memory, dt):
-    """Begin a step."""
-    a, b, c, _, seen = memory
-    for k in range(q.size):
-        x, v[k], a[k], y, seen[k] = predict(integrator, q[k], v[k], a[k], _read(b, k, 0.0), _read(c, k, 0.0), dt)
-        q[k] = x
-        _write(b, k, y)
-
-
 @kernel(forceinline=True)
-def _end_at(k, like, integrator, q, v, memory, seen, inverse_mass, dt):
-    a, b, c, force, _ = memory
-    a_new = take(force, k, like) * take(inverse_mass, k, like)
-    x, u, w, y, z = correct(
-        integrator, take(q, k, like), take(v, k, like), take(a, k, like), _read(b, k, like), _read(c, k, like),
-        a_new, dt,
-    )  # fmt: skip
+def _turn_at(k, like, integrator, q, v, memory, force, seen, inverse_mass, dt):
+    a, b, c = memory.a, memory.b, memory.c
+    x, u, w, y, z = take(q, k, like), take(v, k, like), take(a, k, like), _read(b, k, like), _read(c, k, like)
+    if force is not None:
+        a_new = take(force, k, like) * take(inverse_mass, k, like)
+        x, u, w, y, z = correct(integrator, x, u, w, y, z, a_new, dt)
     if seen is not None:
         x, u, w, y, s = predict(integrator, x, u, w, y, z, dt)
         put(seen, k, s)
@@ -112,13 +100,13 @@ def _end_at(k, like, integrator, q, v, memory, seen, inverse_mass, dt):
 
 
 @kernel
-def _end(integrator, q, v, memory, seen, inverse_mass, dt):
-    """End a step and, with ``memory.seen`` as ``seen``, begin the next while its numbers are at hand."""
+def _turn(integrator, q, v, memory, force, seen, inverse_mass, dt):
+    """End a step, with ``memory.force`` as ``force``, and begin the next, with ``memory.seen`` as ``seen``, or one."""
     whole = q.size - q.size % WIDTH
     for k in range(0, whole, WIDTH):
-        _end_at(k, spread(0.0), integrator, q, v, memory, seen, inverse_mass, dt)
+        _turn_at(k, spread(0.0), integrator, q, v, memory, force, seen, inverse_mass, dt)
     for k in range(whole, q.size):
-        _end_at(k, 0.0, integrator, q, v, memory, seen, inverse_mass, dt)
+        _turn_at(k, 0.0, integrator, q, v, memory, force, seen, inverse_mass, dt)
 
 
 @kernel(nogil=True)
@@ -138,16 +126,18 @@ def advance(integrator, steps, dt, schedule, limit, q, v, memory, model, taken=0
             look = (taken + step) % LOOK_EVERY == 0 and limit < np.inf
             if look and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
                 return step
-            _begin(integrator, q, v, memory, dt)
-        now = schedule.time + (taken + step + 1) * dt
+            _turn(integrator, q, v, memory, None, memory.seen, inverse_mass, dt)
+        done = taken + step + 1
+        now = schedule.time + done * dt
         gravity = ramp(now, schedule.gravity_from, schedule.gravity_to, schedule.gravity_time)
         load = ramp(now, schedule.load_from, schedule.load_to, schedule.load_time)
         forces(q, memory.seen, memory.force, gravity, load, dt, model)
-        begun = goes_on(taken + step + 1, taken + steps, limit)
+        # whether the next one follows at once: there is one, and no look at the disks comes before it
+        begun = step + 1 < steps and (done % LOOK_EVERY != 0 or not limit < np.inf)
         if begun:
-            _end(integrator, q, v, memory, memory.seen, inverse_mass, dt)
+            _turn(integrator, q, v, memory, memory.force, memory.seen, inverse_mass, dt)
         else:
-            _end(integrator, q, v, memory, None, inverse_mass, dt)
+            _turn(integrator, q, v, memory, memory.force, None, inverse_mass, dt)
     return steps
 
 
@@ -176,12 +166,6 @@ def ramp(time, start, end, duration):
     if time >= duration:
         return end
     return start + (end - start) * (time / duration)
-
-
-@kernel
-def goes_on(step, steps, limit):
-    """Whether step number ``step`` follows at once: there is one, and no look at the disks comes before it."""
-    return step < steps and (step % LOOK_EVERY != 0 or not limit < math.inf)
 
 
 @kernel(forceinline=True)
