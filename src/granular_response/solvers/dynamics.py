@@ -35,7 +35,6 @@ from .candidates import Candidates
 from .overlaps import overlap_at_start
 from .problem import Problem
 from .springs import carry_springs, spring_contacts
-from .system import OPTIONS as SYSTEM
 
 Ramp = tuple[float, float, float]
 
@@ -64,6 +63,8 @@ class RelaxationOptions:
     swings: float = 20.0
     #: Kinetic energy per disk that is rounding: what is left of it need not fall any more.
     motionless: float = 1e-24
+    #: Part of its weight by which forces on a part of a packing that touches nothing may be out of balance: rounding.
+    floats: float = 1e-9
     #: Kinetic energy of a disk that still rolls, over the mean of those that bear others, where accelerations decide.
     rolls: float = 10.0
     #: Acceleration of a disk with fewer than two contacts from which on it falls, or rolls down another one (g).
@@ -331,7 +332,7 @@ class Dynamics:
         force = -weight
         np.add.at(force, problem.load_disk, self._now(self.load) * problem.load[:, 1])
         borne = np.bincount(part, weight, parts)
-        return bool((np.abs(np.bincount(part, force, parts)) > SYSTEM.event * borne)[~held].any())
+        return bool((np.abs(np.bincount(part, force, parts)) > OPTIONS.floats * borne)[~held].any())
 
     def lifted_disk(self) -> int | None:
         """A disk that its load has torn off the packing and carries up for good; None without one."""
