@@ -9,7 +9,6 @@ from typing import NamedTuple
 from pydantic import Field
 
 from granular_response.contact import without_friction
-from granular_response.kernels.integrators import Integrator
 from granular_response.scene import Scene
 from granular_response.scene.base import Description, NonNegative, Positive
 from granular_response.solvers.problem import Problem
@@ -141,6 +140,7 @@ class Euler(NamedTuple):
     """Symplectic Euler: velocities first, then displacements with them."""
 
     rows: int = 1
+    order: int = 1
 
     def predict(self, x, v, a, b, c, dt):
         return x + (v + a * dt) * dt, v, a, b, v + a * dt
@@ -150,9 +150,6 @@ class Euler(NamedTuple):
 
     def begin(self, history):
         pass
-
-
-RECORD = Integrator(name="euler", title="symplectic Euler", order=1, reference="none", scheme=Euler())
 
 
 def problem(friction: float) -> Problem:

@@ -55,7 +55,7 @@ def test_paths_end(seed):
     record = PathRecord()
 
     def check(_: float) -> None:
-        assert record.work.increments < 150
+        assert record.increments < 150
         assert sum(event.lost for event in record.events) < 10
 
     (state,) = follow(problem, rest, [1.0], record=record, progress=check)

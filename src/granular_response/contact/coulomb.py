@@ -58,10 +58,7 @@ def tangential_frozen(spring, slip_velocity, force_normal, law, rule, time_step)
 
 @kernel
 def tangential(spring, slip_velocity, force_normal, law, rule, time_step):
-    """Force and new spring of a contact that slips for a ``time_step``, by ``rule``: CUT, LITERAL or UNLOADING.
-
-    Along the rolling too, with ``contact.rolling.Rolling`` as the law and the velocity at which the contact rolls.
-    """
+    """Force and new spring of a contact that slips for a ``time_step``, by ``rule``: CUT, LITERAL or UNLOADING."""
     if rule != CUT:
         return tangential_frozen(spring, slip_velocity, force_normal, law, rule, time_step)
     damped, most = law.tangential_damping * slip_velocity, limit(law, magnitude(force_normal))

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ..machine.lanes import select
 from ..machine.machine_code import by_type, kernel
+from .coulomb import tangential
 
 
 class Law(Protocol):
@@ -86,3 +87,25 @@ def normal_force(overlap, shape, approach_velocity, law):
     """Normal force in motion, eq. (2): spring plus dashpot; ``approach_velocity`` is v·n, positive in separation."""
     force = elastic_force(law, overlap, shape) - law.normal_damping * approach_velocity
     return select(force > law.least_force, force, law.least_force)
+
+
+# A contact that is open feels nothing and forgets its spring, which takes no branch. ``normal`` is its force were it
+# closed.
+@kernel
+def frictionless(overlap, nx, nz, normal):
+    """Force ``(fx, fz)`` of a contact with the normal ``(nx, nz)`` on its first body."""
+    fn = select(overlap > 0.0, normal, 0.0)
+    return fn * nx, fn * nz
+
+
+@kernel
+def frictional(overlap, nx, nz, normal, slip_velocity, spring, law, rule, dt):
+    """The same, its tangential part, and the new tangential spring: ``(fx, fz, ft, spring)``.
+
+    ``rule`` : of :mod:`.coulomb`; ``dt`` : time step of the spring.
+    """
+    ft, new = tangential(spring, slip_velocity, normal, law, rule, dt)
+    closed = overlap > 0.0
+    fn = select(closed, normal, 0.0)
+    ft = select(closed, ft, 0.0)
+    return fn * nx - ft * nz, fn * nz + ft * nx, ft, select(closed, new, 0.0)

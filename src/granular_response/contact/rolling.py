@@ -1,7 +1,8 @@
 """The part of a contact along the rolling: a spring and a dashpot against relative spin, under a limit of its own.
 
-All laws share it, as they share the part along the tangent; :func:`.coulomb.cut` is that of both. With the relative
-spin ``w = w_i - w_j`` (``w_i`` at a wall) and the reduced radius ``R`` of :func:`.geometry.reduced_radii`
+All laws share it, as they share the part along the tangent; :func:`.coulomb.tangential` is that of both, here at the
+velocity of the rolling. With the relative spin ``w = w_i - w_j`` (``w_i`` at a wall) and the reduced radius ``R`` of
+:func:`.geometry.reduced_radii`
 
     dpsi/dt = R w,    F_r = -k_R psi - nu_R R w,    |F_r| <= mu_R |f_n|,
 
@@ -12,6 +13,8 @@ and the couple ``R F_r`` turns the first body, its opposite the second: no net f
 from __future__ import annotations
 
 from typing import NamedTuple
+
+from ..machine.machine_code import tell_apart
 
 
 class Rolling(NamedTuple):
@@ -24,6 +27,8 @@ class Rolling(NamedTuple):
     tangential_damping: float = 0.0
     friction: float = 0.0
 
+
+tell_apart(Rolling)
 
 #: Of contacts that roll freely.
 FREE = Rolling()

@@ -15,17 +15,13 @@ from __future__ import annotations
 
 from ..contact.coulomb import CUT, tangential
 from ..contact.geometry import at_wall, between
-from ..contact.law import normal_force
-from ..contact.pair import frictional, frictionless
+from ..contact.law import frictional, frictionless, normal_force
 from ..machine.lanes import WIDTH, gather, put, select, spread, take
 from ..machine.machine_code import kernel
 from .model import Motion
 
-#: Pairs of a run of close indices whose forces are held back before they are added to their second disks: memory
-#: that one vector has just written at another offset cannot be read again at once.
-_BLOCK = 64
-#: Length of the scratch that this takes.
-SCRATCH = 4 * _BLOCK
+#: Length of the scratch for what single pairs add.
+SCRATCH = 4 * WIDTH
 
 
 @kernel(forceinline=True)
@@ -38,39 +34,37 @@ def _couples(overlap, normal, spin, c, rolls, dt):
 
 
 @kernel(forceinline=True)
-def _forces(s, dx, dz, relative, spring, rolls, pairs, motion):
-    """Force on the first disk, its tangential part, and couple, of the pair in slot ``s``, or of several from there on.
-
-    ``dx``, ``dz`` : separation; ``relative`` : velocity along x and z, that of the rims, and spin. Springs advance.
-    """
-    du, dw, rims, spin = relative
-    overlap, nx, nz = between(dx, dz, take(pairs.reach, s, dx))
-    normal = normal_force(overlap, take(pairs.shape, s, dx), du * nx + dw * nz, pairs.law)
-    if spring is None:
-        px, pz = frictionless(overlap, nx, nz, normal)
-        return px, pz, rims, spin
-    slip, before = dw * nx - du * nz - rims, take(spring, s, dx)
-    px, pz, pt, new = frictional(overlap, nx, nz, normal, slip, before, pairs.law, motion.rule, motion.dt)
-    put(spring, s, new)
-    if rolls is None:
-        return px, pz, pt, spin
-    return px, pz, pt, _couples(overlap, normal, spin, s, rolls, motion.dt)
+def _of(array, start, i, column, table, like):
+    """What disk ``i``, or several from there on, have; with a ``table`` the disks in its row ``i`` and those below."""
+    if table is None:
+        return take(array, start + i, like)
+    return gather(array, start, table, i, column, like)
 
 
 @kernel(forceinline=True)
-def _forces_at(like, i, j, s, spring, rolls, pairs, motion):
-    """The same of the disks ``i`` and ``j``, or of as many pairs from there on as ``like`` has lanes."""
+def _forces(like, i, j, s, table, spring, rolls, pairs, motion):
+    """Force on the first disk, its tangential part, and couple, of the disks ``i`` and ``j`` with slot ``s``.
+
+    Or of as many pairs from there on as ``like`` has lanes; with a ``table`` those in its rows. Springs advance.
+    """
     n, q, v, rim = motion.n, motion.q, motion.v, motion.rim
-    dx = take(pairs.dx, s, like) + (take(q, i, like) - take(q, j, like))
-    dz = take(pairs.dz, s, like) + (take(q, n + i, like) - take(q, n + j, like))
-    du = take(v, i, like) - take(v, j, like)
-    dw = take(v, n + i, like) - take(v, n + j, like)
-    rims = spin = like
-    if spring is not None:
-        rims = take(rim, i, like) + take(rim, j, like)
-    if rolls is not None:
-        spin = take(v, 2 * n + i, like) - take(v, 2 * n + j, like)
-    return _forces(s, dx, dz, (du, dw, rims, spin), spring, rolls, pairs, motion)
+    dx = take(pairs.dx, s, like) + (_of(q, 0, i, 0, table, like) - _of(q, 0, j, 1, table, like))
+    dz = take(pairs.dz, s, like) + (_of(q, n, i, 0, table, like) - _of(q, n, j, 1, table, like))
+    du = _of(v, 0, i, 0, table, like) - _of(v, 0, j, 1, table, like)
+    dw = _of(v, n, i, 0, table, like) - _of(v, n, j, 1, table, like)
+    overlap, nx, nz = between(dx, dz, take(pairs.reach, s, like))
+    normal = normal_force(overlap, take(pairs.shape, s, like), du * nx + dw * nz, pairs.law)
+    if spring is None:
+        px, pz = frictionless(overlap, nx, nz, normal)
+        return px, pz, like, like
+    rims = _of(rim, 0, i, 0, table, like) + _of(rim, 0, j, 1, table, like)
+    slip, before = dw * nx - du * nz - rims, take(spring, s, like)
+    px, pz, pt, new = frictional(overlap, nx, nz, normal, slip, before, pairs.law, motion.rule, motion.dt)
+    put(spring, s, new)
+    if rolls is None:
+        return px, pz, pt, like
+    spin = _of(v, 2 * n, i, 0, table, like) - _of(v, 2 * n, j, 1, table, like)
+    return px, pz, pt, _couples(overlap, normal, spin, s, rolls, motion.dt)
 
 
 @kernel(forceinline=True)
@@ -92,62 +86,27 @@ def _add_run(r, spring, rolls, pairs, motion):
     j = pairs.runs[r, 1]
     k = pairs.runs[r, 2]
     s = pairs.runs[r, 3]
-    scratch = pairs.scratch
     while k % WIDTH:
         k -= 1
-        px, pz, pt, pc = _forces_at(0.0, i + k, j + k, s + k, spring, rolls, pairs, motion)
+        px, pz, pt, pc = _forces(0.0, i + k, j + k, s + k, None, spring, rolls, pairs, motion)
         _add(i + k, px, pz, pt, pc, spring, rolls, motion)
         _add(j + k, -px, -pz, pt, -pc, spring, rolls, motion)
-    like = spread(0.0)
-    if j - i >= WIDTH:
-        while k:
-            k -= WIDTH
-            px, pz, pt, pc = _forces_at(like, i + k, j + k, s + k, spring, rolls, pairs, motion)
-            _add(i + k, px, pz, pt, pc, spring, rolls, motion)
-            _add(j + k, -px, -pz, pt, -pc, spring, rolls, motion)
-        return
     while k:
-        end = k
-        start = max(k - _BLOCK, 0)
-        while k > start:
-            k -= WIDTH
-            px, pz, pt, pc = _forces_at(like, i + k, j + k, s + k, spring, rolls, pairs, motion)
-            _add(i + k, px, pz, pt, pc, spring, rolls, motion)
-            put(scratch, k - start, px)
-            put(scratch, _BLOCK + k - start, pz)
-            if spring is not None:
-                put(scratch, 2 * _BLOCK + k - start, pt)
-            if rolls is not None:
-                put(scratch, 3 * _BLOCK + k - start, pc)
-        while end > start:
-            end -= WIDTH
-            px = take(scratch, end - start, like)
-            pz = take(scratch, _BLOCK + end - start, like)
-            pt = take(scratch, 2 * _BLOCK + end - start, like)
-            pc = take(scratch, 3 * _BLOCK + end - start, like)
-            _add(j + end, -px, -pz, pt, -pc, spring, rolls, motion)
+        k -= WIDTH
+        px, pz, pt, pc = _forces(spread(0.0), i + k, j + k, s + k, None, spring, rolls, pairs, motion)
+        _add(i + k, px, pz, pt, pc, spring, rolls, motion)
+        _add(j + k, -px, -pz, pt, -pc, spring, rolls, motion)
 
 
 @kernel
 def _add_single_pairs(start, spring, rolls, pairs, motion):
     """Add the forces of the runs of count one, from ``start`` on, several at once; their slots follow one another."""
     runs, scratch = pairs.runs, pairs.scratch
-    n, q, v, f, rim = motion.n, motion.q, motion.v, motion.f, motion.rim
+    n, f = motion.n, motion.f
     end = runs.shape[0]
     whole = end - (end - start) % WIDTH
-    like = spread(0.0)
     for r in range(start, whole, WIDTH):
-        s = runs[r, 3]
-        dx = take(pairs.dx, s, like) + (gather(q, 0, runs, r, 0) - gather(q, 0, runs, r, 1))
-        dz = take(pairs.dz, s, like) + (gather(q, n, runs, r, 0) - gather(q, n, runs, r, 1))
-        du = gather(v, 0, runs, r, 0) - gather(v, 0, runs, r, 1)
-        dw = gather(v, n, runs, r, 0) - gather(v, n, runs, r, 1)
-        rims = spin = like
-        if spring is not None:
-            rims = gather(rim, 0, runs, r, 0) + gather(rim, 0, runs, r, 1)
-        if rolls is not None:
-            spin = gather(v, 2 * n, runs, r, 0) - gather(v, 2 * n, runs, r, 1)
-        px, pz, pt, pc = _forces(s, dx, dz, (du, dw, rims, spin), spring, rolls, pairs, motion)
+        px, pz, pt, pc = _forces(spread(0.0), r, r, runs[r, 3], runs, spring, rolls, pairs, motion)
         put(scratch, 0, px)
         put(scratch, WIDTH, pz)
         put(scratch, 2 * WIDTH, pt)
@@ -168,7 +127,7 @@ def _add_single_pairs(start, spring, rolls, pairs, motion):
     for r in range(whole, end):
         i = runs[r, 0]
         j = runs[r, 1]
-        px, pz, pt, pc = _forces_at(0.0, i, j, runs[r, 3], spring, rolls, pairs, motion)
+        px, pz, pt, pc = _forces(0.0, i, j, runs[r, 3], None, spring, rolls, pairs, motion)
         _add(i, px, pz, pt, pc, spring, rolls, motion)
         _add(j, -px, -pz, pt, -pc, spring, rolls, motion)
 

@@ -7,7 +7,6 @@ import math
 import numpy as np
 
 from ..machine.machine_code import kernel
-from ..state import FLOOR
 
 #: Runs with fewer pairs than this are not worth a vector loop of their own.
 SHORTEST_RUN = 24
@@ -144,22 +143,3 @@ def count_closed(closed, first, second, wall_disk, count):
     for k in range(len(wall_disk)):
         if closed[pairs + k]:
             count[wall_disk[k]] += 1
-
-
-@kernel
-def rolling(closed, pairs, count, wall_disk, wall, v, inverse_mass):
-    """How many disks touch the floor and nothing else, and the energy of their motion along it and of their spin.
-
-    ``closed``, ``count`` : as :func:`mark_closed` and :func:`count_closed` fill them; ``pairs`` : number of listed
-    pairs; ``v``, ``inverse_mass`` : (2 n,) or (3 n,) velocities and inverse masses.
-    """
-    n = len(count)
-    rollers = 0
-    energy = 0.0
-    for k in range(len(wall_disk)):
-        i = wall_disk[k]
-        if closed[pairs + k] and wall[k] == FLOOR and count[i] == 1:
-            rollers += 1
-            for place in range(i, len(v), 2 * n):
-                energy += 0.5 * v[place] * v[place] / inverse_mass[place]
-    return rollers, energy

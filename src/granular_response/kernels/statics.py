@@ -15,6 +15,7 @@ Vectors are laid out ``[x | z | angle]`` as everywhere in ``kernels``. For conta
 from __future__ import annotations
 
 import math
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ from numpy.typing import NDArray
 from ..contact.coulomb import cut, limit, limit_slope
 from ..contact.geometry import at_wall, displaced
 from ..contact.law import elastic_force, energy, stiffness
+from ..contact.rolling import FREE
 from ..machine.lanes import WIDTH, anywhere, gather, magnitude, put, quotient_where, root, select, spread, take
 from ..machine.machine_code import kernel
 from ..state import AT_LIMIT, OPEN, SLIDING, STICKING
@@ -45,11 +47,17 @@ class Listed(NamedTuple):
     shape: Floats | None  #: (m + w,) what the law needs of the radii
     pair_law: Any  #: named tuples of ``contact``, of one class
     wall_law: Any
-    arm: Floats  #: (m + w,) reduced radii, or (0,) where no contact resists rolling
     pair_rolling: Any  #: contact.rolling.Rolling, of zeros for contacts that do not resist
     wall_rolling: Any
+    arm: Floats  #: (m + w,) reduced radii, or (0,) where no contact resists rolling
     radius: Floats  #: (n,) of all disks
     loaded: NDArray[Any]  #: (n,) ties that loads count as
+
+
+def of_rows(laws) -> dict[str, Any]:
+    """The laws of :class:`Listed` from those between disks and at walls in each row (``state.ROWS``) that there is."""
+    names = "pair_law", "wall_law", "pair_rolling", "wall_rolling"
+    return dict(zip(names, chain(*laws, (FREE, FREE)), strict=False))
 
 
 class Increment(NamedTuple):
@@ -141,6 +149,18 @@ def _angle(sine, cosine):
     if abs(sine) < SMALL_TURN * cosine:
         return _small_angle(sine, cosine)
     return math.atan2(sine, cosine)
+
+
+@kernel(forceinline=True)
+def _angles(sine, cosine, room):
+    """The same of lanes too."""
+    if not anywhere(magnitude(sine) >= SMALL_TURN * cosine):
+        return _small_angle(sine, cosine)
+    put(room, 0, sine)
+    put(room, WIDTH, cosine)
+    for k in range(WIDTH):
+        room[k] = _angle(room[k], room[WIDTH + k])
+    return take(room, 0, sine)
 
 
 @kernel(forceinline=True)
@@ -240,66 +260,44 @@ def _fill(c, overlap, slip, curved, law, spring0, fixed, step, listed, out):
     return bent, wrong
 
 
-@kernel
-def one_pair(c, spring0, fixed, step, listed, out):
-    """Fill in one pair; arguments and results as of :func:`_fill`."""
-    n, i, j, radius = listed.radius.size, listed.disks[c, 0], listed.disks[c, 1], listed.radius
+@kernel(forceinline=True)
+def fill_pair(c, like, spring0, fixed, step, listed, room, out):
+    """Fill in pair ``c``, or as many from there on as ``like`` has lanes; the rest as of :func:`_fill`."""
+    n, disks, radius = listed.radius.size, listed.disks, listed.radius
     q, q0, ahead, length = step.q, step.q0, step.ahead, step.length
-    ux, uz = q[i] - q[j], q[n + i] - q[n + j]
-    wx, wz = ux - (q0[i] - q0[j]), uz - (q0[n + i] - q0[n + j])
-    dx, dz, distance, overlap = displaced(ux, uz, listed.dx[c], listed.dz[c], listed.distance[c], listed.gap[c])
-    slip, curved = 0.0, 0.0
+    ux = gather(q, 0, disks, c, 0, like) - gather(q, 0, disks, c, 1, like)
+    uz = gather(q, n, disks, c, 0, like) - gather(q, n, disks, c, 1, like)
+    wx = ux - (gather(q0, 0, disks, c, 0, like) - gather(q0, 0, disks, c, 1, like))
+    wz = uz - (gather(q0, n, disks, c, 0, like) - gather(q0, n, disks, c, 1, like))
+    distance0, gap = take(listed.distance, c, like), take(listed.gap, c, like)
+    dx, dz, distance, overlap = displaced(ux, uz, take(listed.dx, c, like), take(listed.dz, c, like), distance0, gap)
+    slip, curved = like, like
     if spring0 is not None:
         px, pz, before, sine, cosine = _turned(dx, dz, wx, wz)
-        roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
-        slip = 0.5 * (before + distance) * _angle(sine, cosine) - roll
+        ai = gather(q, 2 * n, disks, c, 0, like) - gather(q0, 2 * n, disks, c, 0, like)
+        aj = gather(q, 2 * n, disks, c, 1, like) - gather(q0, 2 * n, disks, c, 1, like)
+        roll = gather(radius, 0, disks, c, 0, like) * ai + gather(radius, 0, disks, c, 1, like) * aj
+        slip = 0.5 * (before + distance) * _angles(sine, cosine, room) - roll
         if fixed is not None:
-            ax, az = length * (ahead[i] - ahead[j]), length * (ahead[n + i] - ahead[n + j])
-            curved = _curved(px, pz, wx, wz, ax, az, 1.0 / listed.distance[c])
-    out.nx[c], out.nz[c] = dx / distance, dz / distance
+            ax = length * (gather(ahead, 0, disks, c, 0, like) - gather(ahead, 0, disks, c, 1, like))
+            az = length * (gather(ahead, n, disks, c, 0, like) - gather(ahead, n, disks, c, 1, like))
+            curved = _curved(px, pz, wx, wz, ax, az, 1.0 / distance0)
+    put(out.nx, c, dx / distance)
+    put(out.nz, c, dz / distance)
     return _fill(c, overlap, slip, curved, listed.pair_law, spring0, fixed, step, listed, out)
 
 
 @kernel
 def _fill_pairs(spring0, fixed, step, listed, room, out):
     """Fill in all pairs, eight at once; their largest bend and contradiction."""
-    q, q0, ahead, length = step.q, step.q0, step.ahead, step.length
-    n, m, disks, radius = listed.radius.size, listed.pairs, listed.disks, listed.radius
-    like = spread(0.0)
-    bends, wrongs = spread(0.0), spread(0.0)
-    bend, worst = 0.0, 0.0
-    for c in range(0, m, WIDTH):
-        alone = c + WIDTH > m
-        if not alone:
-            ux = gather(q, 0, disks, c, 0) - gather(q, 0, disks, c, 1)
-            uz = gather(q, n, disks, c, 0) - gather(q, n, disks, c, 1)
-            wx = ux - (gather(q0, 0, disks, c, 0) - gather(q0, 0, disks, c, 1))
-            wz = uz - (gather(q0, n, disks, c, 0) - gather(q0, n, disks, c, 1))
-            distance0 = take(listed.distance, c, like)
-            dx, dz, distance, overlap = displaced(
-                ux, uz, take(listed.dx, c, like), take(listed.dz, c, like), distance0, take(listed.gap, c, like)
-            )
-            px, pz, before, sine, cosine = _turned(dx, dz, wx, wz)
-            alone = spring0 is not None and anywhere(magnitude(sine) >= SMALL_TURN * cosine)
-        if alone:  # those of a far turn, and what is left of a vector
-            for k in range(c, min(c + WIDTH, m)):
-                bent, wrong = one_pair(k, spring0, fixed, step, listed, out)
-                bend, worst = select(bent > bend, bent, bend), select(wrong > worst, wrong, worst)
-            continue
-        slip, curved = like, like
-        if spring0 is not None:
-            ai, aj = gather(q, 2 * n, disks, c, 0), gather(q, 2 * n, disks, c, 1)
-            ai, aj = ai - gather(q0, 2 * n, disks, c, 0), aj - gather(q0, 2 * n, disks, c, 1)
-            roll = gather(radius, 0, disks, c, 0) * ai + gather(radius, 0, disks, c, 1) * aj
-            slip = 0.5 * (before + distance) * _small_angle(sine, cosine) - roll
-            if fixed is not None:
-                ax = length * (gather(ahead, 0, disks, c, 0) - gather(ahead, 0, disks, c, 1))
-                az = length * (gather(ahead, n, disks, c, 0) - gather(ahead, n, disks, c, 1))
-                curved = _curved(px, pz, wx, wz, ax, az, 1.0 / distance0)
-        put(out.nx, c, dx / distance)
-        put(out.nz, c, dz / distance)
-        bents, wrong8 = _fill(c, overlap, slip, curved, listed.pair_law, spring0, fixed, step, listed, out)
-        bends, wrongs = select(bents > bends, bents, bends), select(wrong8 > wrongs, wrong8, wrongs)
+    whole = listed.pairs - listed.pairs % WIDTH
+    bends, wrongs, bend, worst = spread(0.0), spread(0.0), 0.0, 0.0
+    for c in range(0, whole, WIDTH):
+        bent8, wrong8 = fill_pair(c, spread(0.0), spring0, fixed, step, listed, room, out)
+        bends, wrongs = select(bent8 > bends, bent8, bends), select(wrong8 > wrongs, wrong8, wrongs)
+    for c in range(whole, listed.pairs):
+        bent, wrong = fill_pair(c, 0.0, spring0, fixed, step, listed, room, out)
+        bend, worst = select(bent > bend, bent, bend), select(wrong > worst, wrong, worst)
     put(room, 0, bends)
     put(room, WIDTH, wrongs)
     for k in range(WIDTH):
@@ -335,7 +333,7 @@ def contacts(step, pair_spring, wall_spring, listed, room, out, force):
     step, listed : :class:`Increment` and :class:`Listed`.
     pair_spring, wall_spring : ``step.spring``, None where these contacts have no friction.
     room : (2 WIDTH,) numbers.
-    out : :class:`Response`, filled; what belongs to the rolling by :func:`along_rolling`.
+    out : :class:`Response`, filled.
     force : (dof,) generalised contact force, added to.
 
     Returns
@@ -362,12 +360,13 @@ def contacts(step, pair_spring, wall_spring, listed, room, out, force):
         force[n + j] -= fz
         if turns:
             force[2 * n + j] -= radius[j] * tangential
-    return bend, max(worst, wrong)
+    further = _along_rolling(step, step.fixed, listed, out, force) if out.status.size > listed.gap.size else 0.0
+    return bend, max(worst, wrong, further)
 
 
 @kernel
-def along_rolling(step, fixed, listed, out, force):
-    """Rolling resistance of contacts of which :func:`contacts` has made the rest; arguments as there.
+def _along_rolling(step, fixed, listed, out, force):
+    """Fill in rolling resistance after all else of :func:`contacts`; arguments as there.
 
     ``fixed`` : ``step.fixed``. Returns the largest force by which those with kept statuses differ from those by the
     return map.

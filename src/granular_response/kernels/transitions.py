@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.coulomb import limit, limit_slope
@@ -23,11 +24,15 @@ NOTHING, OPENS, CLOSES, SLIDES, STICKS = 0, 1, 2, 3, 4
 
 
 class Changes(NamedTuple):
-    """What each of m + w contacts does next in each row (``state.ROWS``), to be filled."""
+    """What each of m + w contacts does next in each row (``state.ROWS``)."""
 
     what: NDArray[Any]
     left: NDArray[Any]  #: force until then (mean weights)
     rate: NDArray[Any]  #: of its fall
+
+    def due(self, force: float) -> NDArray[np.intp]:
+        """Contacts that are within a ``force`` of their change."""
+        return ((self.rate > 0.0) & (self.left <= force)).nonzero()[0]
 
 
 class Columns(NamedTuple):
@@ -127,20 +132,28 @@ def count_ties(listed, status, normal, tip, count):
 
 
 @kernel(forceinline=True)
-def _next(status, apart, along, overlap, normal, tangential, k, law, tip, negligible):
-    """What contacts of a law do next that are not those of a rattler, for numbers or for vectors of them."""
-    unit = law.normal_stiffness
-    is_open, parts = magnitude(status) <= 0.0, unit * apart
-    sense = select(is_open, -1.0, 1.0)
-    goes = sense * parts > negligible
+def _next(c, like, rates, law, listed, here, status, tip, negligible, found):
+    """Fill in what contact ``c`` does next, or as many from there on as ``like`` has lanes, that is no rattler's.
+
+    ``rates`` : at which it parts and slips. Returns whether one is closed that bears nothing.
+    """
+    apart, along = rates
+    overlap, normal, sense = take(here.overlap, c, like), take(here.normal, c, like), take(status, c, like)
+    k, unit = stiffness(law, overlap, take(listed.shape, c, like)), law.normal_stiffness
+    is_open, parts = magnitude(sense) <= 0.0, unit * apart
+    sign = select(is_open, -1.0, 1.0)
+    goes = sign * parts > negligible
     what = select(goes, select(is_open, float(CLOSES), float(OPENS)), 0.0)
-    left, rate = select(goes, sense * (unit * overlap), 0.0), select(goes, sense * parts, 0.0)
+    left, rate = select(goes, sign * (unit * overlap), 0.0), select(goes, sign * parts, 0.0)
     if law.friction > 0.0:
         most, grows = limit(law, normal), -law.tangential_stiffness * along
-        falls = limit_slope(law, normal) * k * apart
-        does, until, speed = _next_to_limit(what, left, rate, status, most, tangential, grows, falls, tip, negligible)
+        falls, force = limit_slope(law, normal) * k * apart, take(here.tangential, c, like)
+        does, until, speed = _next_to_limit(what, left, rate, sense, most, force, grows, falls, tip, negligible)
         what, left, rate = select(is_open, what, does), select(is_open, left, until), select(is_open, rate, speed)
-    return what, left, rate
+    put(found.what, c, what)
+    put(found.left, c, left)
+    put(found.rate, c, rate)
+    return anywhere((magnitude(sense) > 0.0) & (normal <= tip))
 
 
 @kernel
@@ -152,39 +165,24 @@ def next_changes(v, listed, here, status, tip, negligible, count, found):
     ``tip``, ``negligible`` : a force and a rate of a force that are none; ``count`` (3, n) : room to count in.
     A rattler that rests on one contact and that no more ties than it has freedoms, pushed along by another disk, bears
     nothing there however it moves: such a contact opens when the other disk withdraws, and nothing else happens to it.
-
-    Returns how many are within ``tip`` of their change.
     """
-    radius, disks, size, m = listed.radius, listed.disks, here.normal.size, listed.pairs
+    radius, disks, size = listed.radius, listed.disks, here.normal.size
     n, like, turns = radius.size, spread(0.0), v.size == 3 * radius.size
     rests = False
-    whole = m - m % WIDTH
+    whole = listed.pairs - listed.pairs % WIDTH
     for c in range(0, whole, WIDTH):
-        wx = gather(v, 0, disks, c, 0) - gather(v, 0, disks, c, 1)
-        wz = gather(v, n, disks, c, 0) - gather(v, n, disks, c, 1)
+        wx = gather(v, 0, disks, c, 0, like) - gather(v, 0, disks, c, 1, like)
+        wz = gather(v, n, disks, c, 0, like) - gather(v, n, disks, c, 1, like)
         x, z = take(here.nx, c, like), take(here.nz, c, like)
         along = wz * x - wx * z
         if turns:
-            turn = gather(radius, 0, disks, c, 0) * gather(v, 2 * n, disks, c, 0)
-            along = along - (turn + gather(radius, 0, disks, c, 1) * gather(v, 2 * n, disks, c, 1))
-        xi, fn, sense = take(here.overlap, c, like), take(here.normal, c, like), take(status, c, like)
-        rests = rests or anywhere((magnitude(sense) > 0.0) & (fn <= tip))
-        law = listed.pair_law
-        k = stiffness(law, xi, take(listed.shape, c, like))
-        does, until, speed = _next(
-            sense, wx * x + wz * z, along, xi, fn, take(here.tangential, c, like), k, law, tip, negligible
-        )
-        put(found.what, c, does)
-        put(found.left, c, until)
-        put(found.rate, c, speed)
+            turn = gather(radius, 0, disks, c, 0, like) * gather(v, 2 * n, disks, c, 0, like)
+            along = along - (turn + gather(radius, 0, disks, c, 1, like) * gather(v, 2 * n, disks, c, 1, like))
+        rates = wx * x + wz * z, along
+        rests |= _next(c, like, rates, listed.pair_law, listed, here, status, tip, negligible, found)
     for c in range(whole, size):
-        law, fn, xi = law_of(listed, c), here.normal[c], here.overlap[c]
         apart, along, _ = _rates(c, v, here.nx[c], here.nz[c], listed)
-        rests = rests or (status[c] != 0.0 and fn <= tip)
-        k = stiffness(law, xi, take(listed.shape, c, 0.0))
-        found.what[c], found.left[c], found.rate[c] = _next(
-            status[c], apart, along, xi, fn, here.tangential[c], k, law, tip, negligible
-        )
+        rests |= _next(c, 0.0, (apart, along), law_of(listed, c), listed, here, status, tip, negligible, found)
     for r in range(size, status.size):
         c, does, until, speed = r - size, 0.0, 0.0, 0.0
         if status[r] != 0.0:
@@ -198,10 +196,6 @@ def next_changes(v, listed, here, status, tip, negligible, count, found):
         found.what[r], found.left[r], found.rate[r] = does, until, speed
     if rests:
         _keep_rattlers(v, listed, here, status, tip, negligible, count, found)
-    due = 0
-    for c in range(found.rate.size):
-        due += found.rate[c] > 0.0 and found.left[c] <= tip
-    return due
 
 
 @kernel

@@ -1,10 +1,10 @@
 """Factorisations of tangent stiffnesses: banded where the band is narrow, multifrontal elsewhere.
 
-:func:`elimination` chooses; solvers know the protocols :class:`Factor` and :class:`Storage` only.
+:func:`elimination` chooses.
 """
 
-from .factor import Eliminated, Factor, Storage
+from .factor import Factor
 from .nearby import Sequence
-from .ordering import REMEMBERED, Elimination, elimination
+from .ordering import REMEMBERED, Eliminated, Elimination, Storage, elimination
 
 __all__ = ["REMEMBERED", "Eliminated", "Elimination", "Factor", "Sequence", "Storage", "elimination"]

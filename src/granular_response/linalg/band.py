@@ -16,7 +16,8 @@ from scipy.sparse.linalg import splu
 from ..machine.lanes import aligned_zeros
 from ..state import FloatArray
 from . import band_lu
-from .factor import AcrossDiagonal, Factor
+from .factor import Entries, Factor
+from .multifrontal import LU
 
 #: Largest pivot over the largest entry of the matrix above which rows are exchanged after all: each digit of it is one
 #: that solutions lose (J. H. Wilkinson, J. ACM 8, 281, 1961). It is below 1 in most packings, and reached 2000 where
@@ -24,16 +25,14 @@ from .factor import AcrossDiagonal, Factor
 GROWTH = 1e6
 
 
-class Band:
-    """Banded storage of all matrices with one symmetric sparsity pattern (column-compressed)."""
+class Band(Entries):
+    """Banded storage of all matrices of one pattern."""
 
     def __init__(self, indptr: np.ndarray, indices: np.ndarray):
         self.n = len(indptr) - 1
-        self.across = AcrossDiagonal()
         column = np.repeat(np.arange(self.n), np.diff(indptr))
         below = indices - column
-        self.half_width = int(below.max(initial=0))
-        self._b = band_lu.rounded(self.half_width)
+        self._b = band_lu.rounded(int(below.max(initial=0)))
         #: (e,) where the entries go in the rows
         self._place = indices * band_lu.stride(self._b) + (self._b - below)
 
@@ -48,12 +47,12 @@ class Band:
         """The number of negative eigenvalues of a symmetric matrix."""
         return self.factor(matrix).negative_pivots
 
-    def definite_factor(self, matrix: sp.csc_array) -> Factor | None:
+    def definite_factor(self, matrix: sp.csc_array) -> BandLU | None:
         """Factorisation; None when the matrix is not positive definite."""
         factor = self.factor(matrix)
         return factor if (factor.pivots > 0.0).all() else None
 
-    def rough_factor(self, matrix: sp.csc_array) -> None:
+    def rough_factor(self, matrix: sp.csc_array) -> LU | None:
         """None: an exact one is as cheap."""
         return None
 

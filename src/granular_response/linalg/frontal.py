@@ -62,22 +62,6 @@ class Factors(NamedTuple):
     whole: bool  #: whether of a matrix that is not symmetric
 
 
-@kernel
-def mark(front_of, data, known, change, changed):
-    """Mark the fronts, ``front_of`` (e,), of entries (e,) that differ by more than ``change`` from the known ones."""
-    for k in range(len(data)):
-        if abs(data[k] - known[k]) > change:
-            changed[front_of[k]] = True
-
-
-@kernel
-def keep(front_of, data, anew, known):
-    """Entries (e,) of the fronts that were made ``anew`` (f,) become the known ones."""
-    for k in range(len(data)):
-        if anew[front_of[k]]:
-            known[k] = data[k]
-
-
 @kernel(nogil=True)
 def gather(tree, front, matrix, place, values, f11):
     """Fill the first blocks of a front with its columns of a matrix, and its rows if it is not symmetric."""

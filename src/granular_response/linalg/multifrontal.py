@@ -32,7 +32,7 @@ from ..machine.lapack import addresses
 from ..state import FloatArray
 from . import frontal
 from .dissection import Dissection
-from .factor import AcrossDiagonal
+from .factor import Entries
 from .frontal import Matrix, Store, Tree
 
 #: Numbers of exact factorisations, and of rough ones.
@@ -66,7 +66,7 @@ class _Range:
     outside: np.ndarray  #: those beyond it that it leaves something for
 
 
-class Multifrontal:
+class Multifrontal(Entries):
     """Fronts of all matrices with the pattern of a dissected network; ``freedoms`` unknowns for each node."""
 
     def __init__(self, dissection: Dissection, freedoms: int):
@@ -94,7 +94,6 @@ class Multifrontal:
         )  # fmt: skip
         self.own, self.outer = np.diff(start), sizes
         self._front_of_entries: np.ndarray | None = None
-        self.across = AcrossDiagonal()
         self._split()
         self._lay_out()
 
@@ -179,22 +178,23 @@ class Multifrontal:
         """
         return self._factorised(matrix, keep=False).negative
 
-    def definite_factor(self, matrix: sp.csc_array) -> Symmetric | None:
+    def definite_factor(self, matrix: sp.csc_array) -> LU | None:
         """Cholesky factorisation; None when the matrix is not positive definite."""
         fronts = self._factorised(matrix, definite=True)
-        return None if fronts.failed else Symmetric(self, fronts)
+        return None if fronts.failed else LU(self, fronts)
 
     def rough_factor(self, matrix: sp.csc_array) -> LU | None:
-        """LU in single precision that can be renewed; None of a small matrix, or exactly singular to that precision.
+        """LU in half the time that can be renewed, of single precision, for solutions by iteration (:mod:`.nearby`).
+
+        None of a small matrix, or of one that is exactly singular to that precision.
 
         On the path of a large packing this saves two fifths of the time. A minimisation, whose Cholesky factorisations
         take half of that, gains nothing by it.
         """
         if not self.large:
             return None
-        left: dict[int, FloatArray] = {}
-        fronts = self._factorised(matrix, whole=True, definite=True, kind=ROUGH, left=left)
-        return None if fronts.failed else LU(self, fronts, Renewal(matrix.data.copy(), left))
+        fronts = self._factorised(matrix, whole=True, definite=True, kind=ROUGH, left={})
+        return None if fronts.failed else LU(self, fronts, matrix.data.copy())
 
     @cached_property
     def _at(self) -> dict[bool, np.ndarray]:
@@ -222,9 +222,11 @@ class Multifrontal:
             at=at[:-1] if keep else np.zeros(len(self.own), np.int64),
             values=np.empty(int(at[-1] if keep else 0), kind),
             pivots=np.zeros(self.unknowns, np.int32),
+            whole=whole,
             definite=definite,
+            left=left,
         )
-        _Elimination(self, matrix, fronts, whole=whole, keep=keep, left=left).run(self.ranges, self.above)
+        _Elimination(self, matrix, fronts, keep=keep).run(self.ranges, self.above)
         if fronts.failed and not definite:
             raise RuntimeError("Factor is exactly singular")
         return fronts
@@ -237,7 +239,9 @@ class _Fronts:
     at: np.ndarray
     values: FloatArray
     pivots: np.ndarray
+    whole: bool  #: whether of a matrix that is not symmetric
     definite: bool  #: whether a front that is not positive definite is a failure
+    left: dict[int, FloatArray] | None  #: what subtrees and fronts above them have left; None: that is given away
     failed: bool = False
     negative: int = 0
 
@@ -245,25 +249,14 @@ class _Fronts:
 class _Elimination:
     """One factorisation on its way."""
 
-    def __init__(
-        self,
-        pattern: Multifrontal,
-        matrix: sp.csc_array,
-        fronts: _Fronts,
-        *,
-        whole: bool,
-        keep: bool = True,
-        left: dict[int, FloatArray] | None = None,
-    ):
-        self.pattern, self.fronts, self.whole, self.keep = pattern, fronts, whole, keep
-        across = pattern.across(matrix) if whole else np.zeros(0, matrix.indices.dtype)
-        self.matrix = Matrix(matrix.indptr, matrix.indices, matrix.data, whole, across)
+    def __init__(self, pattern: Multifrontal, matrix: sp.csc_array, fronts: _Fronts, *, keep: bool = True):
+        self.pattern, self.fronts, self.whole, self.keep = pattern, fronts, fronts.whole, keep
+        across = pattern.across(matrix) if fronts.whole else np.zeros(0, matrix.indices.dtype)
+        self.matrix = Matrix(matrix.indptr, matrix.indices, matrix.data, fronts.whole, across)
         self.kind = fronts.values.dtype
         self.lapack = addresses(self.kind)
-        #: what subtrees and fronts above them leave for the fronts above these; given away once it has been added
-        #: unless it is asked for
-        self.left: dict[int, FloatArray] = {} if left is None else left
-        self.spent = left is None
+        #: what subtrees and fronts above them leave for the fronts above these
+        self.left = {} if fronts.left is None else fronts.left
         self.free: SimpleQueue[Store] = SimpleQueue()
 
     def run(self, ranges: Sequence[_Range], above: Sequence[int]) -> None:
@@ -334,7 +327,7 @@ class _Elimination:
         update = np.zeros(outer * outer, self.kind)
         frontal.gather(tree, front, self.matrix, store.place, values, f11)
         for child in pattern.children(front):
-            of_child = self.left.pop(child) if self.spent else self.left[child]
+            of_child = self.left.pop(child) if fronts.left is None else self.left[child]
             frontal.add_child(tree, front, child, of_child, 0, self.whole, values, f11, update, 0)
         info = np.zeros(1, np.int32)
         before = None if self.whole or fronts.definite else values[f11 : f11 + own * own].copy()
@@ -362,13 +355,14 @@ class _Elimination:
         self.left[front] = update
 
 
-class Multifactor:
-    """Factorised fronts."""
+class LU:
+    """Factorised fronts: L U or, of a symmetric matrix, L L^T.
 
-    whole: bool  #: whether of a matrix that is not symmetric
+    A rough one, with the ``entries`` (e,) that it was made of, can be made anew in parts.
+    """
 
-    def __init__(self, pattern: Multifrontal, fronts: _Fronts):
-        self._pattern, self._fronts = pattern, fronts
+    def __init__(self, pattern: Multifrontal, fronts: _Fronts, entries: FloatArray | None = None):
+        self._pattern, self._fronts, self._entries = pattern, fronts, entries
 
     def solve(self, right: FloatArray) -> FloatArray:
         """The solutions for a right-hand side (n,), or for k of them (k, n), to the precision of the fronts."""
@@ -380,7 +374,7 @@ class Multifactor:
         lapack = addresses(kind)
         room = int(pattern.outer.max(initial=0))
         nowhere = np.zeros(0, np.int64)
-        factors = frontal.Factors(fronts.at, fronts.values, fronts.pivots, self.whole)
+        factors = frontal.Factors(fronts.at, fronts.values, fronts.pivots, fronts.whole)
 
         def down(first: int, last: int, below: int, outside: np.ndarray) -> FloatArray:
             gathered = np.zeros(len(outside), kind)
@@ -402,30 +396,6 @@ class Multifactor:
             spread(lambda s: up(s.first, s.last), pattern.ranges)
         return np.asarray(x, float)
 
-
-class Symmetric(Multifactor):
-    """Factorised fronts of a symmetric matrix."""
-
-    whole = False
-
-
-@dataclass
-class Renewal:
-    """What a factorisation needs to be made anew in parts."""
-
-    entries: FloatArray  #: of the matrix
-    left: dict[int, FloatArray]  #: what subtrees and fronts above them have left
-
-
-class LU(Multifactor):
-    """Factorised fronts of any matrix; a rough one can be made anew in parts, with its ``renewal``."""
-
-    whole = True
-
-    def __init__(self, pattern: Multifrontal, fronts: _Fronts, renewal: Renewal | None = None):
-        super().__init__(pattern, fronts)
-        self._renewal = renewal
-
     @cached_property
     def negative_pivots(self) -> int:
         """1 where the determinant is negative, else 0."""
@@ -444,12 +414,16 @@ class LU(Multifactor):
         return float(self._pattern.multiplications().sum()) / (OPTIONS.multiplications * self._fronts.values.size)
 
     def renew(self, matrix: sp.csc_array, change: float, most: float) -> bool:
-        """Bring a rough one up to date in the subtrees with changed entries and above them; see :class:`.Renewable`."""
-        assert self._renewal is not None
+        """Factorise a rough one anew where entries have changed by more than ``change``, and in the fronts above.
+
+        False, and nothing is done, where that would take more than the part ``most`` of the work of all. RuntimeError
+        where it is exactly singular; the factorisation is lost then.
+        """
+        assert self._entries is not None
         pattern = self._pattern
         front_of = pattern.front_of_entries(matrix)
         anew = np.zeros(len(pattern.own), np.bool_)
-        frontal.mark(front_of, matrix.data, self._renewal.entries, change, anew)
+        anew[front_of[np.abs(matrix.data - self._entries) > change]] = True
         ranges = [span for span in pattern.ranges if anew[span.first : span.last].any()]
         for span in ranges:
             anew[span.first : span.last] = True
@@ -459,10 +433,10 @@ class LU(Multifactor):
         if work[anew].sum() > most * work.sum():
             return False
         above = [front for front in pattern.above if anew[front]]
-        _Elimination(pattern, matrix, self._fronts, whole=True, left=self._renewal.left).run(ranges, above)
+        _Elimination(pattern, matrix, self._fronts).run(ranges, above)
         if self._fronts.failed:
             raise RuntimeError("Factor is exactly singular")
-        frontal.keep(front_of, matrix.data, anew, self._renewal.entries)
+        np.copyto(self._entries, matrix.data, where=anew[front_of])
         return True
 
 

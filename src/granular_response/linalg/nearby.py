@@ -14,7 +14,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..state import FloatArray
-from .factor import Factor, Renewable, Storage
+from .factor import Factor
+from .multifrontal import LU
+from .ordering import Storage
 
 
 @dataclass(frozen=True)
@@ -36,22 +38,20 @@ OPTIONS = NearbyOptions()
 class Sequence:
     """Solutions for one matrix after another of the same packing, with few factorisations.
 
-    ``same`` : difference of two shifts of the diagonal up to which one factorisation serves both.
+    A factorisation serves other matrices as long as that pays: not where most of it would have to be made anew, nor
+    once a solution takes more products than the average with a new factorisation so far.
+    ``same`` : difference of two shifts of the diagonal up to which one serves both.
     """
 
     def __init__(self, storage: Storage, *, same: float):
-        self._storage, self._same = storage, same
-        self._near: Nearby | None = None
-        self._shift = 0.0
-
-    @property
-    def factor(self) -> Factor | None:
-        """The last factorisation, if the last solution was made with one."""
-        return None if self._near is None else self._near.factor
+        self._storage, self._same, self._shift = storage, same, 0.0
+        self.factor: LU | None = None  #: the last factorisation, if the last solution was made with one
+        #: what its solutions have cost so far, the first one with the factorisation, their number, and the last one
+        self._spent, self._solutions, self._last = 0.0, 0, 0
 
     def forget(self) -> None:
         """Two factorisations need not be in memory."""
-        self._near = None
+        self.factor = None
 
     def solve(self, matrix: sp.csc_array, right: FloatArray, tolerance: float, shift: float) -> FloatArray | None:
         """(n,) x with ``|matrix x - right| <= tolerance |right|`` (2-norms); ``shift`` says what is on its diagonal.
@@ -59,46 +59,30 @@ class Sequence:
         None where an exact factorisation has to tell: in a small packing, where the matrix is singular to the precision
         of a rough one, and where iterations do not converge.
         """
-        near, self._near = self._near, None
-        if near is not None and abs(self._shift - shift) <= self._same:
+        factor, self.factor, found = self.factor, None, None
+        if factor is not None and abs(self._shift - shift) <= self._same:
             try:
-                found = near.solve(matrix, right, tolerance)
-            except RuntimeError:
+                if self._serves(factor, matrix):
+                    found = self._iterated(factor, matrix, right, tolerance)
+            except RuntimeError:  # a front has become exactly singular
                 return None
-            if found is not None:
-                self._near = near
-                return found
-        del near
-        factor = self._storage.rough_factor(matrix)
-        if factor is None:
-            return None
-        near = Nearby(factor)
-        found = near.solve(matrix, right, tolerance)
-        if found is not None:
-            self._near, self._shift = near, shift
+        if found is None:
+            del factor
+            factor = self._storage.rough_factor(matrix)
+            if factor is None:
+                return None
+            self._shift, self._spent, self._solutions = shift, factor.price, 0
+            found = self._iterated(factor, matrix, right, tolerance)
+        self.factor = None if found is None else factor
         return found
 
+    def _serves(self, factor: LU, matrix: sp.csc_array) -> bool:
+        """Whether a factorisation serves another matrix, for which it is brought up to date in parts."""
+        pays = not (self._solutions and self._last > self._spent / self._solutions)
+        return pays and factor.renew(matrix, OPTIONS.change * float(np.abs(matrix.data).max()), OPTIONS.most_anew)
 
-class Nearby:
-    """A factorisation that serves other matrices as long as that pays."""
-
-    def __init__(self, factor: Renewable):
-        self.factor = factor
-        #: what solutions have cost so far, the first one with the factorisation, and the last one
-        self._spent, self._solutions, self._last = factor.price, 0, 0
-
-    def solve(self, matrix: sp.csc_array, right: FloatArray, tolerance: float) -> FloatArray | None:
-        """(n,) x with ``|matrix x - right| <= tolerance |right|`` (2-norms).
-
-        None where most of the factorisation would have to be made anew, where no allowed number of products leads
-        there, as soon as that is to be expected, and once a solution takes more of them than the average with a new
-        factorisation so far. RuntimeError where a front is exactly singular.
-        """
-        if self._solutions and self._last > self._spent / self._solutions:
-            return None
-        if not self.factor.renew(matrix, OPTIONS.change * float(np.abs(matrix.data).max()), OPTIONS.most_anew):
-            return None
-        found, self._last = _gmres(matrix, self.factor, right, tolerance)
+    def _iterated(self, factor: LU, matrix: sp.csc_array, right: FloatArray, tolerance: float) -> FloatArray | None:
+        found, self._last = _gmres(matrix, factor, right, tolerance)
         self._spent += self._last
         self._solutions += 1
         return found

@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from ..state import FloatArray
-from .band import Band
+from .band import Band, BandLU
 from .dissection import Dissection
-from .factor import Storage
-from .multifrontal import Multifrontal
+from .multifrontal import LU, Multifrontal
+
+#: Factorises all matrices of one pattern; of a symmetric one both triangles are given.
+Storage = Band | Multifrontal
+#: L U of any matrix. Where the number of its ``negative_pivots`` changes a real eigenvalue may have passed zero.
+Eliminated = BandLU | LU
 
 #: Half-bandwidth (in unknowns) up to which the banded factorisations are the faster ones.
 WIDEST_BAND = 130
 #: Disks from which on a dissection is remembered: it takes as long as a factorisation.
 REMEMBERED = 40_000
-
-#: What the last dissection of a large network was asked for, and that dissection.
-_last: tuple[tuple, Dissection] | None = None
-#: The same of the order by Cuthill-McKee of the last network.
-_last_network: tuple[tuple, np.ndarray] | None = None
 
 
 @dataclass(frozen=True)
@@ -46,17 +46,24 @@ def elimination(position: FloatArray, first: np.ndarray, second: np.ndarray, fre
     A narrow band where there is one, nested dissection elsewhere. Each node has ``freedoms`` unknowns. The last
     dissection of a large network is remembered.
     """
-    global _last
-    asked, last = (position, first, second), _last  # another thread may set it at any time
-    if last is not None and all(map(np.array_equal, last[0], asked)):
-        return Elimination(last[1].order, freedoms, last[1])
     order = node_order(position, first, second)
     if (_width(order, first, second) + 1) * freedoms - 1 <= WIDEST_BAND:
         return Elimination(order, freedoms, None)
-    dissection = Dissection(position, first, second)
-    if len(position) > REMEMBERED:
-        _last = asked, dissection
+    dissected = _dissected if len(position) > REMEMBERED else _dissected.__wrapped__
+    dissection = dissected(np.asarray(position, float).tobytes(), *_packed(first, second))
     return Elimination(dissection.order, freedoms, dissection)
+
+
+def _packed(*pairs: np.ndarray) -> list[bytes]:
+    """Pairs of a network as what can be looked up."""
+    return [np.asarray(one, np.int64).tobytes() for one in pairs]
+
+
+@lru_cache(maxsize=1)
+def _dissected(position: bytes, first: bytes, second: bytes) -> Dissection:
+    return Dissection(
+        np.frombuffer(position).reshape(-1, 2), *(np.frombuffer(one, np.int64) for one in (first, second))
+    )
 
 
 def node_order(position: FloatArray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -67,18 +74,16 @@ def node_order(position: FloatArray, first: np.ndarray, second: np.ndarray) -> n
         return along
     # nodes of a column stand a little askew under their weight, which must not decide their order
     columns = np.lexsort((position[:, 1], np.round(position[:, 0], 1)))
-    return min(along, columns, _by_network(n, first, second), key=lambda order: _width(order, first, second))
+    by_network = _by_network(n, *_packed(first, second))
+    return min(along, columns, by_network, key=lambda order: _width(order, first, second))
 
 
-def _by_network(n: int, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(n,) order by Cuthill-McKee: the last one again for the same network, as from one load to the next."""
-    global _last_network
-    asked, last = (np.array(n), first, second), _last_network
-    if last is None or not all(map(np.array_equal, last[0], asked)):
-        ones = np.ones(2 * len(first))
-        graph = sp.csr_array((ones, (np.r_[first, second], np.r_[second, first])), shape=(n, n))
-        last = _last_network = asked, np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True))
-    return last[1]
+@lru_cache(maxsize=1)  # from one load to the next the network is the same
+def _by_network(n: int, first: bytes, second: bytes) -> np.ndarray:
+    """(n,) order by Cuthill-McKee."""
+    i, j = np.frombuffer(first, np.int64), np.frombuffer(second, np.int64)
+    graph = sp.csr_array((np.ones(2 * len(i)), (np.r_[i, j], np.r_[j, i])), shape=(n, n))
+    return np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True))
 
 
 def _width(order, first, second) -> int:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..machine.machine_code import kernel
 from ..state import FloatArray
-from .factor import Eliminated
+from .ordering import Eliminated
 
 #: Pivot of ``C``, or its inverse, from which on half of the digits of a solution are lost.
 LEAST = 1e-7

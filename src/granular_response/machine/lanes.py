@@ -163,24 +163,24 @@ def put(typing, array, k, value):
 
 
 @intrinsic
-def gather(typing, array, start, table, row, column):
-    """Lanes ``array[start + table[row : row + WIDTH, column]]``; nothing is checked."""
+def gather(typing, array, start, table, row, column, like):
+    """``array[start + table[row, column]]`` or, where ``like`` is lanes, of ``WIDTH`` rows from there on."""
     if not _is_line(array) or not (isinstance(table, types.Array) and table.ndim == 2 and table.layout == "C"):
         return None
 
     def generate(context, builder, sig, args):
-        array, start, table, row, column = args
+        array, start, table, row, column, _ = args
         data = builder.gep(context.make_array(sig.args[0])(context, builder, array).data, [start])
         indices = context.make_array(sig.args[2])(context, builder, table)
         columns = builder.extract_value(indices.shape, 1)
         result = ir.Constant(_DOUBLES, ir.Undefined)
-        for lane in range(WIDTH):
+        for lane in range(WIDTH if like == LANES else 1):
             place = builder.add(builder.mul(builder.add(row, row.type(lane)), columns), column)
-            index = builder.load(builder.gep(indices.data, [place]))
-            result = builder.insert_element(result, builder.load(builder.gep(data, [index])), ir.IntType(32)(lane))
+            value = builder.load(builder.gep(data, [builder.load(builder.gep(indices.data, [place]))]))
+            result = builder.insert_element(result, value, ir.IntType(32)(lane)) if like == LANES else value
         return result
 
-    return LANES(array, types.intp, table, types.intp, types.intp), generate
+    return like(array, types.intp, table, types.intp, types.intp, like), generate
 
 
 @intrinsic
@@ -202,8 +202,10 @@ def _any(builder, mask):
 
 @intrinsic
 def anywhere(typing, condition):
-    """Whether a condition holds in some lane."""
-    return types.boolean(MASK), lambda context, builder, sig, args: _any(builder, args[0])
+    """Whether a condition holds, or holds in some lane."""
+    if condition == MASK:
+        return types.boolean(MASK), lambda context, builder, sig, args: _any(builder, args[0])
+    return types.boolean(types.boolean), lambda context, builder, sig, args: args[0]
 
 
 @intrinsic
@@ -291,8 +293,8 @@ if config.DISABLE_JIT:  # the same functions for numpy arrays and floats
         else:
             array[k] = value
 
-    def gather(array, start, table, row, column):
-        return array[start + table[row : row + WIDTH, column]]
+    def gather(array, start, table, row, column, like):
+        return array[start + table[slice(row, row + WIDTH) if isinstance(like, np.ndarray) else row, column]]
 
     def select(condition, yes, no):
         if isinstance(condition, np.ndarray):

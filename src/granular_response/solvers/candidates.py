@@ -46,9 +46,6 @@ class Candidates:
         """(slots,) what listed pairs have (m,), and 0 in other slots."""
         return _in_slots(values, self.slot, len(self.reach))
 
-    def __repr__(self) -> str:
-        return f"Candidates({len(self.first)} pairs, {len(self.wall_disk)} at walls, limit={self.limit:g})"
-
 
 def _in_slots(values: FloatArray, slot: NDArray[np.int64], slots: int) -> FloatArray:
     room = aligned_zeros(slots)
@@ -56,22 +53,14 @@ def _in_slots(values: FloatArray, slot: NDArray[np.int64], slots: int) -> FloatA
     return room
 
 
-def list_candidates(
-    packing: Packing,
-    laws: tuple[Law, Law],
-    position: FloatArray,
-    *,
-    search: bool = False,
-    stride: float = 0.0,
-) -> Candidates:
+def list_candidates(packing: Packing, laws: tuple[Law, Law], position: FloatArray, stride: float) -> Candidates:
     """List candidate contacts of a packing at ``position`` (n, 2); ``laws`` are those between disks and at walls.
 
     As long as every disk is near its lattice site, the neighbours on the lattice are the only ones that can
-    touch, and nothing is searched. ``search=True`` forces the search. The list holds for displacements of at
-    least ``stride``.
+    touch, and nothing is searched. The list holds for displacements of at least ``stride``.
     """
     radius, law, wall_law = packing.radius, *laws
-    pairs = None if search else packing.neighbour_pairs()
+    pairs = packing.neighbour_pairs()
     limit = 0.0
     if pairs is not None and packing.lattice_constant is not None:
         # second neighbours touch once two disks have moved this far towards each other

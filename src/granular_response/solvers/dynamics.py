@@ -5,11 +5,11 @@
 with displacements and angles q, masses and moments of inertia M, and contact forces F by the law of Sec. III.A, of
 which the tangential springs s remember the slip (P. A. Cundall and O. D. L. Strack, Geotechnique 29, 47, 1979).
 
-A :class:`Dynamics` advances one packing by an explicit integrator (``kernels.integrators``); a :class:`Relaxation`
-starts ramps of gravity or load and looks at it until it is at rest; :func:`relax` does both. Two criteria of Sec. III.C
-end it: the kinetic energy, or the mean acceleration of the disks that bear others, which does not depend on the size of
-the packing. Disks that touch nothing but the floor may roll for ever; their rolling is left out of the kinetic energy
-that decides, and does not accelerate them. A packing of which a part is in flight is not at rest, however slow it is.
+A :class:`Dynamics` advances one packing by an explicit integrator (``kernels.integrators``); :func:`relax` starts ramps
+of gravity or load and looks at it until it is at rest. Two criteria of Sec. III.C end it: the kinetic energy, or the
+mean acceleration of the disks that bear others, which does not depend on the size of the packing. Disks that touch
+nothing but the floor may roll for ever; their rolling is left out of the kinetic energy that decides, and does not
+accelerate them. A packing of which a part is in flight is not at rest, however slow it is.
 """
 
 from __future__ import annotations
@@ -28,14 +28,13 @@ from ..errors import SolveError
 from ..kernels.forces import SCRATCH, accelerations
 from ..kernels.integrators import INTEGRATORS, LOOK_EVERY, Memory, advance
 from ..kernels.model import Model, Pairs, Schedule, Walls, rows, springs_of
-from ..kernels.neighbours import count_closed, mark_closed, rolling
+from ..kernels.neighbours import count_closed, mark_closed
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..state import FLOOR, FloatArray, Reached, State, wall_normals
 from .candidates import Candidates
 from .overlaps import overlap_at_start
 from .problem import Problem
 from .springs import carry_springs, spring_contacts
-from .system import OPTIONS as SYSTEM
 
 Ramp = tuple[float, float, float]
 
@@ -55,15 +54,17 @@ class RelaxationOptions:
     #: Kinetic energy over its limit up to which a packing is nearly at rest: any number of disks may roll then, and one
     #: whose steps have run out may be in equilibrium all the same.
     nearly: float = 1e3
-    #: Distance at which a disk is lost: its way between two looks at displacements, when its motion has blown up, or
-    #: its gap above everything else, when its load pulls it up (mean radii).
-    lost: float = 5.0
-    #: Some swings of the slowest modes of the paper's slabs, in sqrt(R/g). Over them the envelope of the kinetic energy
-    #: is taken, of which a single reading is low long before they have died out; and they lie between two tries of
-    #: statics.
+    #: Way of a disk between two looks at displacements from which on its motion has blown up (mean radii).
+    blown_up: float = 5.0
+    #: Gap above everything else from which on a disk that its load pulls up is torn off (mean radii).
+    torn_off: float = 5.0
+    #: Some swings of the slowest modes of the paper's slabs, in sqrt(R/g): over them the envelope of the kinetic energy
+    #: is taken, of which a single reading is low long before they have died out.
     swings: float = 20.0
     #: Kinetic energy per disk that is rounding: what is left of it need not fall any more.
     motionless: float = 1e-24
+    #: Part of its weight by which forces on a part of a packing that touches nothing may be out of balance: rounding.
+    floats: float = 1e-9
     #: Kinetic energy of a disk that still rolls, over the mean of those that bear others, where accelerations decide.
     rolls: float = 10.0
     #: Acceleration of a disk with fewer than two contacts from which on it falls, or rolls down another one (g).
@@ -131,7 +132,7 @@ class Dynamics:
         self.angle0 = state.angle.copy()
         self.v = aligned(np.concatenate([state.velocity.T.ravel(), state.angular_velocity])[: n * freedoms])
         self.q = aligned_zeros(n * freedoms)
-        rows = aligned_zeros(self.integrator.scheme.rows + 1, n * freedoms + -n * freedoms % WIDTH)
+        rows = aligned_zeros(self.integrator.rows + 1, n * freedoms + -n * freedoms % WIDTH)
         self.history = rows[:-1]
         b, c = ([*self.history[1:], None, None])[:2]
         self.rows = Memory(self.history[0], b, c, force=rows[-1], seen=aligned_zeros(n * freedoms))
@@ -150,9 +151,7 @@ class Dynamics:
         pair_laws, wall_laws = zip(*problem.laws, strict=True)
         springs = [c.in_slots(row) for row in carry_springs(problem.n, state.pairs, c.first, c.second)]
         wall_springs = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
-        rolls = len(problem.laws) > 1
-        arm = c.in_slots(problem.pair_arms(c.first, c.second)) if rolls else aligned_zeros(0)
-        couple = aligned_zeros(problem.n if rolls else 0)
+        arm, couple = c.in_slots(problem.pair_arms(c.first, c.second)), aligned_zeros(problem.n)
         self.model = Model(
             problem.n, problem.weight, self._inverse_mass, problem.packing.radius, self.rim,
             problem.load, problem.load_disk,
@@ -171,7 +170,7 @@ class Dynamics:
         self.history[:] = 0.0
         gravity, load = self._now(self.gravity), self._now(self.load)
         accelerations(self.q, self.v, self.history[0, : self.q.size], gravity, load, 0.0, self.model)
-        self.integrator.scheme.begin(self.history)
+        self.integrator.begin(self.history)
 
     def _now(self, ramp: Ramp) -> float:
         """Where a ramp is now."""
@@ -211,7 +210,7 @@ class Dynamics:
             start, taken = (0.0, self.steps - self.began) if self.uncut else (self.time, 0)
             schedule = Schedule(start, *map(float, self.gravity), *map(float, self.load))
             done = advance(
-                self.integrator.scheme, left, self.time_step, schedule, self.candidates.limit,
+                self.integrator, left, self.time_step, schedule, self.candidates.limit,
                 self.q, self.v, self.rows, self.model, taken,
             )  # fmt: skip
             self.steps += done
@@ -225,7 +224,7 @@ class Dynamics:
         """How far the fastest disk gets until displacements are looked at again, and half as much more."""
         speed = float(np.hypot(*self.v[: 2 * self.problem.n].reshape(2, -1)).max())
         stride = 1.5 * speed * self.time_step * LOOK_EVERY
-        if not stride < OPTIONS.lost:
+        if not stride < OPTIONS.blown_up:
             raise DynamicsError(self._blow_up())
         return stride
 
@@ -311,9 +310,11 @@ class Dynamics:
 
         They bear no load and may roll for ever. ``touching``, ``count`` : closed contacts, and how many each disk has.
         """
-        c = self.candidates
-        rollers, energy = rolling(touching, len(c.first), count, c.wall_disk, c.wall, self.v, self.problem.inverse_mass)
-        return rollers, energy / self.problem.n
+        c, n = self.candidates, self.problem.n
+        on_floor = c.wall_disk[touching[len(c.first) :] & (c.wall == FLOOR)]
+        rollers = on_floor[count[on_floor] == 1]
+        energies = (0.5 * self.v**2 / self.problem.inverse_mass).reshape(-1, n)[::2, rollers]
+        return len(rollers), float(np.cumsum(np.append(0.0, energies.T))[-1]) / n  # one after the other
 
     def in_flight(self, touching: NDArray[np.bool_]) -> bool:
         """Whether some disks fall: no chain of closed contacts leads to what could bear their weight."""
@@ -331,7 +332,7 @@ class Dynamics:
         force = -weight
         np.add.at(force, problem.load_disk, self._now(self.load) * problem.load[:, 1])
         borne = np.bincount(part, weight, parts)
-        return bool((np.abs(np.bincount(part, force, parts)) > SYSTEM.event * borne)[~held].any())
+        return bool((np.abs(np.bincount(part, force, parts)) > OPTIONS.floats * borne)[~held].any())
 
     def lifted_disk(self) -> int | None:
         """A disk that its load has torn off the packing and carries up for good; None without one."""
@@ -345,7 +346,7 @@ class Dynamics:
         z, radius = self.position[:, 1], problem.packing.radius
         rest = np.setdiff1d(np.arange(n), risen)
         top = float((z + radius)[rest].max(initial=0.0))
-        gone = risen[(z - radius)[risen] > top + OPTIONS.lost]
+        gone = risen[(z - radius)[risen] > top + OPTIONS.torn_off]
         gone = gone[self.v[n + gone] > 0]
         return int(gone[0]) if len(gone) else None
 
@@ -375,31 +376,13 @@ def half_swing(problem: Problem, time_step: float) -> int:
     return max(math.ceil(0.5 * problem.swing_time / (OPTIONS.check_every * time_step)), OPTIONS.readings)
 
 
-class Relaxation:
-    """Ramps of gravity and load that start now, and the relaxation to rest after them.
+class _Relaxation:
+    """What has been seen of a relaxation so far."""
 
-    It advances step by step under its owner's control: after each ``RelaxationOptions.check_every`` time steps of
-    ``dynamics``, :meth:`look` says whether it has ended. :func:`relax` does both.
-
-    Parameters
-    ----------
-    dynamics : the packing; ``stop`` : when it ends; ``gravity``, ``load`` : linear ramps ``(from, to, duration)``.
-    progress : called with the dynamics and the kinetic energy per disk.
-    """
-
-    def __init__(
-        self,
-        dynamics: Dynamics,
-        stop: Stop,
-        *,
-        gravity: Ramp = (1.0, 1.0, 0.0),
-        load: Ramp = (0.0, 0.0, 0.0),
-        progress: Callable[[Dynamics, float], None] | None = None,
-    ):
+    def __init__(self, dynamics: Dynamics, stop: Stop, gravity: Ramp, load: Ramp):
         dynamics.set_ramps(gravity, load)
         self.dynamics = dynamics
         self.stop = stop
-        self.progress = progress
         self.started = dynamics.steps
         self.ramp_time = max(gravity[2], load[2])
         checks = max(1, round(OPTIONS.swings / (OPTIONS.check_every * dynamics.time_step)))
@@ -416,22 +399,16 @@ class Relaxation:
         """Whether the packing is at rest, or ``maximum_steps`` have been taken."""
         return self.settled or self.dynamics.steps - self.started >= self.stop.maximum_steps
 
-    def look(self) -> None:
-        """Judge the state after ``RelaxationOptions.check_every`` more steps.
-
-        Raises
-        ------
-        DynamicsError
-            When the motion has blown up, or a load carries a disk off.
-        """
+    def look(self, progress: Callable[[Dynamics, float], None] | None) -> None:
+        """Judge the state after ``RelaxationOptions.check_every`` more steps."""
         dynamics, stop = self.dynamics, self.stop
         energy = dynamics.kinetic_energy()
         if not energy < self.scale:
             raise DynamicsError(dynamics._blow_up())
         self.largest = max(self.largest, energy)
         fallen = max(stop.fallen * self.largest, OPTIONS.motionless)
-        if self.progress is not None:
-            self.progress(dynamics, energy)
+        if progress is not None:
+            progress(dynamics, energy)
         if dynamics.time < self.ramp_time:
             return
         if dynamics.load[1] and (lifted := dynamics.lifted_disk()) is not None:
@@ -494,16 +471,21 @@ def relax(
     load: Ramp = (0.0, 0.0, 0.0),
     progress: Callable[[Dynamics, float], None] | None = None,
 ) -> State:
-    """Run ramps of gravity and load, then relax to rest; arguments and result as of :class:`Relaxation`.
+    """The state at rest after ramps of gravity and load that start now.
+
+    Parameters
+    ----------
+    dynamics : the packing; ``stop`` : when it ends; ``gravity``, ``load`` : linear ramps ``(from, to, duration)``.
+    progress : called with the dynamics and the kinetic energy per disk.
 
     Raises
     ------
     DynamicsError
         When the motion blows up, or a load carries a disk off.
     """
-    relaxation = Relaxation(dynamics, stop, gravity=gravity, load=load, progress=progress)
+    relaxation = _Relaxation(dynamics, stop, gravity, load)
     while not relaxation.ended:
         left = stop.maximum_steps - (dynamics.steps - relaxation.started)
         dynamics.advance(min(OPTIONS.check_every, left))  # not a step more than the scene allows
-        relaxation.look()
+        relaxation.look(progress)
     return relaxation.state()

@@ -17,7 +17,6 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from ..contact.coulomb import limit
-from ..contact.rolling import FREE
 from ..kernels import statics, transitions
 from ..linalg import REMEMBERED, elimination
 from ..machine.lanes import WIDTH
@@ -136,7 +135,6 @@ class Equations:
         arms = [np.zeros(0)]
         if self.rows > 1:
             arms = [problem.pair_arms(self.first, self.second), problem.wall_arms(self.wall_disk)]
-        _, (pair_rolling, wall_rolling) = (*problem.laws, (FREE, FREE))[:2]
         return statics.Listed(
             disks=np.stack([np.r_[self.first, self.wall_disk], np.r_[self.second, np.full(w, -1)]], axis=1),
             pairs=m,
@@ -145,11 +143,8 @@ class Equations:
             distance=np.concatenate([distance, np.ones(w)]),
             gap=np.concatenate([gap, wall_gap]),
             shape=None if shape is None or wall_shape is None else np.concatenate([shape, wall_shape]),
-            pair_law=problem.pair_law,
-            wall_law=problem.wall_law,
+            **statics.of_rows(problem.laws),
             arm=np.concatenate(arms),
-            pair_rolling=pair_rolling,
-            wall_rolling=wall_rolling,
             radius=problem.packing.radius,
             loaded=loaded,
         )
@@ -248,8 +243,6 @@ class Equations:
             step, known.spring if problem.pair_friction else None, known.spring if problem.wall_friction else None,
             listed, self._room, out, force,
         )  # fmt: skip
-        if self.rows > 1:
-            contradiction = max(contradiction, statics.along_rolling(step, step.fixed, listed, out, force))
         if self.held.size:
             force[self.held] = 0.0
 

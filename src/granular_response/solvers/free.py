@@ -30,8 +30,7 @@ class FreeOptions:
     #: Times that the tangent's inverse takes from a random vector what some stiffness resists: at the default stiffness
     #: a direction of 1e-4 mean weights per mean radius keeps 3e-8 of itself, a null direction all.
     times: int = 3
-    #: Part of a vector that is none: what it keeps of itself at disks that do not move freely, and how far to one side
-    #: a direction leads that leads to neither.
+    #: What a random vector keeps of itself at disks that do not move freely, at most.
     part: float = 1e-6
 
 

@@ -27,14 +27,19 @@ from .system import Configuration, StaticSystem, Trial
 class IncrementOptions:
     """Numbers that an increment goes by. Forces in mean weights."""
 
-    #: Newton iterations on the true law before limits are held fixed, where none that succeeded took more than 5. Half
-    #: as many do after that, where none took more than 3.
+    #: Newton iterations on the true law before limits are held fixed, where none that succeeded took more than 5.
     direct: int = 8
+    #: The same after a round of fixed limits, where none took more than 3.
+    again: int = 4
     #: Rounds of fixed limits before the true law is tried again, once a round.
     first_try: int = 2
+    #: Tries of it that may fail.
+    failed: int = 3
+    #: Steps of a minimisation with fixed limits: one that takes more goes on for ever.
+    steps: int = 15
     #: Unbalanced force below which a minimisation ends when steps have stalled: contacts go to and fro at no force.
     still: float = 1e-5
-    #: Steps in turn that have not halved a force, and tries of the true law that have failed, after which none is made.
+    #: Steps in turn that have not halved a force, by which steps have stalled.
     stalled: int = 3
 
 
@@ -69,13 +74,13 @@ def solve_increment(
     limits = system.limits(system.trial(known, known.q))
     q = known.q.copy()
     q[system.held] = guess[system.held]
-    for done in range(1, OPTIONS.first_try + OPTIONS.stalled + 1):
+    for done in range(1, OPTIONS.first_try + OPTIONS.failed + 1):
         held = minimise_with_limits(system, known, external, q, limits, work)
         if held is None:
             return None
         q = held.configuration.q
         limits = system.limits(held)
-        if done > OPTIONS.first_try and (found := on_true_law(q, OPTIONS.direct // 2)) is not None:
+        if done > OPTIONS.first_try and (found := on_true_law(q, OPTIONS.again)) is not None:
             return found
     return None
 
@@ -88,7 +93,7 @@ def minimise_with_limits(
     trial = system.trial(known, q, limits=limits)
     shift = SYSTEM.soft * system.problem.stiffness
     best, stalled = np.inf, 0
-    for left in range(NEWTON.tries, -1, -1):
+    for left in range(OPTIONS.steps, -1, -1):
         r = trial.contact_force + external
         size = float(np.abs(r).max())
         stalled = stalled + 1 if size > 0.5 * best else 0

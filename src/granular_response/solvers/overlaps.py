@@ -17,6 +17,7 @@ import numpy as np
 from ..scene import Packing, SceneError
 from ..state import FloatArray, State
 from ..state.box import WALL_NORMAL, bodies
+from .candidates import SKIN
 from .close_pairs import close_pairs
 
 if TYPE_CHECKING:
@@ -29,10 +30,11 @@ class RemovalOptions:
 
     #: Overlap that is left. A contact of stiffness 1e6 mg / mean radius that holds it could lift a disk by 0.005.
     left: float = 1e-4
-    #: Part of the overlaps, and of the last step, by which disks move: faster steps throw them farther.
+    #: Part of what would take its overlaps out by which a disk moves: faster steps throw disks farther.
     part: float = 0.5
-    #: Gap up to which pairs are listed, and most steps.
-    skin: float = 0.25
+    #: Part of its last step by which it moves on, for the same reason no more.
+    kept: float = 0.5
+    #: Most steps.
     steps: int = 20_000
 
 
@@ -78,15 +80,15 @@ def without_overlaps(packing: Packing) -> Packing:
     position, box, radius = packing.position.copy(), packing.box, packing.radius
     step = np.zeros_like(position)
     listed = position
-    first, second = close_pairs(position, radius, OPTIONS.skin, box.period)
+    first, second = close_pairs(position, radius, SKIN, box.period)
     for _ in range(OPTIONS.steps):
-        if np.abs(position - listed).max() > 0.25 * OPTIONS.skin:
+        if np.abs(position - listed).max() > 0.25 * SKIN:
             listed = position
-            first, second = close_pairs(position, radius, OPTIONS.skin, box.period)
+            first, second = close_pairs(position, radius, SKIN, box.period)
         push, largest = _push(packing, position, first, second)
         if largest <= OPTIONS.left:
             return replace(packing, position=position)
-        step = OPTIONS.part * step + OPTIONS.part * push
+        step = OPTIONS.kept * step + OPTIONS.part * push
         position = position + step
     raise SceneError(
         f"packing.overlaps = 'removed': an overlap of {largest:.2g} mean radii is left after {OPTIONS.steps} steps, "

@@ -242,9 +242,9 @@ class Problem:
         """Whether nothing holds the packing as a whole along x: no side walls, a smooth floor, no displacement."""
         return self.packing.periodic and not self.wall_friction and not (self.held.axis == 0).any()
 
-    def list_candidates(self, position: FloatArray, *, search: bool = False, stride: float = 0.0) -> Candidates:
+    def list_candidates(self, position: FloatArray, *, stride: float = 0.0) -> Candidates:
         """Candidate contacts at ``position`` (n, 2), as :func:`.candidates.list_candidates` finds them."""
-        return list_candidates(self.packing, self.laws[0], position, search=search, stride=stride)
+        return list_candidates(self.packing, self.laws[0], position, stride)
 
     def pair_shapes(self, first, second) -> FloatArray | None:
         """(m,) what the contact law needs of the radii of pairs."""

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..kernels import transitions
-from ..kernels.transitions import CLOSES, OPENS
+from ..kernels.transitions import CLOSES, OPENS, Changes
 from ..linalg.updated import Updated
 from ..state import OPEN, SLIDING, STICKING, FloatArray
 from .system import OPTIONS as SYSTEM
@@ -43,25 +43,6 @@ class RateOptions:
 OPTIONS = RateOptions()
 
 
-@dataclass(frozen=True)
-class Changes:
-    """What each of m + w contacts does next, row by row; see :mod:`granular_response.kernels.transitions`."""
-
-    what: np.ndarray
-    left: FloatArray  #: force until then (mean weights)
-    rate: FloatArray  #: of its fall
-    now: int  #: contacts that are within the force of the rate problem of their change
-
-    def first(self) -> tuple[int, float]:
-        """The contact that changes first and after which growth of the load factor; infinity where none does."""
-        contact, length = transitions.first_change(self.left, self.rate)
-        return int(contact), float(length)
-
-    def due(self, force: float) -> np.ndarray:
-        """Contacts that are within a ``force`` of their change."""
-        return ((self.rate > 0.0) & (self.left <= force)).nonzero()[0]
-
-
 def next_changes(
     system: StaticSystem, trial: Trial, velocity: FloatArray, sense: np.ndarray, force: float, negligible: float
 ) -> Changes:
@@ -69,11 +50,11 @@ def next_changes(
 
     ``sense`` (m + w,) : signed statuses; ``force``, ``negligible`` : a force and a rate of a force that are none.
     """
-    found = transitions.Changes(*np.empty((3, len(sense))))
-    due = transitions.next_changes(
+    found = Changes(*np.empty((3, len(sense))))
+    transitions.next_changes(
         velocity, system.listed, trial.contacts, sense.astype(float), force, negligible, system.count, found
     )
-    return Changes(*found, due)
+    return found
 
 
 #: Status after what a contact does next, by that and ``SLIDES``: one that slides under a negative force comes first.
@@ -157,13 +138,13 @@ class RateProblem:
                 if not np.isfinite(velocity.sum()):
                     break
                 found = self.changes(trial, velocity, now)
-                if not found.now:
+                due = found.due(self.force)
+                if not due.size:
                     rates = Rates(now, factor, velocity, found, False, self.system.idle(trial, now))
                     return self._let_go(trial, rates)
-                due = found.due(self.force)
                 if worst:
-                    rates = found.rate[due]
-                    due = due[rates >= (1.0 - OPTIONS.rounding) * rates.max()]
+                    fall = found.rate[due]
+                    due = due[fall >= (1.0 - OPTIONS.rounding) * fall.max()]
                 now = changed(now, due, found.what)
                 for c in due.tolist():
                     if found.what[c] not in (OPENS, CLOSES) or not self.system.friction[c] > 0.0:
@@ -205,17 +186,12 @@ class RateProblem:
             factor = self.system.updated_factor(known, opened)
             less = self.velocity(known, opened, factor)
             changes = self.changes(trial, less, opened)
-            if not changes.now and np.linalg.norm(less) < (1.0 - OPTIONS.rounding) * np.linalg.norm(velocity):
+            smaller = np.linalg.norm(less) < (1.0 - OPTIONS.rounding) * np.linalg.norm(velocity)
+            if smaller and not changes.due(self.force).size:
                 return Rates(opened, factor, less, changes, True, self.system.idle(trial, opened))
         return replace(rates, factor=self.system.updated_factor(known, sense))
 
     def _bears_nothing(self, trial: Trial, contacts: np.ndarray) -> np.ndarray:
         """Of each of ``contacts`` whether no contact of one of its disks bears a force: a load holds that disk."""
-        system = self.system
-        between, at_wall = system.split(trial.normal)
-        bears = np.zeros(system.problem.n)
-        for disk, normal in ((system.first, between), (system.second, between), (system.wall_disk, at_wall)):
-            np.maximum.at(bears, disk, normal)
-        first = np.concatenate([system.first, system.wall_disk])[contacts]
-        second = np.concatenate([system.second, system.wall_disk])[contacts]
-        return np.minimum(bears[first], bears[second]) <= OPTIONS.bare
+        borne = np.append(self.system.state(trial, 0.0).largest_normal_force(), np.inf)  # at last of walls, disk -1
+        return borne[self.system.listed.disks[contacts]].min(axis=1) <= OPTIONS.bare

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from ..errors import EquilibriumError, SolveError
-from ..kernels.integrators import INTEGRATORS
+from ..kernels.integrators import INTEGRATORS, lead
 from ..state import FloatArray, Reached, State
 from .dynamics import OPTIONS as MOTION
 from .dynamics import Dynamics, Ramp, Stop, relax
@@ -38,6 +38,7 @@ class HandOver:
     tries: int  #: how often statics is tried
     fallen: float = 1.0  #: part of its largest value since the last try to which the kinetic energy falls
     nudged: bool = False  #: from the third try on, dynamics starts from an unstable equilibrium, displaced a little
+    wait: float = 20.0  #: time between two tries: some swings of the slowest modes of the paper's slabs, in sqrt(R/g)
 
 
 #: Rest under gravity, and loads by dynamics: the fall is long, and a wait costs little of it.
@@ -126,7 +127,7 @@ def settle(
             why = f": {error}"
         if not settled.reached.settled or attempt == how.tries or left().maximum_steps == 0:
             break
-        settled = relax(dynamics, replace(left(), least_time=MOTION.swings), load=held)
+        settled = relax(dynamics, replace(left(), least_time=how.wait), load=held)
         settled = replace(settled, reached=replace(settled.reached, more_relaxations=attempt))
     if settled.reached.settled and why and left().maximum_steps > 0:
         raise NotSettled(f"the packing is nearly at rest under {what}, but finds no stable equilibrium{why}")
@@ -147,7 +148,7 @@ def not_settled(problem: Problem, state: State, what: str) -> str:
 
 def in_step(settled: State, integrator: str) -> State:
     """A state in motion with its disks where its springs, which are ahead of them, are already."""
-    time = INTEGRATORS[integrator].lead * (settled.reached.time_step or 0.0)
+    time = lead(INTEGRATORS[integrator]) * (settled.reached.time_step or 0.0)
     position, angle = settled.position + time * settled.velocity, settled.angle + time * settled.angular_velocity
     return replace(settled, position=position, angle=angle)
 

@@ -42,7 +42,7 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
     -------
     (k, n, freedoms) mean disk weights per mean disk weight along x and z, and per mean disk weight times mean radius
     for a torque where disks turn. NaN where nothing bears the load: for disks with less than two contacts, unless one
-    resists rolling, and along x where nothing holds the packing as a whole. 0 where a load holds the disk.
+    bears a couple too, and along x where nothing holds the packing as a whole. 0 where a load holds the disk.
 
     Raises
     ------

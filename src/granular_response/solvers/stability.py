@@ -26,7 +26,6 @@ from ..errors import EquilibriumError
 from ..kernels.transitions import SLIDES, STICKS
 from ..linalg.lowest import Eigenpair, followed, lowest_real
 from ..state import SLIDING, STICKING, FloatArray
-from .free import OPTIONS as FREE
 from .free import free_disks, without_bare
 from .rates import next_changes
 from .system import OPTIONS as SYSTEM
@@ -43,6 +42,8 @@ class StabilityOptions:
     #: How far to the left of zero the search begins, in units of the normal stiffness: the first of this and its
     #: products with 10 to 1,000 that the symmetric part allows, so that there are few points on the way.
     left_of_all: float = 1e-2
+    #: How far to one side a direction leads, of largest component 1, that leads to neither: that is rounding.
+    aside: float = 1e-6
 
     @property
     def soft(self) -> float:
@@ -142,7 +143,7 @@ class Spectrum:
         direction = system.deinterleave(self._scale * self.lowest[1])
         direction /= np.abs(direction).max()
         sideways = float(direction[: system.problem.n].sum())
-        if abs(sideways) <= FREE.part:  # it leads to neither side
+        if abs(sideways) <= OPTIONS.aside:  # it leads to neither side
             sideways = float(direction[np.argmax(np.abs(direction))])
         return -direction if sideways < 0.0 else direction
 

@@ -33,9 +33,6 @@ class Strained:
 
     stress: FloatArray  #: (3, 3) xx, zz, xz (tension positive, weights per radius) of each strain (columns)
     strain: FloatArray  #: (3, 3) as it is there, of each strain that is imposed
-    antisymmetric: FloatArray  #: (3,) (sigma_zx - sigma_xz) / 2 of each, force first
-    #: (strain, cut) sigma_zz and sigma_xz of the others through horizontal cuts, which equilibrium makes equal
-    cuts: FloatArray
 
     @property
     def moduli(self) -> FloatArray:
@@ -149,8 +146,4 @@ def _averaged(
     strain = np.eye(3)
     strain[1] += slope[:, 1]
     strain[2] += 0.5 * slope[:, 0]
-    at = np.linspace(low, high, 5)[:, None]
-    sign = np.where(top > bottom, -1.0, 1.0)
-    through = ((low_end <= at) & (at < high_end)) * sign
-    cuts = np.einsum("hc,kca->kha", through, added) / state.box.width
-    return Strained(stress, strain, 0.5 * (tensor[:, 1, 0] - tensor[:, 0, 1]), cuts)
+    return Strained(stress, strain)

@@ -108,7 +108,8 @@ class StaticSystem(Equations):
             held[:, 2:][self.pattern.without_effect(matrix).reshape(held.shape)[:, 2:]] = 1.0
         matrix.data[self.pattern.diagonal] += held.ravel() * self.problem.stiffness
         self._kept = None
-        found, factor = self._steps.solve(matrix, right, OPTIONS.left_over, shift), self._steps.factor
+        found = self._steps.solve(matrix, right, OPTIONS.left_over, shift)
+        factor: Eliminated | None = self._steps.factor
         if found is None:
             factor = self.factorise(matrix)
             found = factor.solve(right)

@@ -82,7 +82,7 @@ def oscillator_limit(integrator: str, stiffness: float, damping: float, spring: 
     """
 
     def stable(dt: float) -> bool:
-        step = amplification(INTEGRATORS[integrator].scheme, stiffness * dt * dt, damping * dt, spring * dt * dt)
+        step = amplification(INTEGRATORS[integrator], stiffness * dt * dt, damping * dt, spring * dt * dt)
         return bool(np.abs(np.linalg.eigvals(step)).max() <= 1.0 + 1e-4)
 
     row = [1e-3 / max(np.sqrt(stiffness + spring), damping, 1e-300)]

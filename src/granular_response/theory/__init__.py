@@ -1,8 +1,8 @@
 """Elastic and hyperbolic references in closed form, or as series summed to rounding.
 
 ``moduli`` holds the elastic constants every other module takes; ``lattice`` computes them for the spring
-lattice of Sec. V.C and measures them on a periodic one; ``half_plane``, ``slab`` and ``rays`` predict the
-pressure under a localized force. Everything is two-dimensional and static.
+lattice of Sec. V.C; ``half_plane``, ``slab`` and ``rays`` predict the pressure under a localized force.
+Everything is two-dimensional and static.
 
 Examples
 --------

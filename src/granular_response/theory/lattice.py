@@ -22,7 +22,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import require
 from .moduli import Moduli
@@ -32,8 +31,6 @@ Rotations = Literal["suppressed", "free"]
 
 #: R^2 / A with the area A = 2 sqrt(3) R^2 of a unit cell.
 _R2_PER_AREA = 1.0 / (2.0 * math.sqrt(3.0))
-#: Disks a side of the lattice of :func:`measured_moduli`.
-CELLS = 4
 
 
 @dataclass(frozen=True)
@@ -119,48 +116,3 @@ def poisson_ratio(normal: float, tangential: float) -> float:
     rule = f"normal = {normal}, tangential = {tangential}: must be above 0, and at least 0"
     require(normal > 0.0 and tangential >= 0.0, rule)
     return (normal - tangential) / (3.0 * normal + tangential)
-
-
-def measured_moduli(springs: Springs, rotations: Rotations = "suppressed") -> NDArray[np.float64]:
-    """(3, 3) stress per strain, in the order of ``Moduli.matrix``, of a periodic lattice actually strained.
-
-    Each of the strains eps_xx, eps_zz, eps_xz is imposed on :data:`CELLS` squared disks with periodic boundaries, the
-    displacements about the affine ones and the rotations (if free) are relaxed by minimising the elastic energy, and
-    the symmetric mean stress is summed over the bonds. Nothing here uses eqs. (7)-(10).
-    """
-    _check_rotations(rotations)
-    disks = CELLS**2
-    # Per disk, with lengths in R: the bond to each of three neighbours and the cell it lies in.
-    bonds = (
-        ((2.0, 0.0), (1, 0), springs.k1n, springs.k1t),
-        ((1.0, np.sqrt(3.0)), (0, 1), springs.k2n, springs.k2t),
-        ((-1.0, np.sqrt(3.0)), (-1, 1), springs.k2n, springs.k2t),
-    )
-    elongations, affines, stiffnesses = [], [], []
-    for column in range(CELLS):
-        for layer in range(CELLS):
-            i = column * CELLS + layer
-            for (bx, bz), (di, dj), normal, tangential in bonds:
-                j = (column + di) % CELLS * CELLS + (layer + dj) % CELLS
-                for (ex, ez), stiffness, arm in (
-                    ((bx / 2.0, bz / 2.0), normal, 0.0),
-                    ((-bz / 2.0, bx / 2.0), tangential, 1.0),
-                ):
-                    # Elongation along e of one spring: e . (u_j - u_i + eps . b) - arm (theta_i + theta_j).
-                    row = np.zeros(3 * disks)
-                    row[2 * j : 2 * j + 2] += ex, ez
-                    row[2 * i : 2 * i + 2] -= ex, ez
-                    row[2 * disks + i] -= arm
-                    row[2 * disks + j] -= arm
-                    elongations.append(row)
-                    affines.append((ex * bx, ez * bz, ex * bz + ez * bx))
-                    stiffnesses.append(stiffness)
-    k = np.array(stiffnesses)[:, None]
-    elongation = np.array(affines)  # (springs, 3), per unit of each strain
-    virial = elongation * [1.0, 1.0, 0.5]
-    relaxing, weight = np.array(elongations)[:, : 3 * disks if rotations == "free" else 2 * disks], np.sqrt(k)
-    # The minimum-norm solution leaves out the uniform translation and any floppy mode.
-    response = np.linalg.lstsq(weight * relaxing, -weight * elongation, rcond=1e-12)[0]
-    elongation = elongation + relaxing @ response
-    area = disks * 2.0 * np.sqrt(3.0)
-    return virial.T @ (k * elongation) / area

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from demonstration import RECORD, Weakening, Weaker, problem
+from demonstration import Euler, Weakening, Weaker, problem
 from refusals import refuses
 from small_scenes import pushed, scene, shaken, started
 
@@ -124,7 +124,7 @@ def test_a_limit_with_another_slope_is_refused():
 
 
 def test_an_integrator_of_ones_own(monkeypatch):
-    monkeypatch.setitem(INTEGRATORS, "euler", RECORD)
+    monkeypatch.setitem(INTEGRATORS, "euler", Euler())
     made = Problem.from_scene(Scene().updated({"packing": {"layers": 3, "disks_per_row": 7}}))
     ours, paper = (Dynamics(made, made.bare_state(), name, 1e-5) for name in ("euler", "beeman"))
     for dynamics in (ours, paper):

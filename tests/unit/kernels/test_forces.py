@@ -5,8 +5,7 @@ import pytest
 from reference_loop import Material, forces
 
 from granular_response.contact import CUT, LITERAL, RULES, UNLOADING, coulomb
-from granular_response.contact.law import normal_force
-from granular_response.contact.pair import frictional, frictionless
+from granular_response.contact.law import frictional, frictionless, normal_force
 from granular_response.contact.rolling import Rolling
 from granular_response.kernels import neighbours
 from granular_response.kernels.forces import SCRATCH, add_pair_forces, add_wall_forces

@@ -77,7 +77,7 @@ def test_what_is_left_falls_at_the_rate_that_is_said(law):
             assert found.rate[c] == pytest.approx(by_difference, rel=2e-4, abs=1e-2)
             assert rates.until(here, c, what, velocity) == pytest.approx((found.left[c], found.rate[c]), rel=1e-12)
         # what is first is what comes first as all goes on
-        first, length = found.first()
+        first, length = transitions.first_change(found.left, found.rate)
         others = found.left[found.rate > 0.0].clip(0.0) / found.rate[found.rate > 0.0]
         assert length == others.min() == max(found.left[first], 0.0) / found.rate[first]
     assert {what for what, pair in seen if pair} >= {transitions.CLOSES, transitions.SLIDES, -transitions.SLIDES}

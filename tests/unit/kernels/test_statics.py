@@ -7,7 +7,7 @@ import pytest
 from small_scenes import free_disks, scene, shaken, started
 
 from granular_response.contact import LAWS
-from granular_response.kernels.statics import Increment, Response, one_pair
+from granular_response.kernels.statics import Increment, Response, fill_pair
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.stability import Spectrum
@@ -58,7 +58,7 @@ def test_pairs_have_the_bits_in_vectors_that_each_has_alone(law, size):
         kept = None if fixed is None else fixed.astype(float)
         step = Increment(q, known.q, rates, 1e-3, known.overlap, known.spring, None, kept)
         for c in range(len(system.first)):
-            one_pair(c, known.spring, kept, step, system.listed, alone)
+            fill_pair(c, 0.0, known.spring, kept, step, system.listed, np.zeros(16), alone)
         for name, found in alone._asdict().items():
             assert np.array_equal(found[: len(system.first)], getattr(trial.contacts, name)[: len(system.first)]), name
     own = system.trial(known, q, fixed=free.sense)

@@ -185,29 +185,10 @@ def test_a_negative_eigenvalue_is_followed_to_a_matrix_nearby_and_no_farther_tha
     assert lowest.followed(inverse(matrix + 8.0 * np.eye(len(matrix))), (value, vector)) is None
 
 
-def chains(*sizes):
-    """Chains of disks at random places, so that the network alone tells a good order: positions and pairs."""
+def test_a_large_network_is_dissected_once(monkeypatch):
+    monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
+    monkeypatch.setattr(ordering, "REMEMBERED", 1)
     rng = np.random.default_rng(1)
-    return [(rng.random((n, 2)), np.arange(n - 1), np.arange(1, n)) for n in sizes]
-
-
-@pytest.mark.parametrize("remembered", ["_last_network", "_last"])
-def test_another_thread_may_order_another_network_between_comparison_and_answer(remembered, monkeypatch):
-    """The moment is that after the last comparison of the remembered network with the one that is asked for."""
-    if remembered == "_last":  # dissections, which large networks have, are remembered in the same way
-        monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
-        monkeypatch.setattr(ordering, "REMEMBERED", 1)
-    mine, other = chains(40, 55)
-    expected = ordering.elimination(*mine, 2).order
-    compared, equal = [], np.array_equal
-
-    def interrupted(one, two):
-        found = equal(one, two)
-        compared.append(found)
-        if found and len(compared) == 3:
-            ordering.elimination(*other, 2)
-        return found
-
-    monkeypatch.setattr(ordering.np, "array_equal", interrupted)
-    found = ordering.elimination(*mine, 2).order
-    assert len(compared) > 3 and np.array_equal(found, expected)
+    one, other = ((rng.random((n, 2)), np.arange(n - 1), np.arange(1, n)) for n in (40, 55))  # chains
+    first, again, new = (ordering.elimination(*asked, 2).dissection for asked in (one, one, other))
+    assert first is again and first is not new and len(new.order) == 55

@@ -12,7 +12,6 @@ from small_scenes import at_rest, pushed, scene
 from granular_response.linalg import Sequence, multifrontal, nearby, ordering
 from granular_response.linalg.dissection import Dissection
 from granular_response.linalg.multifrontal import Multifrontal
-from granular_response.linalg.nearby import Nearby
 from granular_response.machine import threads
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem
@@ -189,24 +188,27 @@ def test_an_lu_is_renewed_where_entries_have_changed_to_the_bits_of_a_new_one(fa
 
 
 def test_a_factor_serves_matrices_nearby_as_long_as_it_pays(factorised, monkeypatch):
-    fronts, matrix, factor, changed = factorised
-    near = Nearby(factor)
+    fronts, matrix, _, changed = factorised
+    made = counted(monkeypatch, Multifrontal, "rough_factor")
     largest = np.abs(matrix.data).max()
+    near = Sequence(fronts, same=0.0)
+    assert near.solve(matrix, RIGHT, 1e-9, 0.0) is not None
     for size in (0.9 * nearby.OPTIONS.change * largest, 3.0):  # by GMRES alone, and where an entry's subtree is renewed
         now = changed.copy()
         now.data[:200] += size
-        found = near.solve(now, RIGHT, 1e-9)
+        found = near.solve(now, RIGHT, 1e-9, 0.0)
         assert np.linalg.norm(now @ found - RIGHT) <= 1.1e-9 * np.linalg.norm(RIGHT)
         assert np.linalg.norm(fronts.factor(matrix).solve(RIGHT) - found) > 1e-4 * np.linalg.norm(found)
-    assert near.solve(changed, np.zeros_like(RIGHT), 1e-9) == pytest.approx(np.zeros_like(RIGHT), abs=0.0)
-    assert near.solve(shifted(matrix, -30.0), RIGHT, 1e-9) is None  # all has changed
+    assert near.solve(changed, np.zeros_like(RIGHT), 1e-9, 0.0) == pytest.approx(np.zeros_like(RIGHT), abs=0.0)
+    assert len(made) == 1
+    near.solve(shifted(matrix, -30.0), RIGHT, 1e-9, 0.0)
+    assert len(made) == 2  # all has changed
     monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, multiplications=1e9))
-    dear = Nearby(fronts.rough_factor(matrix))
-    assert dear.solve(matrix, RIGHT, 1e-9) is not None
+    dear = Sequence(fronts, same=0.0)
     now = matrix.copy()
     now.data[:200] += 0.9 * nearby.OPTIONS.change * largest
-    assert dear.solve(now, RIGHT, 1e-9) is not None
-    assert dear.solve(now, RIGHT, 1e-9) is None  # a new one is cheaper
+    for one, factorisations in ((matrix, 3), (now, 3), (now, 4)):  # at last a new one is cheaper
+        assert dear.solve(one, RIGHT, 1e-9, 0.0) is not None and len(made) == factorisations
 
 
 def test_a_sequence_of_solutions_renews_what_serves_and_leaves_the_rest_to_exact_factors(factorised, monkeypatch):

@@ -97,14 +97,14 @@ def test_fixed_limits_lead_to_the_same_equilibrium(start, monkeypatch):
         return trial, report
 
     monkeypatch.setattr(module, "newton", refusing)
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, direct=10))
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, again=5))
     work = Work()
     around = solve_increment(system, known, external, known.q, work)
     assert len(calls) == 2  # again after rounds of fixed limits
     assert around.configuration.q == pytest.approx(direct.configuration.q, abs=1e-11)
     assert np.array_equal(around.status, direct.status)
     calls.clear()
-    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, stalled=0))
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, failed=0))
     assert solve_increment(system, known, external, known.q, Work()) is None
 
 

@@ -10,9 +10,8 @@ import granular_response as gr
 from granular_response.api import result as results
 from granular_response.errors import EquilibriumError
 from granular_response.kernels.integrators import INTEGRATORS
-from granular_response.kernels.integrators.stepping import Integrator
-from granular_response.solvers import choice, timestep
-from granular_response.solvers.dynamics import OPTIONS, Dynamics, Relaxation, Stop, relax
+from granular_response.solvers import choice, settle, timestep
+from granular_response.solvers.dynamics import OPTIONS, Dynamics, Stop, half_swing, relax
 from granular_response.solvers.equilibrium import OPTIONS as STATICS
 from granular_response.solvers.equilibrium import external_force, newton
 from granular_response.solvers.problem import Problem
@@ -43,7 +42,7 @@ def test_statics_finds_the_equilibrium_that_the_motion_ends_in(integrator, monke
     end = _statics(problem, late, integrator)
     error = apart(_statics(problem, early, integrator), end)
     assert error < 1e-8
-    monkeypatch.setattr(Integrator, "lead", 0.0)
+    monkeypatch.setattr(settle, "lead", lambda scheme: 0.0)
     uncorrected = apart(_statics(problem, early, integrator), end)
     assert uncorrected == error if integrator == "leapfrog" else uncorrected > 10.0 * error
 
@@ -75,13 +74,11 @@ def test_a_fall_ends_where_accelerations_are_small_in_the_equilibrium_of_its_end
 def test_accelerations_are_watched_for_half_a_period_of_the_slowest_motion():
     problem = rough(12, 25)
     motion = Dynamics(problem, problem.bare_state())
-    run, small = Relaxation(motion, Stop(1e-30, acceleration=1e-3)), 0
-    while not run.ended:
-        motion.advance(100)
-        run.look()
-        small = small + 1 if motion.mean_acceleration() < 1e-3 else 0
+    sizes = []
+    relax(motion, Stop(1e-30, acceleration=1e-3), progress=lambda *_: sizes.append(motion.mean_acceleration()))
+    small = len(sizes) - 1 - max(k for k, size in enumerate(sizes) if size >= 1e-3)
     assert small * 100 * motion.time_step >= 0.5 * problem.swing_time
-    assert small == run.unrest.maxlen > OPTIONS.readings
+    assert small == half_swing(problem, motion.time_step) > OPTIONS.readings
 
 
 def test_a_packing_is_not_at_rest_while_one_of_its_disks_falls():

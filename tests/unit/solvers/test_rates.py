@@ -8,7 +8,7 @@ from granular_response.kernels import transitions
 from granular_response.solvers.equilibrium import finish
 from granular_response.solvers.path import PathError, PathRecord, follow
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.rates import Changes, RateProblem
+from granular_response.solvers.rates import RateProblem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 
@@ -127,7 +127,7 @@ def test_contacts_that_contradict_themselves_change_all_at_once_for_some_rounds_
         what[two] = np.where(sense[two] == STICKING, transitions.SLIDES, transitions.STICKS)
         left[:], rate[two] = 1.0, (1.0, 1.0 - less)
         left[two] = 0.0
-        return Changes(what, left, rate, len(two))
+        return transitions.Changes(what, left, rate)
 
     monkeypatch.setattr(RateProblem, "changes", contradicts)
     monkeypatch.setattr(RateProblem, "velocity", lambda *_: np.zeros(system.dof))

@@ -1,8 +1,10 @@
-"""Time integrators, a file each: a named tuple that predicts and corrects (see :mod:`.stepping`)."""
+"""Time integrators, by the names that scene files have for them."""
 
-from . import beeman, gear, leapfrog, verlet
-from .stepping import LOOK_EVERY, Integrator, Memory, advance, amplification
+from .schemes import Beeman, Gear, Leapfrog, Verlet
+from .stepping import LOOK_EVERY, Integrator, Memory, advance, amplification, lead
 
-INTEGRATORS: dict[str, Integrator] = {module.RECORD.name: module.RECORD for module in (beeman, verlet, leapfrog, gear)}
+INTEGRATORS: dict[str, Integrator] = {
+    "beeman": Beeman(), "verlet": Verlet(), "leapfrog": Leapfrog(), "gear": Gear(),
+}  # fmt: skip
 
-__all__ = ["INTEGRATORS", "LOOK_EVERY", "Integrator", "Memory", "advance", "amplification"]
+__all__ = ["INTEGRATORS", "LOOK_EVERY", "Integrator", "Memory", "advance", "amplification", "lead"]

@@ -1,6 +1,6 @@
 """The loop over time steps that all integrators share, and what a step does to an oscillator.
 
-The scheme of an integrator is a named tuple with two methods on scalars or lanes. ``predict(x, v, a, b, c, dt)`` gives
+An integrator is a named tuple with two methods on scalars or lanes. ``predict(x, v, a, b, c, dt)`` gives
 ``(x, v, a, b, seen)``: the displacement at which forces are evaluated, velocity and memory there, and the velocity that
 the forces see. ``correct(x, v, a, b, c, a_new, dt)`` gives ``(x, v, a, b, c)`` at the end from the accelerations there.
 ``a`` is the acceleration at the present time, ``b`` and ``c`` are memory of its own: it has ``rows`` rows with ``a``.
@@ -10,14 +10,12 @@ higher derivatives costs it two orders). ``begin(history)`` fills (rows, dof) me
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...machine.lanes import WIDTH, anywhere, magnitude, put, spread, take
+from ...machine.lanes import WIDTH, anywhere, put, root, spread, take
 from ...machine.machine_code import by_type, kernel
 from ..forces import forces
 
@@ -25,8 +23,8 @@ from ..forces import forces
 LOOK_EVERY = 8
 
 
-class Scheme(Protocol):
-    """What an integrator does; see the module."""
+class Integrator(Protocol):
+    """One time integrator; see the module."""
 
     def predict(self, x, v, a, b, c, dt): ...
     def correct(self, x, v, a, b, c, a_new, dt): ...
@@ -34,30 +32,21 @@ class Scheme(Protocol):
 
     @property
     def rows(self) -> int: ...
-
-
-@dataclass(frozen=True)
-class Integrator:
-    """One time integrator, and what it says of itself; ``order`` as in the module."""
-
-    name: str
-    title: str
-    order: int
-    reference: str
-    scheme: Scheme
-
     @property
-    def lead(self) -> float:
-        """Time by which tangential springs are ahead of displacements, in time steps.
+    def order(self) -> int: ...
 
-        They follow the velocity that forces see, which most schemes predict for the end of a step, while a displacement
-        goes with the velocity in its middle: from rest under a constant acceleration the two differ by this.
-        """
-        history = np.array([[1.0], [0.0], [0.0]])
-        self.scheme.begin(history)
-        a, b, c = history[:, 0].tolist()
-        x, _, _, _, seen = self.scheme.predict(0.0, 0.0, a, b, c, 1.0)
-        return seen - x
+
+def lead(integrator: Integrator) -> float:
+    """Time by which tangential springs are ahead of displacements, in time steps.
+
+    They follow the velocity that forces see, which most integrators predict for the end of a step, while a displacement
+    goes with the velocity in its middle: from rest under a constant acceleration the two differ by this.
+    """
+    history = np.array([[1.0], [0.0], [0.0]])
+    integrator.begin(history)
+    a, b, c = history[:, 0].tolist()
+    x, _, _, _, seen = integrator.predict(0.0, 0.0, a, b, c, 1.0)
+    return seen - x
 
 
 class Memory(NamedTuple):
@@ -93,66 +82,31 @@ def _write(row, k, value):
         put(row, k, value)
 
 
-@kernel
-def _begin(integrator, q, v, memory, dt):
-    """Begin a step."""
-    a, b, c, _, seen = memory
-    for k in range(q.size):
-        x, v[k], a[k], y, seen[k] = predict(integrator, q[k], v[k], a[k], _read(b, k, 0.0), _read(c, k, 0.0), dt)
-        q[k] = x
-        _write(b, k, y)
-
-
 @kernel(forceinline=True)
-def _corrected(k, like, integrator, q, v, memory, inverse_mass, dt):
-    a, b, c, force, _ = memory
-    a_new = take(force, k, like) * take(inverse_mass, k, like)
-    return correct(
-        integrator, take(q, k, like), take(v, k, like), take(a, k, like), _read(b, k, like), _read(c, k, like),
-        a_new, dt,
-    )  # fmt: skip
-
-
-@kernel(forceinline=True)
-def _end_at(k, like, integrator, q, v, memory, inverse_mass, dt):
-    x, u, w, y, z = _corrected(k, like, integrator, q, v, memory, inverse_mass, dt)
+def _turn_at(k, like, integrator, q, v, memory, force, seen, inverse_mass, dt):
+    a, b, c = memory.a, memory.b, memory.c
+    x, u, w, y, z = take(q, k, like), take(v, k, like), take(a, k, like), _read(b, k, like), _read(c, k, like)
+    if force is not None:
+        a_new = take(force, k, like) * take(inverse_mass, k, like)
+        x, u, w, y, z = correct(integrator, x, u, w, y, z, a_new, dt)
+    if seen is not None:
+        x, u, w, y, s = predict(integrator, x, u, w, y, z, dt)
+        put(seen, k, s)
     put(q, k, x)
     put(v, k, u)
-    put(memory.a, k, w)
-    _write(memory.b, k, y)
-    _write(memory.c, k, z)
-
-
-@kernel(forceinline=True)
-def _end_and_begin_at(k, like, integrator, q, v, memory, inverse_mass, dt):
-    x, u, w, y, z = _corrected(k, like, integrator, q, v, memory, inverse_mass, dt)
-    _write(memory.c, k, z)
-    x, u, w, y, s = predict(integrator, x, u, w, y, z, dt)
-    put(memory.seen, k, s)
-    put(q, k, x)
-    put(v, k, u)
-    put(memory.a, k, w)
-    _write(memory.b, k, y)
+    put(a, k, w)
+    _write(b, k, y)
+    _write(c, k, z)
 
 
 @kernel
-def _end(integrator, q, v, memory, inverse_mass, dt):
-    """End a step."""
+def _turn(integrator, q, v, memory, force, seen, inverse_mass, dt):
+    """End a step, with ``memory.force`` as ``force``, and begin the next, with ``memory.seen`` as ``seen``, or one."""
     whole = q.size - q.size % WIDTH
     for k in range(0, whole, WIDTH):
-        _end_at(k, spread(0.0), integrator, q, v, memory, inverse_mass, dt)
+        _turn_at(k, spread(0.0), integrator, q, v, memory, force, seen, inverse_mass, dt)
     for k in range(whole, q.size):
-        _end_at(k, 0.0, integrator, q, v, memory, inverse_mass, dt)
-
-
-@kernel
-def _end_and_begin(integrator, q, v, memory, inverse_mass, dt):
-    """End a step and begin the next while its numbers are at hand."""
-    whole = q.size - q.size % WIDTH
-    for k in range(0, whole, WIDTH):
-        _end_and_begin_at(k, spread(0.0), integrator, q, v, memory, inverse_mass, dt)
-    for k in range(whole, q.size):
-        _end_and_begin_at(k, 0.0, integrator, q, v, memory, inverse_mass, dt)
+        _turn_at(k, 0.0, integrator, q, v, memory, force, seen, inverse_mass, dt)
 
 
 @kernel(nogil=True)
@@ -172,20 +126,22 @@ def advance(integrator, steps, dt, schedule, limit, q, v, memory, model, taken=0
             look = (taken + step) % LOOK_EVERY == 0 and limit < np.inf
             if look and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
                 return step
-            _begin(integrator, q, v, memory, dt)
-        now = schedule.time + (taken + step + 1) * dt
+            _turn(integrator, q, v, memory, None, memory.seen, inverse_mass, dt)
+        done = taken + step + 1
+        now = schedule.time + done * dt
         gravity = ramp(now, schedule.gravity_from, schedule.gravity_to, schedule.gravity_time)
         load = ramp(now, schedule.load_from, schedule.load_to, schedule.load_time)
         forces(q, memory.seen, memory.force, gravity, load, dt, model)
-        begun = goes_on(taken + step + 1, taken + steps, limit)
+        # whether the next one follows at once: there is one, and no look at the disks comes before it
+        begun = step + 1 < steps and (done % LOOK_EVERY != 0 or not limit < np.inf)
         if begun:
-            _end_and_begin(integrator, q, v, memory, inverse_mass, dt)
+            _turn(integrator, q, v, memory, memory.force, memory.seen, inverse_mass, dt)
         else:
-            _end(integrator, q, v, memory, inverse_mass, dt)
+            _turn(integrator, q, v, memory, memory.force, None, inverse_mass, dt)
     return steps
 
 
-def amplification(integrator: Scheme, w2: float, c: float, spring_w2: float = 0.0) -> NDArray[np.float64]:
+def amplification(integrator: Integrator, w2: float, c: float, spring_w2: float = 0.0) -> NDArray[np.float64]:
     """(6, 6) matrix of one step of length 1 for ``x'' = -w2 x - spring_w2 s - c x'``.
 
     The first spring follows the position, as overlaps do, and ``s`` is advanced by the predicted velocity, as the
@@ -212,33 +168,19 @@ def ramp(time, start, end, duration):
     return start + (end - start) * (time / duration)
 
 
-@kernel
-def goes_on(step, steps, limit):
-    """Whether step number ``step`` follows at once: there is one, and no look at the disks comes before it."""
-    return step < steps and (step % LOOK_EVERY != 0 or not limit < math.inf)
-
-
-@kernel
-def _beyond(q, v, n, limit, horizon, start, end):
-    for i in range(start, end):
-        reach = math.sqrt(q[i] * q[i] + q[n + i] * q[n + i])
-        reach += horizon * math.sqrt(v[i] * v[i] + v[n + i] * v[n + i])
-        if reach > limit:
-            return True
-    return False
+@kernel(forceinline=True)
+def _beyond(k, like, q, v, n, limit, horizon):
+    x, z, u, w = take(q, k, like), take(q, n + k, like), take(v, k, like), take(v, n + k, like)
+    return anywhere(root(x * x + z * z) + horizon * root(u * u + w * w) > limit)
 
 
 @kernel
 def moved_beyond(q, v, n, limit, horizon):
-    """Whether a disk may be farther than ``limit`` from its reference position within ``horizon``.
-
-    Most disks are far from that, which sums of components show without a root.
-    """
+    """Whether a disk may be farther than ``limit`` from its reference position within ``horizon``."""
     whole = n - n % WIDTH
-    like = spread(0.0)
+    beyond = False
     for k in range(0, whole, WIDTH):
-        reach = magnitude(take(q, k, like)) + magnitude(take(q, n + k, like))
-        speed = magnitude(take(v, k, like)) + magnitude(take(v, n + k, like))
-        if anywhere(reach + horizon * speed > limit) and _beyond(q, v, n, limit, horizon, k, k + WIDTH):
-            return True
-    return _beyond(q, v, n, limit, horizon, whole, n)
+        beyond |= _beyond(k, spread(0.0), q, v, n, limit, horizon)
+    for k in range(whole, n):
+        beyond |= _beyond(k, 0.0, q, v, n, limit, horizon)
+    return beyond

@@ -32,7 +32,6 @@ import numpy as np
 from ...errors import SolveError
 from ...state import State
 from ..dynamics import DynamicsError
-from ..increment import Work
 from ..problem import Problem
 from ..system import OPTIONS as SYSTEM
 from . import events
@@ -76,7 +75,7 @@ def follow(
     PathError
         When the motion does not settle either: the packing collapses or cycles under this load.
     """
-    record = record or PathRecord(Work(start.reached.increments or 0, start.reached.factorisations or 0))
+    record = record or PathRecord(start.reached.increments or 0, start.reached.factorisations or 0)
     states = [start]
     for factor in map(float, factors):
         states.append(_to(Leg(problem, record, states[-1], factor, lowest, progress, OPTIONS), together))
@@ -165,7 +164,7 @@ def step(leg: Leg, point: Point, stuck: bool) -> Point:
     if found is None:
         point = replace(point, velocity=rates.velocity, negative=negative)
         return leg.ended(point) or relisted(leg, beyond(leg, point, "no equilibrium with these statuses"))
-    leg.record.work.increments += 1
+    leg.record.increments += 1
     if abs(found.factor - point.factor) * leg.unit > point.rate_problem.force:
         leg.gone_on()
     return relisted(leg, found)

@@ -13,7 +13,7 @@ from ...state import FloatArray
 from ..equilibrium import OPTIONS as NEWTON
 from ..equilibrium import attainable, external_force
 from ..free import least, solved_by, suspicious
-from ..rates import Changes, Rates, changed
+from ..rates import Rates, changed
 from ..system import OPTIONS as SYSTEM
 from ..system import Trial
 from .points import Leg, Point, largest
@@ -38,7 +38,7 @@ def landed(leg: Leg, point: Point, rates: Rates) -> Point | None:
     fastest, left = largest(rates.velocity[: 2 * leg.problem.n]), abs(leg.target - point.factor)
     if fastest * left > leg.options.listed_again:
         left = leg.options.listed_again / fastest
-    contact, length = rates.changes.first()
+    contact, length = transitions.first_change(rates.changes.left, rates.changes.rate)
     aim = Aim(left, length, contact, int(rates.changes.what[contact]) if np.isfinite(length) else transitions.NOTHING)
     # shorter each time: to an event before the one expected, or half as long where there is no equilibrium at the end
     for _ in range(SYSTEM.patience):
@@ -101,7 +101,7 @@ def _renewed(point: Point, trial: Trial, sense: np.ndarray) -> tuple[Updated | N
         return None, np.zeros(point.system.dof)
 
 
-def _turn(leg: Leg, point: Point, rates: Rates, then: Changes, length: float) -> float | None:
+def _turn(leg: Leg, point: Point, rates: Rates, then: transitions.Changes, length: float) -> float | None:
     """Where the first slip has turned round within an increment of a ``length``, by less than a force; or None."""
     until, force = point.rate_problem.until, point.rate_problem.force
     back = np.flatnonzero((then.what == transitions.STICKS) & (then.rate > 0.0))

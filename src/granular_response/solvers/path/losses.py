@@ -47,7 +47,7 @@ def first_unstable(leg: Leg, before: Point, point: Point, *, one_by_one: bool) -
         return by_motion(leg, point, "bifurcation", "unstable", direction)
     rates = before.rate_problem.solve(before.trial, before.due) if one_by_one else None
     stable, length, last = 0.0, abs(point.factor - before.factor), before
-    while (length - stable) * leg.unit > leg.options.beyond / 100.0:
+    while (length - stable) * leg.unit > leg.options.found:
         middle = 0.5 * (stable + length)
         factor = before.factor + leg.direction * middle
         if rates is None:

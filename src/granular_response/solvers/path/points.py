@@ -35,9 +35,12 @@ class PathOptions:
     outdated: int = 2
     #: Load by which the next equilibrium is looked for, with limits of friction held fixed, where no statuses are found
     #: for the rates; doubled while the path does not go on after it, or it would take as many steps as a slab has loads
-    #: of this size. In lattices the path mostly goes on there, only with other statuses. A loss of stability between
-    #: two events is found to a hundredth of it. A motion, which needs more to drive it, begins with a hundred times.
+    #: of this size. In lattices the path mostly goes on there, only with other statuses. No shorter increment is tried.
     beyond: float = 1e-4
+    #: Load to which a loss of stability between two events is found.
+    found: float = 1e-6
+    #: Load by which a motion off a lost equilibrium begins, which needs more to drive it; doubled likewise.
+    driven: float = 1e-2
     #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
     nearby: float = 1e-3
     #: Displacement after which candidates are listed again, and longest in one increment; the two together are below
@@ -65,10 +68,9 @@ class Collapsed(SolveError, RuntimeError):
 
 
 @dataclass
-class PathRecord:
+class PathRecord(Work):
     """What a load path has cost, and its events so far."""
 
-    work: Work = field(default_factory=Work)
     events: list[Event] = field(default_factory=list)
 
 
@@ -157,7 +159,7 @@ class Leg:
 
     def gone_on(self) -> None:
         """The load has grown: steps off the next lost equilibrium begin short again."""
-        self.jump, self.beyond = 100.0 * self.options.beyond / self.unit, self.options.beyond / self.unit
+        self.jump, self.beyond = self.options.driven / self.unit, self.options.beyond / self.unit
 
     def at(self, state: State) -> Point:
         """A point of a new section, around the positions and candidates of a state."""
@@ -197,14 +199,14 @@ class Leg:
         guesses = [system.displaced(one, new) for one in guesses]
         if len(guesses) > 1:  # a short increment is nearer by its rates, a long one by what was found before
             guesses.sort(key=lambda q: np.abs(system.trial(point.known, q).contact_force + external).max())
-        return solve_increment(system, point.known, external, guesses[0], self.record.work)
+        return solve_increment(system, point.known, external, guesses[0], self.record)
 
     def balanced(self, point: Point) -> Point:
         """A start that dynamics alone has left nearly at rest: the equilibrium beside it."""
         external = external_force(self.problem, point.factor)
         if float(np.abs(point.trial.contact_force + external).max(initial=0.0)) < 10.0 * point.rate_problem.force:
             return point
-        found = solve_increment(point.system, point.known, external, point.known.q, self.record.work)
+        found = solve_increment(point.system, point.known, external, point.known.q, self.record)
         if found is None:
             raise PathError(
                 f"no equilibrium beside the start at load factor {point.factor:g}: it is not at rest; "
@@ -219,7 +221,7 @@ class Leg:
 
     def count(self, system: StaticSystem) -> None:
         """Add the factorisations of tangents with kept statuses to what the path has cost."""
-        self.record.work.factorisations += system.renewals
+        self.record.factorisations += system.renewals
         system.renewals = 0
 
     def kept(self, point: Point) -> State:
@@ -227,9 +229,8 @@ class Leg:
         trial, state = point.at_rest()
         modes, undetermined = judged(point.system, trial)
         self.count(point.system)
-        work = self.record.work
-        certificate = certify(self.problem, state, modes=modes, undetermined=undetermined)
-        reached = Reached("path", certificate, increments=work.increments, factorisations=work.factorisations)
+        spent, certificate = self.record, certify(self.problem, state, modes=modes, undetermined=undetermined)
+        reached = Reached("path", certificate, increments=spent.increments, factorisations=spent.factorisations)
         return replace(state, reached=reached)
 
 

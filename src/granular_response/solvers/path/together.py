@@ -63,6 +63,6 @@ class Together:
         if coarse is not None and coarse.walls.same_candidates(state.walls):
             error = float(np.abs(state.wall_force() - coarse.wall_force()).max(initial=0.0)) / leg.whole
         leg.record.events[leg.begun :] = state.reached.events
-        work = leg.record.work
+        work = leg.record
         reached = replace(state.reached, increments=work.increments, factorisations=work.factorisations)
         return replace(state, reached=replace(reached, events_within=self.load, events_error=error))
