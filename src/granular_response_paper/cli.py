@@ -151,16 +151,17 @@ def _keep_verdicts(output: Path, absent: list[str]) -> None:
         )
 
 
-@commands.command("reproduce", "reproduce --collection extensions", "reproduce --force")
+@commands.command("reproduce", "reproduce --collection extensions", "reproduce --force", "reproduce --group pile_dip")
 def reproduce(
     name: CollectionName = PAPER.name,
+    group: Annotated[str, typer.Option(help="Simulate and draw this figure group alone.")] = "",
     force: Annotated[bool, typer.Option("--force", help="Run every stage, also those that are up to date.")] = False,
 ) -> None:
     """Run every stage of a collection that is out of date, and show the progress."""
     from .pipeline import reproduce as running
 
-    arguments = ["--force"] if force else []
-    if status := running.reproduce(collection(name), Path(), arguments=arguments, say=typer.echo):
+    arguments, one = ["--force"] if force else [], collection_of(group) if group else collection(name)
+    if status := running.reproduce(one, Path(), group=group, arguments=arguments, say=typer.echo):
         raise typer.Exit(status)
 
 
