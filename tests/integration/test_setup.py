@@ -240,11 +240,11 @@ def test_pip_sees_no_other_setting_of_the_user(setup, monkeypatch):
     reached = {}
     run = setup.subprocess.run
     monkeypatch.setattr(setup.subprocess, "run", lambda words, **given: reached.update(given) or run(words, **given))
-    for name in ("PIP_USER", "PIP_TARGET", "PIP_CONFIG_FILE", "PIP_NO_DEPS", "PYTHONHOME", "PYTHONPATH"):
+    for name in ("PIP_USER", "PIP_TARGET", "PIP_CONFIG_FILE", "PIP_NO_DEPS", "PYTHONHOME", "PYTHONPATH", "SETUPTOOLS_USE_DISTUTILS"):
         monkeypatch.setenv(name, "/somewhere")
     monkeypatch.setattr(setup, "pip_settings", lambda: {"PIP_PROXY": "http://proxy"})
     setup.pip("nothing")
-    names = {name for name in reached["env"] if name.startswith(("PIP_", "PYTHON"))}
+    names = {name for name in reached["env"] if name.startswith(("PIP_", "PYTHON", "SETUPTOOLS_"))}
     assert names == {"PIP_PROXY", "PIP_CONFIG_FILE", "PIP_DISABLE_PIP_VERSION_CHECK"}
     assert reached["env"]["PIP_CONFIG_FILE"] == os.devnull
 

@@ -152,7 +152,8 @@ class Memory:
         held = None
         with contextlib.suppress(OSError):
             atomic.make_folder(lock)
-            held = os.open(lock, os.O_WRONLY | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+            # a pipe in its place would wait to be opened
+            held = os.open(lock, os.O_WRONLY | os.O_CREAT | os.O_NONBLOCK | os.O_NOFOLLOW, 0o600)
             fcntl.flock(held, fcntl.LOCK_EX)
         try:
             yield

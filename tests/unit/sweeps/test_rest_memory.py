@@ -169,3 +169,11 @@ def test_one_process_at_a_time_makes_a_state(tmp_path):
             memory.save(name, solve.rest_state(Problem.from_scene(SCENE)))
         assert found.get(timeout=600) == 0
     assert not list(tmp_path.rglob("*.lock"))
+
+
+def test_a_pipe_in_the_place_of_its_lock_is_not_waited_for(folder, computed):
+    memory, name = Memory(folder, settled._PARTS, states=True), settled.name(Problem.from_scene(SCENE))
+    memory.shelf.mkdir(parents=True)
+    os.mkfifo(memory.shelf / f"{name}.lock")
+    settled.rest_of(SCENE), settled.rest_of(SCENE)
+    assert len(computed) == 1
