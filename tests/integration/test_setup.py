@@ -240,7 +240,8 @@ def test_pip_sees_no_other_setting_of_the_user(setup, monkeypatch):
     reached = {}
     run = setup.subprocess.run
     monkeypatch.setattr(setup.subprocess, "run", lambda words, **given: reached.update(given) or run(words, **given))
-    for name in ("PIP_USER", "PIP_TARGET", "PIP_CONFIG_FILE", "PIP_NO_DEPS", "PYTHONHOME", "PYTHONPATH", "SETUPTOOLS_USE_DISTUTILS"):
+    of_pip = ("PIP_USER", "PIP_TARGET", "PIP_CONFIG_FILE", "PIP_NO_DEPS")
+    for name in (*of_pip, "PYTHONHOME", "PYTHONPATH", "SETUPTOOLS_USE_DISTUTILS"):
         monkeypatch.setenv(name, "/somewhere")
     monkeypatch.setattr(setup, "pip_settings", lambda: {"PIP_PROXY": "http://proxy"})
     setup.pip("nothing")
@@ -256,14 +257,15 @@ def test_a_python_that_makes_no_environments_names_the_package_that_is_missing(s
     assert not Path(".venv").exists()
 
 
-@pytest.mark.parametrize("sign", [":", "$", "[", "{", "}"])
+@pytest.mark.parametrize("sign", [":", "$", '"', "`", "\\", "\n", "[", "{", "}"])
 def test_a_path_that_a_tool_misreads_is_refused_in_one_line(tmp_path, sign):
     script = tmp_path / f"a{sign}b" / ".ci" / "setup"
     script.parent.mkdir(parents=True)
     shutil.copy(ROOT / ".ci" / "setup", script)
     done = subprocess.run([sys.executable, "-I", script], capture_output=True, text=True)
     assert done.returncode == 1 and done.stderr.count("\n") == 1
-    assert f"the path has a {sign}, which" in done.stderr and str(script.parents[1]) in done.stderr
+    path, sign = (one.replace("\n", "\\n") for one in (str(script.parents[1]), sign))
+    assert f"{path}: the path has a {sign}, which" in done.stderr
 
 
 def test_a_path_that_is_not_utf_8_is_refused_in_one_line(tmp_path):

@@ -374,6 +374,19 @@ def test_what_is_edited_while_a_stage_runs_is_not_recorded(copied, tmp_path, mon
     refuses(GroupError, "section friction_linear_range changed while it ran; run the stage again$", run)
 
 
+def test_what_is_edited_while_a_figure_is_drawn_is_not_recorded(copied):
+    """The module edits itself as it is imported."""
+    source = copied / "src" / "granular_response_paper" / "groups" / "theory" / "draw.py"
+    content, environment = source.read_bytes(), {"PYTHONPATH": str(copied / "src")}
+    python("-m", COMMAND, "simulate", "theory", "--workers", "1", folder=copied, **environment)
+    source.write_bytes(content + b"\nwith open(__file__, 'ab') as _file:\n    _file.write(b'#')\n")
+    command = [sys.executable, "-m", COMMAND, "draw", "theory"]
+    run = subprocess.run(command, cwd=copied, env=os.environ | environment, capture_output=True, text=True)
+    source.write_bytes(content)
+    assert (run.returncode, run.stdout) == (2, "")
+    assert run.stderr == f"granular-response-paper: {source} changed while it ran; run the stage again\n"
+
+
 def test_outside_a_checkout_nothing_is_refused(tmp_path):
     checkout.check(start=tmp_path)
     (tmp_path / "dvc.yaml").touch()
