@@ -1,5 +1,9 @@
 # `make reproduce` and `make test` are all a newcomer needs; both set up what they use.
 
+ifeq (,$(wildcard .ci/setup))
+$(error all paths are relative, and $(CURDIR) is not the folder of this Makefile: make -C FOLDER)
+endif
+
 PYTHON ?= python3
 CORES := $(shell getconf _NPROCESSORS_ONLN)
 # More than there are cores: tests wait for processes that they start.
@@ -37,31 +41,37 @@ help: ## Show this list
 ## For readers of the paper
 
 setup: ## Create .venv with the three packages and what they need, in the pinned versions (PYTHON=python3.12 picks another one)
-	@$(SETUP)
+	@$(call SETUP)
 
-# SETUP with --tools: tests, documentation and Dask besides, a third of the time of installing. xarray imports Dask wherever
+# As above, with tests, documentation and Dask besides, a third of the time of installing. xarray imports Dask wherever
 # it is installed, which takes 0.2 s in every process.
 tools:
-	@$(SETUP) --tools
+	@$(call SETUP,--tools)
 
-SETUP = $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2> /dev/null \
-	|| { echo "$(PYTHON) is not there, or older than Python 3.11: make $(or $(MAKECMDGOALS),setup) PYTHON=python3.12" >&2; exit 1; }; \
-	$(PYTHON) -I .ci/setup $(if $(filter command environment,$(firstword $(origin PYTHON))),--this-python)
+# Where the Python of .venv does not run, that of the user's PATH makes another one.
+SETUP = for path in "$$PATH" "$${PATH\#*$(BIN):}"; do PATH=$$path; \
+	test "$$("$(PYTHON)" -c 'import sys; print(sys.version_info >= (3, 11))' 2> /dev/null)" != True || \
+	exec "$(PYTHON)" -I .ci/setup $(if $(filter command environment,$(firstword $(origin PYTHON))),--this-python) $(1); done; \
+	echo "PYTHON=$(PYTHON): not there, or older than Python 3.11: make $(or $(MAKECMDGOALS),setup) PYTHON=python3.12" >&2; exit 1
 
 reproduce: setup ## Rebuild what is out of date of the paper: simulations, figures, claims, page (REPRO=--force: everything)
-	@$(PY) -m granular_response_paper reproduce $(REPRO)
+	@$(PY) -P -m granular_response_paper reproduce $(REPRO)
 
 extensions: setup ## The same for the questions beyond the paper, in the folder extensions/
-	@$(PY) -m granular_response_paper reproduce --collection extensions $(REPRO)
+	@$(PY) -P -m granular_response_paper reproduce --collection extensions $(REPRO)
 
 figure: ## Draw one figure of the paper: make figure FIGURE=17, or one figure group: make figure GROUP=pile_dip
-	@.ci/figure "$(GROUP)" "$(FIGURE)" > /dev/null
-	@$(MAKE) --no-print-directory setup
-	@group=$$(.ci/figure "$(GROUP)" "$(FIGURE)") && $(PY) -m dvc repro --quiet draw@$$group < /dev/null && .ci/figure --drawn $$group
+	@bash .ci/figure "$(GROUP)" "$(FIGURE)" > /dev/null
+	@$(call SETUP)
+	@$(PY) -P -m granular_response_paper reproduce --group $(DRAWN)
+	@bash .ci/figure --drawn $(DRAWN)
+
+# Without a shell around them commands get the signals that make gets.
+DRAWN = $(shell bash .ci/figure "$(GROUP)" "$(FIGURE)" 2> /dev/null)
 
 ## For own work on it (docs/contributing.md has stress tests and comparisons besides)
 survey: setup ## Run the large ensembles of disordered slabs and larger packings: 70 minutes on two cores; continues where it was
-	$(PY) -m dvc repro data/survey/dvc.yaml
+	$(PY) -P -m granular_response_paper.pipeline.dvc repro data/survey/dvc.yaml
 	$(PY) data/survey/document.py
 
 test: tools ## Run all tests and the linters (JOBS=2 for two processes)
@@ -90,16 +100,16 @@ docs: tools ## Build the documentation site into docs/_build/html, running every
 	$(PY) .ci/links docs/_build/html
 
 package: tools ## Build sdist and wheel, and try the wheel in a fresh environment
-	.ci/package $(PY) $(PYTHON)
+	bash .ci/package $(PY) $(PYTHON)
 
 wheels: setup # Ask the package index whether each pinned package has a wheel for Python 3.11 to 3.14 (two minutes)
-	.ci/wheels $(PY) 3.11 3.12 3.13 3.14
+	bash .ci/wheels $(PY) 3.11 3.12 3.13 3.14
 
 matrix: tools # The same for each of Python 3.11 to 3.13 that there is
-	.ci/package $(PY) python3.11 python3.12 python3.13
+	bash .ci/package $(PY) python3.11 python3.12 python3.13
 
 benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
-	$(PY) -m dvc repro benchmarks/dvc.yaml
+	$(PY) -P -m granular_response_paper.pipeline.dvc repro benchmarks/dvc.yaml
 
 arena: setup # Steps and responses beside other codes that are installed; says how to install those that are not
 	cd benchmarks && for name in kernel precision arena responses; do ../$(PY) -m peers.$$name peers/$$name.json || exit; done

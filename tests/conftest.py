@@ -11,6 +11,10 @@ from granular_response.machine import floating_point
 
 floating_point.pin()  # before anything loads numpy, as the command line does
 os.environ.setdefault("MPLBACKEND", "Agg")
+# Repositories of tests are their own, whatever the user's settings are and though a hook of git runs the tests.
+for _name in ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE"):
+    os.environ.pop(_name, None)
+os.environ["GIT_CONFIG_GLOBAL"] = os.devnull
 # modules that new processes import find the helpers of tests, as here
 _paths = str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, _paths))

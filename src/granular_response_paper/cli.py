@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -82,9 +82,10 @@ def draw(
     from .pipeline import drawing
 
     loaded()
-    checkout.check(collection_of(group))
     others = [name.strip() for name in formats.split(",") if name.strip()]
-    for path in drawing.draw(group, data, output, others):
+    with checkout.unchanged(collection_of(group)):
+        paths = drawing.draw(group, data, output, others)
+    for path in paths:
         typer.echo(str(path))
 
 
@@ -114,11 +115,11 @@ def claims(
     source = one.here / kept.SOURCE.relative_to(kept.OUTPUT.parent)
     summarised = PREPARATION in one.groups and not every and data is output is None and source.exists()
     output, data = output or one.here / table.OUTPUT, data or one.here / "data"
-    if not every:
-        checkout.check(one)
-        kept.check()
-        _keep_verdicts(output, [group for group in table.groups_read(one) if not (data / f"{group}.nc").exists()])
-    found = table.read(output) if every else table.write(output, data, kept.OUTPUT, collection=one)
+    with nullcontext() if every else checkout.unchanged(one):
+        if not every:
+            kept.check()
+            _keep_verdicts(output, [group for group in table.groups_read(one) if not (data / f"{group}.nc").exists()])
+        found = table.read(output) if every else table.write(output, data, kept.OUTPUT, collection=one)
     if summarised:
         typer.echo(str(kept.write(source, one.here / kept.OUTPUT.name)))
     rows = [row for row in found["table"] if figure is None or figure in row["figures"]]
@@ -151,16 +152,17 @@ def _keep_verdicts(output: Path, absent: list[str]) -> None:
         )
 
 
-@commands.command("reproduce", "reproduce --collection extensions", "reproduce --force")
+@commands.command("reproduce", "reproduce --collection extensions", "reproduce --force", "reproduce --group pile_dip")
 def reproduce(
     name: CollectionName = PAPER.name,
+    group: Annotated[str, typer.Option(help="Simulate and draw this figure group alone.")] = "",
     force: Annotated[bool, typer.Option("--force", help="Run every stage, also those that are up to date.")] = False,
 ) -> None:
     """Run every stage of a collection that is out of date, and show the progress."""
     from .pipeline import reproduce as running
 
-    arguments = ["--force"] if force else []
-    if status := running.reproduce(collection(name), Path(), arguments=arguments, say=typer.echo):
+    arguments, one = ["--force"] if force else [], collection_of(group) if group else collection(name)
+    if status := running.reproduce(one, Path(), group=group, arguments=arguments, say=typer.echo):
         raise typer.Exit(status)
 
 
@@ -176,10 +178,10 @@ def report(
 
     loaded()
     one = collection(name)
-    checkout.check(one)
-    typer.echo(str(reporting.write(one.here, collection=one)))
-    for path in reporting.write_fragments(fragments, one.here, collection=one) if fragments else ():
-        typer.echo(str(path))
+    with checkout.unchanged(one):
+        typer.echo(str(reporting.write(one.here, collection=one)))
+        for path in reporting.write_fragments(fragments, one.here, collection=one) if fragments else ():
+            typer.echo(str(path))
 
 
 #: Entry point.

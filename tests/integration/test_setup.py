@@ -240,11 +240,12 @@ def test_pip_sees_no_other_setting_of_the_user(setup, monkeypatch):
     reached = {}
     run = setup.subprocess.run
     monkeypatch.setattr(setup.subprocess, "run", lambda words, **given: reached.update(given) or run(words, **given))
-    for name in ("PIP_USER", "PIP_TARGET", "PIP_CONFIG_FILE", "PIP_NO_DEPS", "PYTHONHOME", "PYTHONPATH"):
+    of_pip = ("PIP_USER", "PIP_TARGET", "PIP_CONFIG_FILE", "PIP_NO_DEPS")
+    for name in (*of_pip, "PYTHONHOME", "PYTHONPATH", "SETUPTOOLS_USE_DISTUTILS"):
         monkeypatch.setenv(name, "/somewhere")
     monkeypatch.setattr(setup, "pip_settings", lambda: {"PIP_PROXY": "http://proxy"})
     setup.pip("nothing")
-    names = {name for name in reached["env"] if name.startswith(("PIP_", "PYTHON"))}
+    names = {name for name in reached["env"] if name.startswith(("PIP_", "PYTHON", "SETUPTOOLS_"))}
     assert names == {"PIP_PROXY", "PIP_CONFIG_FILE", "PIP_DISABLE_PIP_VERSION_CHECK"}
     assert reached["env"]["PIP_CONFIG_FILE"] == os.devnull
 
@@ -256,14 +257,15 @@ def test_a_python_that_makes_no_environments_names_the_package_that_is_missing(s
     assert not Path(".venv").exists()
 
 
-@pytest.mark.parametrize("sign", [":", "$", "[", "{", "}"])
+@pytest.mark.parametrize("sign", [":", "$", '"', "`", "\\", "\n", "[", "{", "}"])
 def test_a_path_that_a_tool_misreads_is_refused_in_one_line(tmp_path, sign):
     script = tmp_path / f"a{sign}b" / ".ci" / "setup"
     script.parent.mkdir(parents=True)
     shutil.copy(ROOT / ".ci" / "setup", script)
     done = subprocess.run([sys.executable, "-I", script], capture_output=True, text=True)
     assert done.returncode == 1 and done.stderr.count("\n") == 1
-    assert f"the path has a {sign}, which" in done.stderr and str(script.parents[1]) in done.stderr
+    path, sign = (one.replace("\n", "\\n") for one in (str(script.parents[1]), sign))
+    assert f"{path}: the path has a {sign}, which" in done.stderr
 
 
 def test_a_path_that_is_not_utf_8_is_refused_in_one_line(tmp_path):
@@ -272,6 +274,97 @@ def test_a_path_that_is_not_utf_8_is_refused_in_one_line(tmp_path):
     shutil.copy(ROOT / ".ci" / "setup", script)
     done = subprocess.run([sys.executable, "-I", script], capture_output=True, text=True)
     assert done.returncode == 1 and done.stderr.count("\n") == 1 and "path or locale is not UTF-8" in done.stderr
+
+
+@pytest.fixture
+def made(tmp_path):
+    """Runs make in a checkout where set-up only says that it runs, and the Python of .venv who started it."""
+    checkout = tmp_path / "a checkout"
+    group = checkout / "src" / "granular_response_paper" / "groups" / "one" / "parameters.py"
+    for file in (checkout / ".ci" / "setup", checkout / ".venv" / "bin" / "python", group):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.touch()
+    (checkout / ".ci" / "setup").write_text("import sys\nprint('set up', *sys.argv[1:])\n")
+    (checkout / ".venv" / "bin" / "python").write_text("#!/bin/sh\necho $PPID $*\n")
+    (checkout / ".venv" / "bin" / "python").chmod(0o755)
+    shutil.copy(ROOT / "Makefile", checkout)
+    (checkout / ".ci" / "figure").write_bytes((ROOT / ".ci" / "figure").read_bytes())  # as zipfile unpacks it
+
+    def run(*words, folder=checkout, **environment):
+        run = subprocess.Popen(
+            ["make", *words], cwd=folder, env=os.environ | environment, text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        )  # fmt: skip
+        out, err = run.communicate()
+        return run.returncode, out.replace(f"{run.pid} ", "MAKE "), err
+
+    run.checkout = checkout
+    return run
+
+
+def test_a_python_may_have_a_path_with_blanks_and_one_that_is_none_is_refused(made, tmp_path):
+    other = tmp_path / "my Python's" / "python"
+    other.parent.mkdir()
+    other.write_text(f'#!/bin/sh\nexec {sys.executable} "$@"\n')
+    other.chmod(0o755)
+    assert made("setup", f"PYTHON={other}") == (0, "set up --this-python\n", "")
+    for name in "", "/nowhere/python3":
+        for given in {"words": ("setup", f"PYTHON={name}")}, {"words": ("setup",), "PYTHON": name}:
+            status, out, err = made(*given.pop("words"), **given)
+            assert (status, out) == (2, "") and err.startswith(f"PYTHON={name}: not there, or older than Python 3.11")
+
+
+@pytest.mark.parametrize("content", ["", "#!/nowhere/python\n", "#!/bin/sh\nexit 127\n"], ids=["cut", "gone", "fails"])
+def test_a_python_in_the_environment_that_does_not_run_is_not_taken_for_that_of_the_user(made, content):
+    """Its folder is the first on the path of all that make runs. An empty file is a program that does nothing."""
+    for name in "python", "python3":
+        (made.checkout / ".venv" / "bin" / name).write_text(content)
+        (made.checkout / ".venv" / "bin" / name).chmod(0o755)
+    assert made("setup") == (0, "set up\n", "") and made("tools") == (0, "set up --tools\n", "")
+
+
+def test_make_runs_in_its_own_folder_alone(made, tmp_path):
+    """Else ``clean`` removes what is in another one."""
+    (tmp_path / ".venv").mkdir()
+    status, out, err = made("-f", str(made.checkout / "Makefile"), "clean", folder=tmp_path)
+    assert (status, out, err.count("\n")) == (2, "", 1) and "is not the folder of this Makefile: make -C" in err
+    assert (tmp_path / ".venv").exists()
+    assert made("-C", str(made.checkout), "setup", folder=tmp_path)[0] == 0
+
+
+def test_a_figure_is_drawn_by_a_process_that_gets_the_signals_of_make(made):
+    """Make passes SIGTERM on to what it has started itself, not to what a shell has."""
+    picture = made.checkout / "figures" / "one" / "a.png"
+    picture.parent.mkdir(parents=True)
+    picture.touch()
+    status, out, err = made("figure", "GROUP=one", GIT_CEILING_DIRECTORIES=str(made.checkout.parent))
+    said, drawn, compared = out.splitlines()
+    assert (status, said) == (0, "set up"), err
+    assert drawn == "MAKE -P -m granular_response_paper reproduce --group one"
+    assert compared.startswith("figures/one/a.png (not compared: fatal: not a git repository")
+    status, out, err = made("figure", "GROUP=two")
+    assert (status, out) == (2, "") and err.startswith("GROUP=two: no such figure group")
+
+
+def test_pictures_are_compared_with_their_own_repository_and_files_are_as_they_were(made, tmp_path):
+    """A hook of git names its repository to all that it runs; on Windows git may write other line ends."""
+    picture = made.checkout / "figures" / "one" / "a.png"
+    picture.parent.mkdir(parents=True)
+    picture.write_text("one\n")
+    shutil.copy(ROOT / ".gitattributes", made.checkout)
+    commit(made.checkout)
+    subprocess.run(["git", "clone", "-q", "-c", "core.autocrlf=true", made.checkout, tmp_path / "clone"], check=True)
+    assert (tmp_path / "clone" / "figures" / "one" / "a.png").read_bytes() == b"one\n"
+    of_a_hook = {"GIT_DIR": str(tmp_path), "GIT_WORK_TREE": str(tmp_path), "GIT_INDEX_FILE": str(tmp_path / "index")}
+    _, out, err = made("figure", "GROUP=one", **of_a_hook)
+    assert out.splitlines()[-1] == "figures/one/a.png (same as in git)", err
+
+
+def commit(repository):
+    """All files of a folder in a new repository."""
+    somebody = ("-c", "user.name=somebody", "-c", "user.email=somebody@here")
+    for words in ("init", "-q"), ("add", "."), ("commit", "-qm", "all"):
+        subprocess.run(["git", *somebody, *words], cwd=repository, check=True)
 
 
 @pytest.fixture
@@ -285,9 +378,7 @@ def check(tmp_path):
             shutil.copy(ROOT / ".ci" / name, repository / ".ci" / name)
         (repository / "README.md").write_text(readme)
         (repository / "Makefile").write_text(makefile)
-        somebody = ("-c", "user.name=somebody", "-c", "user.email=somebody@here")
-        for words in ("init", "-q"), ("add", "."), ("commit", "-qm", "all"):
-            subprocess.run(["git", *somebody, *words], cwd=repository, check=True)
+        commit(repository)
         # as the script sees it where no Python of the user's is in the way
         path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
         environment = os.environ | {"PATH": path, "TMPDIR": str(tmp_path)}

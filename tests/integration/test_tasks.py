@@ -316,6 +316,29 @@ def test_the_process_that_forks_workers_may_be_killed_as_it_begins(monkeypatch, 
     assert len(killed) == times
 
 
+def test_workers_import_nothing_from_the_folder_in_which_a_program_runs(tmp_path):
+    """As the program itself does, whose own folder is another one."""
+    folder, program = tmp_path / "data", tmp_path / "bin" / "program.py"
+    for one in folder, program.parent:
+        one.mkdir()
+    for name in ("numpy", "struct", "random", "typing", "socket"):
+        (folder / f"{name}.py").write_text("raise RuntimeError('not that of the library')\n")
+    program.write_text(
+        "import os, granular_response as gr\n"
+        "if __name__ == '__main__':\n"
+        "    print(gr.map_tasks(abs, [-1, -2], workers=2), os.environ.get('PYTHONSAFEPATH'))\n"
+    )
+    assert python(program, folder=folder, PYTHONSAFEPATH="") == "[1, 2] \n"
+
+
+def test_a_folder_for_temporary_files_whose_name_is_too_long_for_a_socket_is_named(tmp_path):
+    folder = tmp_path / ("x" * 120)
+    folder.mkdir()
+    script = "import granular_response as gr; gr.map_tasks(abs, [-1, -2], workers=2)"
+    with pytest.raises(AssertionError, match=rf"TMPDIR \({folder}\): AF_UNIX path too long; or workers=1"):
+        python("-c", script, TMPDIR=str(folder))
+
+
 KILLED = """
 import functools, sys
 sys.path.insert(0, sys.argv[1])

@@ -46,10 +46,14 @@ def write_bytes(path: str | os.PathLike[str], data: bytes, *, lasting: bool = Tr
             with contextlib.suppress(FileNotFoundError):
                 os.fchmod(file.fileno(), stat.S_IMODE(os.stat(target).st_mode))
             view = memoryview(data)
-            while view:
-                view = view[file.write(view) :]
-            if lasting:
-                os.fsync(file.fileno())
+            try:
+                while view:
+                    view = view[file.write(view) :]
+                if lasting:
+                    os.fsync(file.fileno())
+            except OSError as error:  # a stream has no name
+                error.filename = os.fspath(path)
+                raise
         os.replace(made, target)
     if not lasting:
         return

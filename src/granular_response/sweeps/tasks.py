@@ -19,6 +19,7 @@ import reprlib
 import secrets
 import signal
 import sys
+import tempfile
 import threading
 import traceback
 import warnings
@@ -342,8 +343,9 @@ def _pool(count: int, module: str) -> Iterator[tuple[ProcessPoolExecutor, Callab
         context.set_forkserver_preload([module])  # loaded once, not once a worker
         _start_forkserver()
         pool = ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker)
-    except OSError as error:  # their locks are shared memory
-        raise SweepError(f"worker processes cannot begin, /dev/shm: {error.strerror}; or workers=1") from None
+    except OSError as error:  # their locks are shared memory, their socket has a name of 107 bytes at most
+        places = f"/dev/shm or TMPDIR ({tempfile.gettempdir()})"
+        raise SweepError(f"worker processes cannot begin, {places}: {error.strerror or error}; or workers=1") from None
     try:
         with _importable_script(), _interruptions() as look:
             yield pool, look
@@ -381,12 +383,27 @@ def _start_forkserver() -> None:
 
     A terminal interrupts all processes at once, and one that is only just importing would say so.
     """
-    resource_tracker.ensure_running()  # it would let interruptions through again
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    with _import_path():
+        resource_tracker.ensure_running()  # it would let interruptions through again
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+        try:
+            forkserver.ensure_running()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextlib.contextmanager
+def _import_path() -> Iterator[None]:
+    """Processes that begin here import nothing from the current folder, a ``numpy.py``, unless this one does too."""
+    name, given = "PYTHONSAFEPATH", os.environ.get("PYTHONSAFEPATH")
+    if given or {"", os.getcwd()} & set(sys.path):
+        yield
+        return
+    os.environ[name] = "1"
     try:
-        forkserver.ensure_running()
+        yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        os.environ.pop(name) if given is None else os.environ.update({name: given})
 
 
 @contextlib.contextmanager

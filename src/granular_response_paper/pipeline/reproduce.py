@@ -36,15 +36,22 @@ def stage_names(collection: Collection, root: Path) -> list[str]:
 
 
 def reproduce(
-    collection: Collection, root: Path, *, arguments: Sequence[str] = (), say: Callable[[str], None] = print
+    collection: Collection,
+    root: Path,
+    *,
+    group: str = "",
+    arguments: Sequence[str] = (),
+    say: Callable[[str], None] = print,
 ) -> int:
-    """Bring a collection up to date; returns the exit status of DVC.
+    """Bring a collection, or the figures of one ``group``, up to date; returns the exit status of DVC.
 
     ``arguments`` go to ``dvc repro``; ``root`` is the folder of the checkout. Raises CheckoutError where other sources
     would run than those of the checkout.
     """
     checkout.check(collection, root / collection.folder)
-    names, start, begun, current = stage_names(collection, root), time.monotonic(), 0.0, ""
+    names = [name for name in stage_names(collection, root) if name.partition("@")[2] == group or not group]
+    order = [[f"draw@{group}"]] if group else [[_FIRST], []] if _FIRST in names else [[]]
+    start, begun, current = time.monotonic(), 0.0, ""
     seen, ran, last = set[str](), set[str](), deque[str](maxlen=_KEPT)
 
     def ended() -> None:
@@ -56,7 +63,7 @@ def reproduce(
             say(f"{len(seen):3} of {len(names)}  {current:36} {now - begun:6.1f} s   {_clock(now - start)} gone")
             current = ""
 
-    for targets in ([_FIRST], []) if _FIRST in names else ([],):
+    for targets in order:
         with dvc.running(["repro", *arguments, *targets], root / collection.folder) as run:
             assert run.stdout is not None
             for line in run.stdout:
@@ -72,7 +79,7 @@ def reproduce(
             return run.returncode
         ended()
     gone = _clock(time.monotonic() - start)
-    say(f"{collection.title}: {len(ran)} stages run, {len(names) - len(ran)} were up to date, {gone} gone")
+    say(f"{group or collection.title}: {len(ran)} stages run, {len(names) - len(ran)} were up to date, {gone} gone")
     return 0
 
 

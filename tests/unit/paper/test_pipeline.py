@@ -264,6 +264,50 @@ def test_dvc_calls_it(tmp_path):
     assert run.returncode == 0 and "dvc.lock\n" in run.stdout and not (tmp_path / "dvc.lock").exists(), run.stderr
 
 
+def cut(file):
+    file.write_bytes(file.read_bytes()[:-1])
+
+
+def junk(file):
+    file.write_bytes(b"junk")
+
+
+@pytest.mark.parametrize("damage", [cut, junk])
+@pytest.mark.parametrize("where", [".dvc/tmp/rwlock", ".dvc/cache/files", "site"])
+def test_what_dvc_keeps_decides_nothing_where_it_is_damaged(tmp_path, where, damage):
+    """Its note of files in use, its copy of a result, and its database of digests."""
+    environment = in_pipeline(tmp_path, "stages: {one: {cmd: 'echo made > out', outs: [out]}}\n")
+    environment["DVC_SITE_CACHE_DIR"] = str(tmp_path / "site")
+    command = [sys.executable, "-m", dvc.__name__, "repro"]
+
+    def run():
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        assert (tmp_path / "out").read_text() == "made\n"
+
+    run()
+    found = [path for path in (tmp_path, *(tmp_path / where).rglob("*")) if path.is_file()]
+    for file in found or [tmp_path / where]:
+        file.chmod(0o644)
+        damage(file)
+        if where == ".dvc/cache/files":
+            file.chmod(0o444)  # as DVC keeps it
+    (tmp_path / "out").unlink()
+    run()
+
+
+def test_one_group_is_run_alone_and_nothing_of_its_folder_is_imported(tmp_path):
+    stages = "stages: {draw: {foreach: [one, other], do: {cmd: 'test ${item} = one'}}}\n"
+    in_pipeline(tmp_path, stages)
+    pair = Collection("pair", EMPTY.package, ".", "two groups")
+    pair.__dict__["groups"] = ("one", "other")
+    for name in ("numpy", "dvc", "typing"):
+        (tmp_path / f"{name}.py").write_text("raise RuntimeError")
+    said = []
+    assert reproduce.reproduce(pair, tmp_path, group="one", say=said.append) == 0
+    assert said[0].split()[:4] == ["1", "of", "1", "draw@one"] and said[1].startswith("one: 1 stages run, 0 were")
+
+
 PACKAGES = ("granular_response", "granular_response_paper")
 
 
@@ -328,6 +372,19 @@ def test_what_is_edited_while_a_stage_runs_is_not_recorded(copied, tmp_path, mon
     monkeypatch.setattr(simulation, "group_member", lambda group, of, name: edit.get(of) or member(group, of, name))
     run = partial(simulation.simulate, "friction_linear_range", tmp_path / "one.nc", parameter_file=file)
     refuses(GroupError, "section friction_linear_range changed while it ran; run the stage again$", run)
+
+
+def test_what_is_edited_while_a_figure_is_drawn_is_not_recorded(copied):
+    """The module edits itself as it is imported."""
+    source = copied / "src" / "granular_response_paper" / "groups" / "theory" / "draw.py"
+    content, environment = source.read_bytes(), {"PYTHONPATH": str(copied / "src")}
+    python("-m", COMMAND, "simulate", "theory", "--workers", "1", folder=copied, **environment)
+    source.write_bytes(content + b"\nwith open(__file__, 'ab') as _file:\n    _file.write(b'#')\n")
+    command = [sys.executable, "-m", COMMAND, "draw", "theory"]
+    run = subprocess.run(command, cwd=copied, env=os.environ | environment, capture_output=True, text=True)
+    source.write_bytes(content)
+    assert (run.returncode, run.stdout) == (2, "")
+    assert run.stderr == f"granular-response-paper: {source} changed while it ran; run the stage again\n"
 
 
 def test_outside_a_checkout_nothing_is_refused(tmp_path):
