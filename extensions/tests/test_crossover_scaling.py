@@ -62,22 +62,6 @@ def test_the_first_opening_is_that_of_a_lattice_of_springs(datasets, at):
     assert 0.99 * low < expected < 1.01 * high
 
 
-def test_gravity_presses_no_horizontal_contact_of_a_periodic_lattice(datasets):
-    slabs = datasets["slabs"]
-    inside = slabs.isel(slab=np.flatnonzero(slabs["periodic"].values))
-    for name, asked in (("constant confinement", [0.15] * 3), ("friction", [0.15 * n / 15 for n in (5, 7, 9)])):
-        assert of(datasets, name)["confinement"].values == pytest.approx(asked, rel=1e-6)
-    assert (inside["by_motion"].values >= 0).all()
-
-
-def test_without_friction_forces_are_in_proportion_to_the_confinement(datasets):
-    one = of(datasets, "confinement")
-    per = one["crossover_bracket"].values / one["confinement"].values[:, None]
-    assert per[0] == pytest.approx(per[1], rel=1e-6)
-    exponent = datasets["powers"]["exponent"].sel(series="confinement", event="crossover").values
-    assert exponent[1] < 1.0 < exponent[2]
-
-
 def test_between_walls_two_peaks_come_where_the_older_study_finds_them(datasets, parameters):
     one = of(datasets, "walls").isel(slab=0)
     slab = frictionless.OrderedSlab(int(one["layers"]), int(one["disks_per_row"]), float(one["normal_stiffness"]))

@@ -8,11 +8,6 @@ from granular_response_extensions.experiments import simulate
 from granular_response_extensions.experiments.parameters import Parameters
 
 
-def test_lines_bear_the_load(datasets):
-    packings = datasets["packings"]
-    assert float(packings["imbalance"].max()) < 1e-7 and (packings["moved"] < 2.0).all()
-
-
 def test_statistics_of_known_profiles():
     """Rays at 60 degrees, and a stress whose width is as the depth."""
     asked = Parameters(**reduced.parameters("experiments") | {"reach": 60, "depths": 20, "ring": [6.0, 12.0]})

@@ -11,8 +11,3 @@ def test_forces_are_relative_to_the_mean_of_their_height():
     forces = 1.0 + np.floor((height - height.min()) / 3.0) + rng.uniform(0.0, 1e-3, 500)
     relative = simulate.relative(forces, height, 3.0)
     np.testing.assert_allclose(relative, 1.0, atol=1e-3)
-
-
-def test_distributions_are_normalised(datasets):
-    density = datasets["statistics"]["force_density"]
-    assert 0.9 < np.nanmax(density.sum("force")) * np.diff(simulate.FORCES)[0] <= 1.0 + 1e-12

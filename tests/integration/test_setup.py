@@ -256,22 +256,19 @@ def test_a_python_that_makes_no_environments_names_the_package_that_is_missing(s
     assert not Path(".venv").exists()
 
 
-@pytest.mark.parametrize("sign", [":", "$", "[", "{", "}"])
+@pytest.mark.parametrize("sign", [b":", b"$", b"[", b"{", b"}", b"\xff"])
 def test_a_path_that_a_tool_misreads_is_refused_in_one_line(tmp_path, sign):
-    script = tmp_path / f"a{sign}b" / ".ci" / "setup"
+    script = Path(os.fsdecode(os.fsencode(tmp_path) + b"/a" + sign + b"b")) / ".ci" / "setup"
     script.parent.mkdir(parents=True)
     shutil.copy(ROOT / ".ci" / "setup", script)
     done = subprocess.run([sys.executable, "-I", script], capture_output=True, text=True)
     assert done.returncode == 1 and done.stderr.count("\n") == 1
-    assert f"the path has a {sign}, which" in done.stderr and str(script.parents[1]) in done.stderr
-
-
-def test_a_path_that_is_not_utf_8_is_refused_in_one_line(tmp_path):
-    script = Path(os.fsdecode(os.fsencode(tmp_path) + b"/a\xffb")) / ".ci" / "setup"
-    script.parent.mkdir(parents=True)
-    shutil.copy(ROOT / ".ci" / "setup", script)
-    done = subprocess.run([sys.executable, "-I", script], capture_output=True, text=True)
-    assert done.returncode == 1 and done.stderr.count("\n") == 1 and "path or locale is not UTF-8" in done.stderr
+    said = (
+        "path or locale is not UTF-8"
+        if sign == b"\xff"
+        else f"{script.parents[1]}: the path has a {sign.decode()}, which"
+    )
+    assert said in done.stderr
 
 
 @pytest.fixture

@@ -12,23 +12,6 @@ from granular_response_paper.groups.frictionless_crossover.simulate.slab import 
 BASE = study.Parameters(**reduced.parameters("frictionless_crossover")).base
 
 
-def test_events(datasets) -> None:
-    """Each bracket is as narrow as asked and the stored states on both sides of it say the same."""
-    events = datasets["events"].to_dataframe().set_index("name")
-    response = datasets["response"]
-    happens = {
-        "first_opening": response["teardrop_depth"] > 0,
-        "crossover": response["double_peaked"] > 0,
-        "teardrop_reaches_floor": response["reaches_floor"] > 0,
-    }
-    for name, yes in happens.items():
-        low, high = events.loc[name, ["low", "high"]]
-        first = float(response["force"][int(yes.argmax("force"))])
-        assert 0.0 < high - low <= 0.002 * first
-        assert not yes.sel(force=slice(0.0, low)).any()
-        assert float(response["force"][yes.values].min()) >= high
-
-
 def test_stored_states_give_the_stored_measurements(datasets) -> None:
     """What a page draws from the states is what the figures and claims are made of."""
     rest, states, response = datasets["rest"], datasets["states"], datasets["response"]

@@ -3,29 +3,11 @@
 import numpy as np
 import reduced
 
-from granular_response_paper import ensembles
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED, realizations
 from granular_response_paper.groups.polydisperse_averages import draw
 from granular_response_paper.groups.polydisperse_averages import simulate as study
 
 PARAMETERS = reduced.parameters("polydisperse_averages")
-
-
-def test_mean_is_that_of_the_realizations_at_rest(datasets) -> None:
-    data, averages = datasets["ensembles"], datasets["averages"]
-    x = averages["x"].values
-    rows = ensembles.smoothed(data.isel(case=1), x, 3.0)[:, 0]
-    assert len(rows) == 3
-    np.testing.assert_allclose(averages["mean"].values[0, 1, 0], rows.mean(axis=0))
-    np.testing.assert_allclose(
-        averages["standard_error"].values[0, 1, 0], np.sqrt(rows.var(axis=0, ddof=1) / len(rows))
-    )
-
-
-def test_realizations_at_rest_are_counted(datasets) -> None:
-    averages, outcome = datasets["averages"], datasets["ensembles"]["outcome"]
-    np.testing.assert_array_equal(averages["count_at_rest"], (outcome == AT_REST).sum("realization"))
-    assert np.all(averages["count_at_rest"].max("step") == averages["realizations"])
 
 
 def test_collapse_and_failure_are_reported() -> None:

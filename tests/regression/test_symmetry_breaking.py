@@ -20,16 +20,6 @@ def test_symmetry_is_lost_between_symmetric_and_asymmetric_runs(datasets):
     assert by_force[20.0] < 1e-6
 
 
-def test_a_further_time_step_is_tried_where_the_one_before_loses_symmetry(datasets):
-    table, runs = datasets["brackets"], datasets["runs"]
-    assert table["time_step"].values.tolist() == [5e-4, 4e-4, 5e-4]
-    assert float(table["low"][1]) == float(table["low"][0])
-    assert float(table["high"][1]) == float(table["high"][0])
-    second = runs.isel(run=runs["time_step"].values == 4e-4)
-    assert second["force"].values.tolist() == [float(table["low"][1]), float(table["high"][1])]
-    assert float(second["asymmetry"][0]) <= 0.1 < float(second["asymmetry"][1])
-
-
 @pytest.mark.parametrize("guess", [(50.0, 60.0), (20.0, 25.0)])
 def test_where_a_further_time_step_disagrees_all_forces_are_searched(datasets, guess):
     parameters = study.Parameters(**PARAMETERS)
@@ -39,12 +29,6 @@ def test_where_a_further_time_step_disagrees_all_forces_are_searched(datasets, g
     assert set(guess) & set(found.forces)  # tried
     table = datasets["brackets"]
     assert (found.event.low, found.event.high) == (float(table["low"][0]), float(table["high"][0]))
-
-
-def test_without_a_loss_the_bracket_is_open(datasets):
-    table = datasets["brackets"]
-    assert (float(table["low"][2]), np.isnan(float(table["high"][2]))) == (20.0, True)
-    assert (float(table["ramp_time"][2]), float(table["time_step"][2])) == (5.0, 5e-4)
 
 
 def test_the_sign_follows_a_displacement_and_its_mirror_image(datasets):

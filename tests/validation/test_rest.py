@@ -1,17 +1,11 @@
 """Finished states stay at rest in full dynamics (claims N1 to N3), and equilibria that are not stable are left."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from solved import FLOOR_DISKS, slab
 
 from granular_response.observe.floor import floor_force
-from granular_response.scene import Scene
 from granular_response.solvers.dynamics import Dynamics, Stop, relax
-from granular_response.solvers.equilibrium import finish
-from granular_response.solvers.problem import Problem
-from granular_response.solvers.solution import rest_state
 
 
 def largest_energy(problem, state, steps: int) -> float:
@@ -46,22 +40,3 @@ def test_stopping_early_leaves_errors_in_floor_forces_below_one_percent():
     # the first reading below 1e-13 still leaves 2e-5 g; the paper's 1e-5 holds a little later
     assert state.reached.mean_acceleration < 1e-4
     assert relax(dynamics, Stop(1e-14)).reached.mean_acceleration < 1e-5
-
-
-def test_symmetric_equilibrium_of_the_pile_is_a_saddle():
-    """The minimum and its mirror image are apart; half-way Newton's method finds one unstable symmetric state."""
-    scene = {"packing": {"kind": "pile", "layers": 11}, "contact": {"friction": 0.0}}
-    problem = Problem.from_scene(Scene.from_dict(scene))
-    rest = rest_state(problem)
-    row = problem.packing.row
-    mirror = np.concatenate([np.flatnonzero(row == r)[::-1] for r in range(row.max() + 1)])
-    reflected = rest.position[mirror] * [-1.0, 1.0] + [problem.packing.width, 0.0]
-    assert np.abs(reflected - rest.position).max() > 1e-4
-    half_way = replace(rest, position=0.5 * (rest.position + reflected))
-    state = finish(problem, half_way)
-    assert state.certificate.force_residual < 1e-9
-    assert state.certificate.negative_modes == 1
-    force = floor_force(state, np.flatnonzero(row == 0))
-    middle = len(force) // 2
-    assert (force[middle], force[:middle].max()) == pytest.approx((7.97, 9.15), abs=0.006)
-    assert force == pytest.approx(force[::-1], abs=1e-9)

@@ -104,17 +104,6 @@ def test_the_forces_on_sensors_sum_to_the_weight_of_all_disks(sides):
         assert float(added.sum()) == pytest.approx(applied, rel=1e-9)
 
 
-def test_a_profile_of_sensors_has_a_band_over_preparations():
-    units, ways = gr.LaboratoryUnits(), {"at once": {}, "frictionless": {"gravity": "frictionless"}}
-    profile = lambda result: result.floor_profile(units, 15.0)  # noqa: E731
-    found = gr.preparations(SMALL, ways, profile, workers=1, progress=False)
-    base = gr.Scene.from_dict(SMALL)
-    both = [profile(gr.solve(base.updated({"preparation": way}))) for way in ways.values()]
-    np.testing.assert_array_equal(found["floor_profile_low"], np.minimum(*both))
-    np.testing.assert_array_equal(found["floor_profile_high"], np.maximum(*both))
-    assert float((found["floor_profile_high"] - found["floor_profile_low"]).max()) > 1e-6
-
-
 def test_displacements_are_from_the_initial_equilibrium(result):
     moved, (disk,) = result.displacement, result.loaded_disks
     assert moved.dims == ("load", "disk", "axis") and moved["force"].values.tolist() == [2.0, 4.0]

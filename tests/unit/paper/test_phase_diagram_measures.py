@@ -329,9 +329,8 @@ def test_blocks_of_different_size_become_one(stored) -> None:
     for case, (block, (_, _, count)) in enumerate(SIZES.items()):
         alone = store.read(stored / f"{block}.nc")["ensembles"].isel(case=0)
         steps = alone.sizes["step"]
-        np.testing.assert_array_equal(
-            ensembles["floor_response"].values[case, :count, :steps], alone["floor_response"].values
-        )
+        response = ensembles["floor_response"].values[case, :count, :steps]
+        np.testing.assert_array_equal(response, alone["floor_response"].values)
         assert np.isnan(ensembles["floor_response"].values[case, count:]).all()
         assert (ensembles["outcome"].values[case, count:] == NOT_REACHED).all()
         assert np.isnan(ensembles["force"].values[case, steps:]).all()
@@ -371,24 +370,15 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
     single = found["realizations"]
     assert single["collapse_force"].values[1, 0] == 8.0
     assert np.isnan(single["collapse_force"].values[1, 1:]).all()
-    medians = found["medians"]
-    low, high = medians["interval"].values[1, 2, [0, -1]]
-    assert low <= single["median"].values[1, 2] <= high
-    np.testing.assert_array_equal(medians["force"], single["median"])  # none beyond a path
-    assert found["linear_range"]["response_at_centre"].shape == (1, 8, 4)
+    np.testing.assert_array_equal(found["medians"]["force"], single["median"])  # none beyond a path
     np.testing.assert_array_equal(found["linear_range"]["profile_change"].values[..., 0], 0.0)
     assert np.nanmin(found["linear_range"]["profile_change"].values[..., -1]) > 0.1
-    assert found["packings"]["horizontal_contacts"].shape == (3, 10)
     side = found["starts"]
     assert side["friction"].values.tolist() == [0.2, 0.5]
     np.testing.assert_allclose(side["distance"], 2.0 / 0.95)
     np.testing.assert_allclose(side["contacts"], 4.2, atol=0.02)
     np.testing.assert_allclose(side["missing_horizontal"], 0.75, atol=0.02)
     np.testing.assert_array_equal(side["dip"].values[:, 0], found["shapes"]["shape"].values[:, 1, 2])
-    low, high = (side["dip_of_means_interval"].values[..., end] for end in (0, -1))
-    assert np.all((low <= side["dip_of_means"]) & (side["dip_of_means"] <= high))
-    assert np.all(np.diff(side["dip_of_means"], axis=-1) >= 0.0)
-    assert np.all(np.diff(side["contacts_interval"], axis=1) >= 0.0)
     store.write(tmp_path / "phase_diagram.nc", found)
     drawn = figures.draw(store.read(tmp_path / "phase_diagram.nc"))
     assert list(drawn) == ["fig22_phase_diagram", "initial_lattice"]
