@@ -12,34 +12,6 @@ from granular_response_paper.groups.frictionless_crossover.simulate.slab import 
 BASE = study.Parameters(**reduced.parameters("frictionless_crossover")).base
 
 
-def test_stored_states_give_the_stored_measurements(datasets) -> None:
-    """What a page draws from the states is what the figures and claims are made of."""
-    rest, states, response = datasets["rest"], datasets["states"], datasets["response"]
-    disks = states.sizes["disk"]
-    on_floor = states["wall_index"].values == 0
-
-    def floor_force(one):
-        force = np.zeros(disks)
-        np.add.at(force, one["wall_disk"].values[on_floor], one["wall_normal_force"].values[on_floor])
-        return force[response["floor_disk"].values]
-
-    before = floor_force(rest.isel(state=0))
-    np.testing.assert_allclose(before.sum(), disks, rtol=1e-10)
-    was = rest["contact_status"].values[0] > 0
-    for k, force in enumerate(states["force"].values):
-        one = states.isel(force=k)
-        added = (floor_force(one) - before) / force
-        np.testing.assert_allclose(added, response["floor_response"].sel(force=force), atol=1e-12)
-        np.testing.assert_allclose(added.sum(), 1.0, rtol=1e-9)
-        region = one["teardrop"].values > 0
-        assert np.all(was[region] & (one["contact_status"].values[region] == 0))
-        assert bool(region.any()) == (float(response["teardrop_depth"].sel(force=force)) > 0.0)
-        if region.any():
-            height = rest["position"].values[0, :, 1]
-            apart = np.abs(height[one["contact_disk"].values] - height[one["contact_partner"].values])[region]
-            assert float(one["teardrop_horizontal"]) == np.mean(apart < 0.5 * np.sqrt(3.0))
-
-
 def test_new_neighbours_are_touching_pairs_that_were_apart() -> None:
     problem = Problem.from_scene(OrderedSlab(3, 7, 3000.0).scene(BASE))
     packing = problem.packing

@@ -9,7 +9,7 @@ from itertools import chain
 
 import numpy as np
 import pytest
-from claims_data import PILE, dataset, everything, parameters, pile_study
+from claims_data import PILE, dataset, everything, parameters, pile_dip
 from places import ROOT
 from refusals import refuses
 from scipy.stats import binom
@@ -589,7 +589,7 @@ def test_labels_are_found_exactly_and_together():
 
 
 def test_the_stored_table_is_the_one_file_of_verdicts(tmp_path):
-    store.write(tmp_path / "data" / "pile_dip.nc", pile_study(), PILE)
+    store.write(tmp_path / "data" / "pile_dip.nc", pile_dip(), PILE)
     found = table.write(tmp_path / "claims.json", tmp_path / "data", tmp_path / "none.nc")
     stored = json.loads((tmp_path / "claims.json").read_text())
     assert stored == found == table.read(tmp_path / "claims.json")
@@ -630,7 +630,7 @@ def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path
     assert made["source"] == "preparation.nc" and made["parameters"] == "ways: []" and len(made["source_md5"]) == 32
     read = table.collect(tmp_path / "none", path).groups["preparation"]["events"]
     assert read["low"].values.tolist() == events["events"]["low"].values.tolist()
-    store.write(tmp_path / "other.nc", pile_study(), {"group": "pile_dip"})
+    store.write(tmp_path / "other.nc", pile_dip(), {"group": "pile_dip"})
     with pytest.raises(NotMeasured, match="no events of the group preparation"):
         preparations.write(tmp_path / "other.nc", tmp_path / "summary.nc")
 

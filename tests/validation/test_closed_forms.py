@@ -2,8 +2,8 @@
 
 Units: mean radius, mean mass, g; weights are 1. Not repeated here: rolling and sliding of a disk on a floor and on an
 incline (MFIX DEM04, Chrono, ti-DEMPM: ``test_decks.py``), two disks pressed together (MFIX DEM03), collisions
-(``test_motion_closed_forms.py``), the elastic slab by finite elements (``test_theory_slab_independent.py``), Hertz
-contacts by three methods (``test_hertz.py``). Tolerances were declared before the values were looked at.
+(``test_motion_closed_forms.py``), Hertz contacts by three methods (``test_hertz.py``). Tolerances were declared before
+the values were looked at.
 """
 
 import math

@@ -40,15 +40,6 @@ def test_dynamics_approaches_the_path_as_its_ramp_grows(settled):
     assert difference[2] < 0.7 * difference[1]
 
 
-def test_a_path_back_leads_elsewhere_with_friction_and_back_within_the_reversible_range(settled):
-    problem, rest = settled
-    up, _, down = follow(problem, rest, [2.0, 4.0, 2.0])
-    assert np.abs(floor_force(up, FLOOR) - floor_force(down, FLOOR)).max() > 1e-3
-    first, _, again = follow(problem, rest, [1e-4, 2e-4, 1e-4])
-    change = np.abs(floor_force(first, FLOOR) - floor_force(rest, FLOOR)).max()
-    assert np.abs(floor_force(first, FLOOR) - floor_force(again, FLOOR)).max() < 0.02 * change
-
-
 def test_an_equilibrium_that_is_left_slowly_is_not_called_stable():
     """A disk balanced on another, displaced by 1e-6, needs seconds to move: a look at once sees it at rest."""
     load = [{"disk": 1, "force": [0.0, -0.1]}]

@@ -1,4 +1,4 @@
-"""Small packings with rolling resistance against LAMMPS (tests/data/README.md), and the path against slow ramps."""
+"""Small packings with rolling resistance against LAMMPS (tests/data/README.md), by motion and along a path."""
 
 import json
 
@@ -43,18 +43,3 @@ def test_responses_agree_with_lammps(name):
         z = [s.position[:, 1] for s in (plain.rest, plain.loaded[-1])]
         without = stiffness * (np.maximum(radius - z[1], 0.0) - np.maximum(radius - z[0], 0.0))[floor]
         assert np.abs(without / plain.total_force - other).max() > 20.0 * limit
-
-
-def test_the_path_is_the_limit_of_slow_ramps():
-    """What is left falls like one over the time in which the load grows."""
-    changes = {"packing.layers": 5, "packing.disks_per_row": 13, "contact.rolling_friction": 0.05}
-    changes |= {"contact.rolling_stiffness_ratio": 0.8, "loads.0.force": [0.0, -4.0], "protocol.method": "dynamics"}
-    scene = Scene().updated(changes)
-
-    def response(**more):
-        solution = solve_scene(scene.updated({f"protocol.{key}": value for key, value in more.items()}))
-        return solution.loaded[-1].walls.normal_force - solution.rest.walls.normal_force
-
-    path = response(method="path")
-    fast, slow = (np.abs(response(ramp_time=ramp) - path).max() / 4.0 for ramp in (20.0, 200.0))
-    assert slow < 1e-5 and fast == pytest.approx(10.0 * slow, rel=0.2)
