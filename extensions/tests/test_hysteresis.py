@@ -10,7 +10,7 @@ from granular_response_extensions.hysteresis.simulate.loops import keep_books
 
 PARAMETERS = reduced.parameters("hysteresis")
 #: Cases of the reduced parameters.
-SMOOTH, ROUGH, DISORDERED = 0, 1, 2
+SMOOTH, ROUGH = 0, 1
 
 
 def part_of_work(loops, name):

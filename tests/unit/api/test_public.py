@@ -19,14 +19,6 @@ def result() -> gr.Result:
     return gr.solve(SMALL, load_factors=[0.5, 1.0])
 
 
-def test_a_result_has_states_certificates_and_response(result):
-    assert result.load_factors == (0.5, 1.0) and result.rest.load_factor == 0.0
-    assert len(result.certificates) == 3 and result.certificate.stable
-    assert result.certificate.force_residual < 1e-10
-    assert float(result.floor_response.isel(load=1).sum()) == pytest.approx(1.0, abs=1e-9)
-    assert result.scene == gr.Scene.from_dict(SMALL).updated({"protocol.load_factors": [0.5, 1.0]})
-
-
 def test_contacts_as_a_table(result, tmp_path):
     table = result.contacts_table()
     state, data = result.loaded[-1], result.to_dataset()
