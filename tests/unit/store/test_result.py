@@ -123,7 +123,7 @@ def assert_same_contacts(one, other) -> None:
 )
 def test_a_continued_result_is_the_uninterrupted_one(tmp_path, changes):
     """Cut at each load, stored and read again: every state, event and measured number has the same bits."""
-    scene = SLAB.updated({"loads.0.force": [0.0, -10.0], **changes})
+    scene = SLAB.updated({"loads.0.force": [0.0, -10.0]}).updated(changes)
     straight = solve_scene(scene, load_factors=[0.3, 0.6, 1.0, 0.4])
     if "packing.seed" in changes:
         assert any(event.lost for event in straight.loaded[1].reached.events)
