@@ -110,7 +110,7 @@ def test_versions_come_first_then_the_packages_of_the_checkout_and_nothing_twice
 def test_an_environment_that_is_not_whole_is_made_anew(setup, damage):
     whole(setup)
     Path(".venv/of-before").touch()
-    subprocess.run(damage, shell=True, check=True)
+    subprocess.run(["sh", "-c", damage], check=True)
     whole(setup)
     assert not Path(".venv/of-before").exists()
 

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from observe_states import contacts, opened, pair_index, slab, state
+from observe_states import contacts, opened, slab, state
 from refusals import refusals
 
 from granular_response.observe import network
@@ -107,16 +107,6 @@ def test_contact_angle_histogram_counts_touching_contacts_only():
 def test_mirror_of_a_slab():
     s = slab(2, 3)  # disks 0 1 2 below, 3 4 above
     assert network.mirror_disks(s.position, 3.0).tolist() == [2, 1, 0, 4, 3]
-
-
-def test_network_asymmetry_counts_contacts_without_an_image():
-    s = slab(2, 3)
-    mirror = network.mirror_disks(s.position, 3.0)
-    assert network.network_asymmetry(s.pairs, mirror) == 0.0
-    left, right = pair_index(s, 0, 1), pair_index(s, 1, 2)
-    lopsided = opened(s, np.array([left]))
-    assert network.network_asymmetry(lopsided.pairs, mirror) == pytest.approx(1 / (s.pairs.first.size - 1))
-    assert network.network_asymmetry(opened(s, np.array([left, right])).pairs, mirror) == 0.0
 
 
 test_what_cannot_be_is_named = refusals(

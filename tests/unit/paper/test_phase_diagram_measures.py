@@ -10,9 +10,6 @@ from places import ROOT
 
 from granular_response.studies import linear_end
 from granular_response_paper.claims import bounds
-from granular_response_paper.ensembles import AT_REST, COLLAPSED
-from granular_response_paper.groups.phase_diagram.parameters import Parameters
-from granular_response_paper.groups.phase_diagram.simulate import read_ensemble
 from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import (
     ABOVE,
@@ -24,7 +21,6 @@ from granular_response_paper.survey.crossover import (
     crossover,
     folded,
     grown,
-    lean,
     passed,
     seen_in_samples,
     shape,
@@ -169,34 +165,6 @@ def test_crossing_counts_draws_beyond_the_path() -> None:
     assert 0.0 < np.mean(found.draws == np.inf) < 1.0
     assert found.interval[-1] == np.inf
     assert np.all(np.diff(found.shape_interval, axis=1) >= 0.0)
-
-
-def test_read_ensemble_smooths_both_sides() -> None:
-    at = np.array([-4.0, 0.0, 4.0])
-    source = xr.Dataset(
-        {
-            "force": (("case", "step"), [[1.0, 2.0, np.nan]]),
-            "x": (("case", "realization", "slot"), [[[*at, np.nan], [*at, np.nan]]]),
-            "floor_response": (
-                ("case", "realization", "step", "slot"),
-                [[[[0.0, 0.0, 1.0, np.nan]] * 3, [[1.0, 0.0, 0.0, np.nan]] * 3]],
-            ),
-            "outcome": (("case", "realization", "step"), [[[AT_REST] * 3, [AT_REST, COLLAPSED, 3]]]),
-        },
-        coords={"realizations": (("case",), [2])},
-    )
-    ensemble = read_ensemble(source, 0, X, 2.0, Parameters.model_construct(least_part=0.5, tolerance=0.0))
-    np.testing.assert_array_equal(ensemble.force, [1.0, 2.0])
-    assert ensemble.least == 1
-    np.testing.assert_allclose(ensemble.response[0, 0], ensemble.response[1, 0, ::-1])  # mirror images
-    assert ensemble.response.shape[-1] == 2 * len(X) - 1
-    symmetric = folded(ensemble.response)
-    np.testing.assert_allclose(symmetric[0, 0], symmetric[1, 0])
-    assert X[np.argmax(symmetric[0, 0])] == 4.0
-    np.testing.assert_allclose(symmetric[0, 0].max(), 0.5 * ensemble.response[0, 0].max(), rtol=1e-5)
-    assert np.isnan(symmetric[1, 1]).all()
-    np.testing.assert_allclose(lean(ensemble.response[0, 0]), 1.0, rtol=1e-6)
-    np.testing.assert_allclose(lean(ensemble.response[:, 0].mean(axis=0)), 0.0, atol=1e-15)
 
 
 def test_linear_end() -> None:
