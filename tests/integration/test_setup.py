@@ -260,11 +260,14 @@ def test_a_path_that_a_tool_misreads_is_refused_in_one_line(tmp_path, sign):
     assert said in done.stderr
 
 
+MAKEFILE = "reproduce test lint docs wheels:\n\t@echo $@: 3 passed\n"
+
+
 @pytest.fixture
 def check(tmp_path):
     """Runs the whole check on a repository with this README and this Makefile."""
 
-    def run(readme, makefile="reproduce test lint docs wheels:\n\t@echo $@: 3 passed\n"):
+    def run(readme, makefile=MAKEFILE):
         repository = tmp_path / "repository"
         (repository / ".ci").mkdir(parents=True)
         for name in "run", "setup":
@@ -310,22 +313,19 @@ def test_the_check_has_what_packages_are_reached_by_and_nothing_else_of_the_user
     assert {name for name in found if not name.startswith("PIP_")} <= own | reaching
 
 
+BROKEN = "reproduce test lint wheels:\n\t@echo $@\ndocs:\n\t@false\n"
+
+
 @pytest.mark.parametrize(
-    ("command", "said"),
+    ("readme", "makefile", "said"),
     [
-        ("false | cat", "false | cat"),
-        ("echo '# more' >> Makefile", " M Makefile"),
-        ("git config status.showUntrackedFiles no; touch file", "?? file"),
+        (BLOCKS.format("false | cat"), MAKEFILE, "false | cat"),
+        (BLOCKS.format("echo '# more' >> Makefile"), MAKEFILE, " M Makefile"),
+        (BLOCKS.format("git config status.showUntrackedFiles no; touch file"), MAKEFILE, "?? file"),
+        (BLOCKS.format(""), BROKEN, "Error 1"),
+        ("    make reproduce\n    make test\n", MAKEFILE, "README.md has no shell block with make reproduce\n"),
     ],
 )
-def test_the_check_fails_with_a_command_of_the_readme_or_a_file_that_differs(check, command, said):
-    status, out, err = check(BLOCKS.format(command))
+def test_the_check_fails_with_a_command_of_the_readme_a_target_or_a_file_that_differs(check, readme, makefile, said):
+    status, out, err = check(readme, makefile)
     assert status != 0 and said in err and "nothing differs" not in out
-
-
-def test_the_check_fails_where_the_readme_has_no_commands_or_a_target_fails(check, tmp_path):
-    status, out, err = check("    make reproduce\n    make test\n")
-    assert status == 1 and err == "README.md has no shell block with make reproduce\n" and "nothing differs" not in out
-    shutil.rmtree(tmp_path / "repository")
-    status, out, _ = check(BLOCKS.format(""), "reproduce test lint wheels:\n\t@echo $@\ndocs:\n\t@false\n")
-    assert status != 0 and "nothing differs" not in out

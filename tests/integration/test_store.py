@@ -65,16 +65,6 @@ def test_one_dataset_comes_back(path):
     assert attributes["residual"] == 1e-11
 
 
-def test_a_study_comes_back_by_group(path):
-    study = {"mu_0.2": dataset(1), "mu_1": dataset(2), "slab/rest": dataset(3)}
-    store.write(path, study, {"group": "test"})
-    back = store.read(path)
-    assert list(back) == list(study)
-    for name in study:
-        xr.testing.assert_equal(back[name], study[name])
-    assert store.read_attributes(path)["group"] == "test"
-
-
 def test_bytes_depend_on_the_data_alone(path, tmp_path):
     store.write(path, {"a": dataset(1), "b": dataset(2)})
     script = (

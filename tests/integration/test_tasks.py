@@ -385,14 +385,6 @@ def test_a_named_package_counts_with_all_of_its_modules(tmp_path, monkeypatch):
         del sys.modules[name]  # not by monkeypatch, which would put it back
 
 
-def test_a_file_in_an_item_counts_by_what_it_holds(tmp_path):
-    (tmp_path / "a.txt").write_text("1")
-    for text in ("1", "2"):
-        (tmp_path / "a.txt").write_text(text)
-        kept = {"workers": 1, "checkpoint": tmp_path / "kept"}
-        assert map_tasks(Path.read_text, [tmp_path / "a.txt", tmp_path / "a.txt"], **kept) == [text, text]
-
-
 def rewritten(path):
     path.write_text(path.read_text() + "x")
     return 1
@@ -426,17 +418,6 @@ def test_what_somebody_else_owns_is_not_read(tmp_path, monkeypatch, part):
     assert [len(starts(marks, item)) for item in range(2)] == [2, 2]
     (said,) = heard
     assert re.search(r"kept: what another user owns is not read \(user \d+, this is \d+\)$", str(said.message))
-
-
-def test_another_function_or_item_finds_nothing(tmp_path):
-    marks = tmp_path / "marks"
-    marks.mkdir()
-    task = functools.partial(note, folder=marks)
-    map_tasks(task, range(3), workers=1, checkpoint=tmp_path / "kept")
-    map_tasks(task, range(1, 4), workers=1, checkpoint=tmp_path / "kept")
-    assert [len(starts(marks, item)) for item in range(4)] == [1, 1, 1, 1]
-    map_tasks(functools.partial(task, die_at=99), range(1, 4), workers=1, checkpoint=tmp_path / "kept")
-    assert [len(starts(marks, item)) for item in range(4)] == [1, 2, 2, 2]
 
 
 class TestExecutors:

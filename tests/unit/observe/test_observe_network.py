@@ -38,14 +38,6 @@ def test_interior_contacts_by_their_centres():
     assert network.interior_contacts(s, 8.0, 2.0).tolist() == [True, True, True]
 
 
-def test_coordination_number_of_a_lattice_is_six_in_the_bulk():
-    s = slab(9, 15)
-    bulk = network.bulk_disks(s, 30.0, side_margin=4.0)
-    assert 0 < bulk.sum() < s.position.shape[0]
-    assert network.coordination_number(s, bulk) == 6.0
-    assert network.coordination_number(s, walls=False) == 2.0 * s.pairs.first.size / s.position.shape[0] < 6.0
-
-
 def test_bulk_disks_keep_all_four_margins():
     position = np.array([[5.0, 5.0], [1.0, 5.0], [9.0, 5.0], [5.0, 1.0], [5.0, 9.0]])
     assert network.bulk_disks(state(position, contacts([])), 10.0, 2.0, 2.0).tolist() == [True, *[False] * 4]
@@ -82,16 +74,6 @@ def test_coordination_number_by_definition():
     assert network.coordination_number(s, without_rattlers=True) == pytest.approx(8 / 3)
     assert network.coordination_number(s, without_rattlers=True, walls=False) == pytest.approx(2.0)
     assert network.coordination_number(s, np.arange(6) == 2) == 3.0
-
-
-def test_contact_angle_histogram_of_a_lattice():
-    s = slab(4, 6)
-    centre, density = network.contact_angle_histogram(s, 18)
-    assert density.sum() * (centre[1] - centre[0]) == pytest.approx(1.0)
-    assert np.flatnonzero(density).tolist() == [0, 6, 12]
-    direction = network.lattice_direction(s)
-    share = np.bincount(direction) / direction.size
-    np.testing.assert_allclose(density[[0, 6, 12]] * np.pi / 18, share)
 
 
 def test_contact_angle_histogram_counts_touching_contacts_only():

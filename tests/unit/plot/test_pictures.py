@@ -11,7 +11,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection, LineCollection
-from matplotlib.colors import to_hex
+from matplotlib.colors import to_hex, to_rgba
 from refusals import refuses
 
 import granular_response as gr
@@ -32,6 +32,13 @@ def ax():
     return style.figure()[1][0, 0]
 
 
+def lines(axes, colour) -> LineCollection:
+    """The collection of lines of one colour."""
+    found = [c for c in axes.collections if isinstance(c, LineCollection)]
+    (one,) = [c for c in found if np.allclose(c.get_colors()[0], to_rgba(colour)) and len(c.get_segments()) > 3]
+    return one
+
+
 def test_response_has_a_curve_for_each_load(result, ax):
     assert gr.plot.response(result, ax=ax) is ax
     curves = [line for line in ax.get_lines() if len(line.get_xdata()) == 15]
@@ -39,6 +46,53 @@ def test_response_has_a_curve_for_each_load(result, ax):
     np.testing.assert_array_equal(curves[0].get_xdata(), result.floor_response["x"].values)
     total = np.hypot(0.5, 4.0) + 1.0
     assert [text.get_text() for text in ax.get_legend().get_texts()] == [f"{total / 2:g}", f"{total:g}"]
+
+
+def test_forces_are_those_that_the_load_adds(result, ax):
+    gr.plot.forces(result, ax=ax, scale="linear")
+    data = result.to_dataset()
+    rest, loaded = (pictures.Shown.of(data, k) for k in (0, 2))
+    added = np.concatenate([loaded.values(f) - rest.values(f) for f in ("contact_force", "wall_force")])
+    size = np.linalg.norm(added, axis=1)
+    dark, pale = lines(ax, style.INCREASED), lines(ax, style.DECREASED)
+    drawn = np.concatenate([np.array(c.get_segments()) for c in (dark, pale)])
+    length = np.linalg.norm(drawn[:, 1] - drawn[:, 0], axis=1)
+    np.testing.assert_allclose(np.sort(length), np.sort(4.0 * size[size > 0.02 * size.max()] / size.max()), rtol=1e-9)
+    width = np.concatenate([c.get_linewidth() for c in (dark, pale)])
+    # still seen in print
+    np.testing.assert_allclose(width, np.maximum(width.max() * length / length.max(), network.THINNEST))
+    ends = np.sum(np.linalg.norm(added[size > 0.02 * size.max()], axis=1))
+    assert ends > 0 and len(dark.get_segments()) > len(pale.get_segments())
+
+
+def test_contacts_are_those_that_changed(result, ax):
+    gr.plot.contacts(result, ax=ax)
+    status = result.contacts["contact_status"].values
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    counts = {
+        c.get_label(): len(c.get_segments())
+        for c in ax.collections
+        if isinstance(c, LineCollection) and c.get_label() in network.CONTACT_LINES
+    }
+    expected = {
+        "opened": int(((status[0] > 0) & (status[2] == 0)).sum()),
+        "closed": int(((status[0] == 0) & (status[2] > 0)).sum()),
+        "sliding": int(((status[0] > 0) & (status[2] == 2)).sum()),
+        "unchanged": int(((status[0] > 0) & (status[2] == 1)).sum()),
+    }
+    assert counts == {kind: count for kind, count in expected.items() if count}
+    assert counts["opened"] > 0 and labels[0] == "opened"
+
+
+def test_stress_is_that_of_the_result(result, ax):
+    gr.plot.stress(result, ax=ax, component="xx")
+    mesh = ax.collections[0]
+    x = np.linspace(0.0, 30.0, 61) - result.origin
+    shown = pictures.Shown.of(result)
+    z = np.linspace(0.0, shown.top, round(2.0 * shown.top) + 1)
+    expected = result.stress(x, z).sel(force="x", branch="x").values
+    np.testing.assert_allclose(mesh.get_array().reshape(expected.shape), expected, rtol=1e-9, atol=1e-12)
+    assert mesh.norm.vmin == -mesh.norm.vmax == pytest.approx(-np.abs(expected).max())
 
 
 def test_a_packing_has_its_disks_and_values(result, ax):
