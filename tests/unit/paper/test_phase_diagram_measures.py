@@ -26,7 +26,6 @@ from granular_response_paper.survey.crossover import (
     shape,
     shape_of_single,
     shapes_of_samples,
-    singles,
     weights,
 )
 
@@ -100,21 +99,6 @@ def test_bootstrap_interval_narrows_with_the_scatter_and_holds_the_crossover() -
         assert found.kind == FOUND
         assert found.interval[0] <= found.force <= found.interval[-1]
     assert 0.0 < np.ptp(narrow.interval) < 0.3 * np.ptp(wide.interval)
-
-
-def test_mean_leaves_out_what_is_not_at_rest() -> None:
-    ensemble = make_ensemble(1.0, 4)
-    ensemble.response[1, 3] = np.nan
-    np.testing.assert_allclose(ensemble.mean()[3], ensemble.response[[0, 2, 3], 3].mean(axis=0))
-    strict = replace(ensemble, least=4)
-    assert np.isnan(strict.mean()[3]).all()
-    assert np.isfinite(strict.mean()[:3]).all()
-
-
-def test_weights_count_a_realization_as_often_as_it_is_drawn() -> None:
-    ensemble = make_ensemble(1.0, 3)
-    weighted = ensemble.means(np.array([[2.0, 0.0, 1.0]]))[0]
-    np.testing.assert_allclose(weighted, ensemble.response[[0, 0, 2]].mean(axis=0))
 
 
 def test_a_large_ensemble_knows_better_how_far_its_means_dip() -> None:
@@ -223,26 +207,6 @@ def test_a_value_that_counts_several_times_is_as_many_values() -> None:
         once = np.ones((1, len(there)))
         assert censored_medians(there, beyond, once).tolist() == [median]
     assert np.isinf(medians).any() and np.isfinite(medians).any()
-
-
-def test_single_realizations_and_their_mean() -> None:
-    """Two mirror images: each leans, their mean does not; one collapses before its crossover and is censored."""
-    one = np.exp(-(((np.concatenate([-X[:0:-1], X]) - 12.0) / 6.0) ** 2))
-    side = one + 0.5 * one[::-1]
-    middle = bumps(0.0)
-    single = np.concatenate([middle[:0:-1], middle])
-    response = np.array([[single, side], [single, side[::-1]], [single, np.full(side.size, np.nan)]])
-    found = singles(Ensemble(np.array([1.0, 4.0]), response, X, 6.0, 2), draws=50, seed=0)
-    assert found.middle(1.0, 4.0).kind == FOUND and 1.0 < found.median < 4.0  # two of three reach it
-    np.testing.assert_allclose(found.asymmetry[:, 0], 0.0, atol=1e-12)
-    np.testing.assert_allclose(found.asymmetry[:2, 1], 0.5, atol=0.02)
-    # the mean's two bumps are three quarters as high as the larger one of a realization
-    np.testing.assert_allclose(found.difference[:2, 1], 1.0 / 3.0, atol=0.05)
-    assert np.isnan(found.difference[2, 1])
-    means = shape(X, folded(response[:2].mean(axis=0)), 6.0)
-    np.testing.assert_allclose(found.largest_step, means[1] - means[0])
-    np.testing.assert_allclose(found.spread[0], 0.0, atol=1e-8)
-    assert found.spread[1] > 0.05
 
 
 def test_a_case_of_several_blocks_is_read_once_and_gravity_acts_at_once_where_nothing_else_is_said() -> None:
