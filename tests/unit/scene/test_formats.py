@@ -363,13 +363,6 @@ def test_of_several_runs_of_frames_one_packing_is_taken(tmp_path):
     np.testing.assert_allclose(packing.position, [[11, 1], [13, 1]])
 
 
-@pytest.mark.filterwarnings("error")
-def test_the_mass_of_a_tracker_is_one_where_it_has_a_unit_or_is_named(tmp_path):
-    for header, columns in (("x,z,radius,mass [g],frame", None), ("x,z,radius,mass,signal", {"mass": "mass"})):
-        packing = build(tmp_path / "a.csv", f"{header}\n1,1,1,1,0\n3,1,1,3,0\n", width=9.0, columns=columns)
-        np.testing.assert_allclose(packing.mass, [0.5, 1.5])
-
-
 def test_heights_that_point_down_are_asked_about_and_turned(tmp_path):
     text, turned = "x_px,y_px,r_px\n20,90,10\n40,85,10\n", {"z": "-y_px"}
     with pytest.warns(UserWarning, match=r"column y is taken as the height; where it points down, .* \{z: -y\} and"):
@@ -400,16 +393,35 @@ def test_packed_files_are_named_as_what_they_are(tmp_path, name):
         refuses(SceneError, rf"{name}': is .*{re.escape(said)}", build, tmp_path / name)
 
 
-@pytest.mark.parametrize(
-    ("header", "columns"),
-    [("id,X [mm],Y [mm],R [mm]", None), ("id,x,y,d", None), ("id,x,height,size", {"z": "Height", "radius": "size"}),
-     ("z,x,y,radius", {"z": "y"}), ("radius,X,up,R", {"radius": "R", "z": "up"})],
-)  # fmt: skip
-def test_columns_as_cameras_and_scenes_name_them(tmp_path, header, columns):
-    size = 2 if header.endswith(",d") else 1
-    packing = build(tmp_path / "a.csv", f"{header}\n9,1,1,{size}\n8,3,1.5,{size}\n", width=9.0, columns=columns)
-    np.testing.assert_allclose(packing.position, [[1, 1], [3, 1.5]])
-    assert packing.radius.tolist() == [1.0, 1.0]
+CAMERA, TRACKED = "9,1,1,1\n8,3,1.5,1\n", "1,1,1,1,0\n3,1,1,3,0\n"
+#: Places in mean radii.
+OF_TWO, OF_CAMERA, OF_TRACKED = [[2 / 3, 2 / 3], [8 / 3, 2 / 3]], [[1, 1], [3, 1.5]], [[1, 1], [3, 1]]
+#: Tables, keys of the scene for their columns, places, and masses in proportion.
+TABLES = [
+    (f"x,z,radius,density\n{TWO}", None, OF_TWO, [1, 12]),
+    (f"X,Z,Radius,Mass\n{TWO}", None, OF_TWO, [1, 3]),
+    (f"x [mm], z [mm], radius[mm], MASS [g]\n{TWO}", None, OF_TWO, [1, 3]),
+    (f"x,z,radius,mass\n{TWO}".replace(",", ";"), None, OF_TWO, [1, 3]),
+    (f"x_mm,z_mm,r_mm,mass_g\n{TWO}".replace(",", ";"), None, OF_TWO, [1, 3]),
+    (f"X_UM,Z [µm],radius_μm,density_kg_m3\n{TWO}", None, OF_TWO, [1, 12]),
+    (f"x,z,radius,mass [g],frame\n{TRACKED}", None, OF_TRACKED, [1, 3]),
+    (f"x,z,radius,mass,signal\n{TRACKED}", {"mass": "mass"}, OF_TRACKED, [1, 3]),
+    (f"id,X [mm],Y [mm],R [mm]\n{CAMERA}", None, OF_CAMERA, [1, 1]),
+    ("id,x,y,d\n9,1,1,2\n8,3,1.5,2\n", None, OF_CAMERA, [1, 1]),
+    (f"id,x,height,size\n{CAMERA}", {"z": "Height", "radius": "size"}, OF_CAMERA, [1, 1]),
+    (f"z,x,y,radius\n{CAMERA}", {"z": "y"}, OF_CAMERA, [1, 1]),
+    (f"radius,X,up,R\n{CAMERA}", {"radius": "R", "z": "up"}, OF_CAMERA, [1, 1]),
+    ("x_mm,x,z,radius,radius_mm\n9,1,1,1,9\n", None, [[1, 1]], [1]),  # a name without a unit comes first
+]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("text", "columns", "places", "mass"), TABLES)
+def test_columns_as_programs_cameras_and_scenes_name_them(tmp_path, text, columns, places, mass):
+    packing = build(tmp_path / "a.csv", text, width=9.0, columns=columns)
+    np.testing.assert_allclose(packing.position, places)
+    np.testing.assert_allclose(packing.mass, np.array(mass) / np.mean(mass))
+    np.testing.assert_allclose(packing.inertia, 0.5 * packing.mass * packing.radius**2)
     scene = Scene.from_dict({"packing": {"kind": "file", "path": "a.csv", "width": 9, "columns": columns}})
     assert Scene.from_text(scene.to_yaml()) == scene and ("columns" in scene.to_yaml()) == (columns is not None)
 
@@ -458,16 +470,6 @@ def test_gsd_of_others_has_its_origin_in_the_middle(tmp_path):
     np.testing.assert_allclose(periodic.position * 1.25, [[1, 1], [4, 1.5]])
     with pytest.raises(SceneError, match=r"^packing\.origin = null: must be given as \[left wall, floor\]"):
         build(tmp_path / "a.gsd", sides="periodic")
-
-
-@pytest.mark.parametrize(
-    ("header", "mass"),
-    [("x,z,radius,density", [1, 12]), ("X,Z,Radius,Mass", [1, 3]), ("x [mm], z [mm], radius[mm], MASS [g]", [1, 3])],
-)
-def test_masses_of_a_table(tmp_path, header, mass):
-    packing = build(tmp_path / "a.csv", f"{header}\n{TWO}", width=9.0)
-    np.testing.assert_allclose(packing.mass, np.array(mass) / np.mean(mass))
-    np.testing.assert_allclose(packing.inertia, 0.5 * packing.mass * packing.radius**2)
 
 
 def test_a_table_is_read_and_rescaled(tmp_path):
@@ -644,20 +646,6 @@ def test_a_damaged_name_of_a_gsd_file_is_no_missing_chunk(results, tmp_path, dam
     refuses(SceneError, "its list of names has one that the format does not have", build, tmp_path / "a.gsd")
     (tmp_path / "a.gsd").write_bytes(content + b"\0")
     refuses(SceneError, r"its parts end at byte \d+, it has \d+$", build, tmp_path / "a.gsd")
-
-
-@pytest.mark.parametrize("header", ["x;z;radius;mass", "x_mm;z_mm;r_mm;mass_g", "X_UM,Z [µm],radius_μm,density_kg_m3"])
-def test_semicolons_between_columns_and_units_after_an_underscore(tmp_path, header):
-    between = ";" if ";" in header else ","
-    rows = (header, "1,1,1,1", "4,1,2,0.5")
-    packing = build(tmp_path / "a.csv", "\n".join(row.replace(",", between) for row in rows), width=9.0)
-    np.testing.assert_allclose(packing.position, np.array([[1, 1], [4, 1]]) / 1.5)
-    np.testing.assert_allclose(packing.mass, [2 / 3, 4 / 3] if "density" in header else [4 / 3, 2 / 3])
-
-
-def test_a_name_without_a_unit_comes_before_one_with_it(tmp_path):
-    packing = build(tmp_path / "a.csv", "x_mm,x,z,radius,radius_mm\n9,1,1,1,9\n", width=9.0)
-    np.testing.assert_allclose(packing.position, [[1, 1]])
 
 
 def test_velocities_with_a_unit_are_not_taken_for_reduced_ones(tmp_path):
