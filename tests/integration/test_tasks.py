@@ -482,17 +482,13 @@ class TestExecutors:
             refuses(SweepError, "Refusing takes no tasks", map_tasks, slow_first, range(2))
             assert map_tasks(slow_first, range(2), workers=1) == [0, 1]
 
-    def test_threads_of_this_process_warn_by_themselves(self):
-        with concurrent.futures.ThreadPoolExecutor(1) as pool, pytest.warns(UserWarning, match="^3$"):
-            map_tasks(warn, [3], executor=pool)
-
 
 def warn(item):
     warnings.warn(str(item), stacklevel=1)
 
 
-def test_what_workers_warn_of_is_said(elsewhere):
+def test_what_tasks_warn_of_is_said(everywhere):
     with warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("default")
-        map_tasks(warn, [f"said {elsewhere}"] * 3, **elsewhere)  # another text in each place
-    assert [str(one.message) for one in heard] == [f"said {elsewhere}"]
+        map_tasks(warn, [f"said {everywhere}"] * 3, **everywhere)  # another text in each place
+    assert [str(one.message) for one in heard] == [f"said {everywhere}"]
