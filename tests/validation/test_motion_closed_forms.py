@@ -100,23 +100,6 @@ def test_a_soft_cradle_is_a_chain_of_springs(masses, velocity, gap):
     np.testing.assert_allclose(after, solved.y[n:, -1], atol=2e-4)
 
 
-@pytest.mark.parametrize(("degrees", "spin"), [(45.0, 2.0), (45.0, -8.0), (70.0, 0.0), (70.0, -8.0)])
-@pytest.mark.parametrize("friction", [0.1, 0.3])
-def test_a_collision_that_slides_turns_a_disk(friction, degrees, spin):
-    """Onto the floor without dashpots: the normal impulse is J = 2 m v, the tangential one mu J against the slip
-    v_x + R w, and the spin changes by twice it (moment of inertia m R^2 / 2). It slides to the end where the slip is
-    more than 3 mu J. 2e-4 of the speed."""
-    vx, vz = math.sin(math.radians(degrees)), -math.cos(math.radians(degrees))
-    slip, rubbed = vx + spin, 2.0 * friction * abs(vz)
-    assert abs(slip) > 3.0 * rubbed
-    law = {"friction": friction, "damping_ratio": 0.0}
-    free = {"loads": [], "wall": law, "motion": {"weightless": True, "vx": vx, "vz": vz, "spin": spin}}
-    after = gr.motion(gr.Scene.from_arrays([500.0], [1.01], 1.0, width=1000.0, scene=free), [1.0], progress=False)
-    found = [*after["velocity"].values[0, 0], after["angular_velocity"].values[0, 0]]
-    way = math.copysign(rubbed, slip)
-    assert found == pytest.approx([vx - way, -vz, spin - 2.0 * way], abs=2e-4)
-
-
 def a_tap_of_one_disk(monkeypatch, amplitude: float, k: float, zeta: float, **keys) -> tuple[State, State, np.ndarray]:
     """The disk when three quarters of a tap are over, at rest, and (looks, 4) from then on: t, z, its velocity and
     acceleration."""

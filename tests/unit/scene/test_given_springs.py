@@ -301,6 +301,7 @@ def test_velocities_go_to_lammps_and_come_back(tmp_path):
     moved = gr.motion(BALLS, [0.0, 1.0], progress=False)
     lines = gr.export(moved, tmp_path / "in.lammps", state=0).read_text().splitlines()
     assert "fix weight all gravity 1.0 vector 0 -1 0" in lines and "run 1" not in lines
+    assert [one for one in lines if one.startswith("timestep")] == [f"timestep {moved.attrs['time_step']!r}"]
     rows = (tmp_path / "in.data").read_text().split("Velocities # sphere\n\n")[1].splitlines()
     assert rows == ["1 0.5 0.25 0.0 0.0 0.0 2.0", "2 -1.0 0.25 0.0 0.0 0.0 0.0"]
     columns = dict.fromkeys(("vx", "vz", "spin"), "column")

@@ -326,15 +326,6 @@ def test_the_example_for_lammps_writes_what_springs_are_read_from(tmp_path):
     assert line(example, "dump bears ").split()[4] == last
 
 
-def test_a_motions_script_for_lammps_has_its_time_step(tmp_path):
-    """And not that of a fall, which does not resolve collisions."""
-    described = {"loads": [], "contact": {"normal_stiffness": 1e5}}
-    ball = gr.Scene.from_arrays([5.0], [1.1], 1.0, width=10.0, vz=-0.5, scene=described)
-    moved = gr.motion(ball, [0.01], progress=False)
-    lines = gr.export(moved, tmp_path / "in.lammps", state=0).read_text().splitlines()
-    assert [one for one in lines if one.startswith("timestep")] == [f"timestep {moved.attrs['time_step']!r}"]
-
-
 def test_a_script_for_lammps_of_a_loaded_state_keeps_its_load(tmp_path):
     lines = lammps_lines(
         {"packing.sides": "periodic", "wall.friction": 0.2, "loads.0.force": [0.0, -1.0]}, tmp_path / "in.lammps"
