@@ -65,7 +65,7 @@ COMES = {
 }
 
 
-def friction_study():
+def friction_linear_range():
     opened = np.round(10.0 * FORCES) * np.array([[1.0], [0.2], [0.1]])
     double = ELASTIC * (1.0 + 0.5 * (FORCES > 20.0) * np.array([[0.0], [1.0], [0.0]]))[:, :, None]
     response = {
@@ -132,13 +132,13 @@ def friction_study():
     }
 
 
-def breaking_study():
+def symmetry_breaking():
     rows = [("loss_of_symmetry", 91.2, 92.0, 20.0), ("loss_of_symmetry", 91.5, 92.5, 100.0)]
     brackets = dataset(**by_row("event", "name low high ramp_time", rows))
     return {"brackets": brackets, "equal_rows": events(("loss_of_symmetry", 1.0, 91.1, 91.9))}
 
 
-def preparation_study():
+def preparation():
     """Gravity at once, grown slowly and without friction first; in each, events where the claims want them."""
     ways = [("at-once", 100.0, 0.5), ("slow", 20.0, 0.5), ("frictionless", 100.0, 0.5), ("at-once", 100.0, 0.25)]
     cases = [(0.0, 0.0, ways[0]), *((mu, 0.0, way) for mu in (0.2, 1.0) for way in ways), (1.0, 1.0, ways[0])]
@@ -163,7 +163,7 @@ def preparation_study():
     }
 
 
-def ratio_study():
+def stiffness_ratio_crossover():
     ratio = np.array([0.0, 0.2, 0.3, 0.35, 0.4, 0.6, 0.8, 1.0])
     centre = np.array([0.01, 0.05, 0.064, 0.068, 0.073, 0.075, 0.076, 0.074])
     return {
@@ -177,7 +177,7 @@ def ratio_study():
     }
 
 
-def fields_study():
+def friction_fields():
     x, z = np.arange(-40.0, 41.0, 2.0), np.arange(0.0, 21.0, 2.0)
     dipped = profile(np.array([0.5, -0.1, -0.1])[:, None], x)[:, None]
     by_friction = {
@@ -209,7 +209,7 @@ PILE = {
 }
 
 
-def pile_study():
+def pile_dip():
     cases = {"case": ["frictionless", "mirrored", "frictional"]}
     return {
         "stress": dataset(cases, dip=("case", [0.07, 0.07, 0.0])),
@@ -224,7 +224,7 @@ def pile_study():
     }
 
 
-def torque_study():
+def torque():
     turned = {"torque": [0.0, 5.0]}
     near_only = [[0.0, 0.0, 0.0], [0.9, 0.7, 0.01]]
     rings = over("ring", ring_inner=[0.0, 3.0, 9.0], ring_outer=[3.0, 6.0, 12.0])
@@ -240,13 +240,13 @@ def torque_study():
     }
 
 
-def comparison_study():
+def slab_comparison():
     names = "distance layers friction floor gravity disks_per_layer"
     rows = [(0.02, 5, 0.0, "smooth"), (0.002, 40, 0.0, "smooth"), (0.03, 5, 1.0, "rough"), (0.001, 20, 1.0, "rough")]
     return {"slabs": dataset(**by_row("slab", names, [(*row, "at-once", 8) for row in rows]))}
 
 
-def numerics_study():
+def numerics():
     error = [[0.1, 0.02, 1e-3], [0.1, 0.02, 1e-4]]
     damping = by_row(
         "damping_ratio",
@@ -270,7 +270,7 @@ def numerics_study():
     }
 
 
-def frictionless_study():
+def frictionless_crossover():
     # a lattice of one open column: two disks in each row, one row above the other
     rows = [8, 7, 7, 6, 6, 6, 5]
     first = 2 * np.arange(len(rows))
@@ -327,7 +327,7 @@ FEW = 8
 DRAWS = np.linspace(0.95, 1.05, 41)
 
 
-def phases_study():
+def phase_diagram():
     cases = disordered_cases()
     rng = np.random.default_rng(0)
     grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 14.0], [0.5, 2.0, 8.0], [2.5, 12.0], [18.0, 8.0, 5.0]]
@@ -407,7 +407,7 @@ def phases_study():
     }
 
 
-def superposition_study():
+def superposition():
     rng = np.random.default_rng(0)
     error = np.array([0.01, 0.1]) * rng.uniform(0.8, 1.2, (8, 2, 1))
     rows = np.array([0.1, 0.05, 0.02]) * rng.uniform(0.9, 1.1, (8, 2, 2, 1))
@@ -422,7 +422,7 @@ def superposition_study():
     }
 
 
-def sensitivity_study():
+def sensitivity():
     """Responses by the power 3/2, a tenth of the largest from those by the linear law, and with other dashpots."""
     one = dataset(
         {"variant": ["reference", "hertz", "damping_halved"]},
@@ -431,7 +431,7 @@ def sensitivity_study():
     return {"mu_0.2": one, "mu_1": one}
 
 
-def hysteresis_study():
+def hysteresis():
     """Loops that are reversible as far as the response is linear, and lose nothing a second time."""
     low = np.full((3, 3, 2), np.nan)
     low[[0, 2], 0] = [4.0, 4.1]
@@ -452,7 +452,7 @@ def hysteresis_study():
     }
 
 
-def influence_study():
+def influence():
     power = np.full((6, 4, 1, 3), np.nan)
     power[:2, 0] = [1.98, 1.97, 1.99]  # a lattice: one realization, and the range over the fits
     power[2:] = np.array([1.86, 1.9, 1.92, 1.94])[:, None, None]
@@ -460,14 +460,14 @@ def influence_study():
     return {"saint_venant": dataset(cases, exponent=("case realization separation fit", power))}
 
 
-def scaling_study():
+def crossover_scaling():
     """Powers 2 of the layers in every series."""
     series = ["constant confinement", "confined as weight", "walls", "friction 0.05", "friction 0.1", "friction 0.2"]
     labels = {"series": [*series, "constant confinement with friction 0.2"], "event": ["crossover", "reaches_floor"]}
     return {"powers": dataset(labels, exponent=("series event end", [2.0, 1.95, 2.05]))}
 
 
-def moduli_study():
+def moduli():
     """Two cases with friction and one without."""
     difference = np.full((2, 4, 1, 1), 0.3)
     difference[1] = 0.03 + np.array([-0.004, 0.0, 0.002, 0.004])[:, None, None]
@@ -478,11 +478,12 @@ def moduli_study():
             {"smoothing": 2},
             layers=("case size", [8.0, 16.0]),
             difference=("case size realization solid smoothing", difference),
-        )
+        ),
+        "slabs": loaded_slabs(),
     }
 
 
-def network_study():
+def network():
     """Isostatic packings with exponential forces."""
     spread = np.array([-0.02, 0.0, 0.01, 0.02])[:, None]
     frictions = [0.0, 0.05, 0.2, 0.5, 1.0]
@@ -496,7 +497,7 @@ def network_study():
     return {"statistics": dataset(labels, **over("polydispersity friction realization state", **each))}
 
 
-def rolling_study():
+def rolling_resistance():
     """Piles that rolling resistance alone holds, and a Cosserat slab."""
     piles = {"layers": [5, 11], "rolling_friction": [0.0, 0.3], "ramp": [0.0, 30.0]}
     slabs = {"friction": [0.2, 1.0], "rolling_friction": [0.0, 0.5], "load": [0.5, 10.0]}
@@ -516,27 +517,25 @@ def rolling_study():
     }
 
 
-def loaded_study():
+def loaded_slabs():
     """A region of r < 0 that reaches the floor at the crossover, in an incrementally elastic slab."""
     peaks = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     reach = np.array([[0.5, 0.8, 1.0], [0.0, 0.1, 0.2], [0.5, 0.8, 1.0]])
-    return {
-        "slabs": dataset(
-            {"friction": ("slab", [0.2, 1.0, 0.0]), "width": [1.0, 2.0]},
-            {"loads": 2, "step": 3},
-            **over("slab step", force=[10.0, 19.0, 21.0], two_peaks=peaks),
-            crossover=("slab end", [[20.0, 20.0], [21.0, np.nan], [20.0, 20.0]]),
-            **over(
-                "slab step width loads",
-                reach=reach[..., None, None],
-                difference=0.05,
-                predicted_two_peaks=peaks[..., None, None],
-            ),
-        )
-    }
+    return dataset(
+        {"friction": ("slab", [0.2, 1.0, 0.0]), "width": [1.0, 2.0]},
+        {"loads": 2, "step": 3},
+        **over("slab step", force=[10.0, 19.0, 21.0], two_peaks=peaks),
+        crossover=("slab end", [[20.0, 20.0], [21.0, np.nan], [20.0, 20.0]]),
+        **over(
+            "slab step width loads",
+            reach=reach[..., None, None],
+            difference=0.05,
+            predicted_two_peaks=peaks[..., None, None],
+        ),
+    )
 
 
-def experiments_study():
+def experiments():
     """Chains of nearly equal disks that fade with disorder; widths as the root of the depth in shallow slabs alone."""
     loads = [("nearly equal", force, 90.0) for force in (150.0, 15.0, 3.0)]
     loads += [("nearly equal", 150.0, angle) for angle in (45.0, 30.0)]
@@ -566,7 +565,7 @@ def experiments_study():
     }
 
 
-def robustness_study():
+def robustness():
     """Events that hardly move with the protocol, width and stiffness; copies that lean to both sides, and a control."""
     changes = [("reference", "as in the paper"), ("protocol", "dashpots halved"), ("protocol", "dashpots doubled")]
     changes += [("protocol", "displaced copy 1"), ("width", "121 disks a row"), ("stiffness", "k_N = 10000 mg/R")]
@@ -622,28 +621,15 @@ def parameters(claims):
     return found
 
 
+#: Of every group, which each is named after.
+STUDIES = (
+    frictionless_crossover, friction_linear_range, symmetry_breaking, preparation, slab_comparison,
+    stiffness_ratio_crossover, friction_fields, pile_dip, torque, phase_diagram, superposition, numerics,
+    sensitivity, hysteresis, influence, crossover_scaling, moduli, network, rolling_resistance, experiments,
+    robustness,
+)  # fmt: skip
+
+
 def everything():
     """Datasets in which every claim holds, in every interpretation and every variant."""
-    return {
-        "frictionless_crossover": frictionless_study(),
-        "friction_linear_range": friction_study(),
-        "symmetry_breaking": breaking_study(),
-        "preparation": preparation_study(),
-        "slab_comparison": comparison_study(),
-        "stiffness_ratio_crossover": ratio_study(),
-        "friction_fields": fields_study(),
-        "pile_dip": pile_study(),
-        "torque": torque_study(),
-        "phase_diagram": phases_study(),
-        "superposition": superposition_study(),
-        "numerics": numerics_study(),
-        "sensitivity": sensitivity_study(),
-        "hysteresis": hysteresis_study(),
-        "influence": influence_study(),
-        "crossover_scaling": scaling_study(),
-        "moduli": moduli_study() | loaded_study(),
-        "network": network_study(),
-        "rolling_resistance": rolling_study(),
-        "experiments": experiments_study(),
-        "robustness": robustness_study(),
-    }
+    return {study.__name__: study() for study in STUDIES}

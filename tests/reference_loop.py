@@ -1,4 +1,4 @@
-"""The contact law and the force loop once more, in plain Python, contact by contact: what kernels are held against."""
+"""The contact law once more, in plain Python: what kernels are held against."""
 
 from dataclasses import dataclass
 
@@ -38,29 +38,3 @@ def contact_force(m: Material, overlap, velocity_normal, velocity_tangential, sp
         ft = limit if ft > 0 else -limit
         new = -(ft + m.nut * velocity_tangential) / m.kt
     return fn, ft, new
-
-
-def forces(position, velocity, spin, radius, pairs, springs, material, dt, rule="cut"):
-    """Forces (n, 2), torques (n,), new springs of the listed pairs; ``material.mu == 0`` means no friction at all."""
-    force, torque = np.zeros_like(position), np.zeros(len(radius))
-    new_springs = np.zeros(len(pairs))
-    for c, (i, j) in enumerate(pairs):
-        d = position[i] - position[j]
-        distance = float(np.sqrt(d @ d))
-        overlap = radius[i] + radius[j] - distance
-        if overlap <= 0:
-            continue
-        normal = d / distance
-        tangent = np.array([-normal[1], normal[0]])
-        relative = velocity[i] - velocity[j]
-        slip = relative @ tangent - (radius[i] * spin[i] + radius[j] * spin[j])
-        fn, ft, s = contact_force(material, overlap, relative @ normal, slip, springs[c], dt, rule)
-        if material.mu == 0:
-            ft, s = 0.0, 0.0
-        new_springs[c] = s
-        total = fn * normal + ft * tangent
-        force[i] += total
-        force[j] -= total
-        torque[i] -= radius[i] * ft
-        torque[j] -= radius[j] * ft
-    return force, torque, new_springs

@@ -5,17 +5,25 @@ to 1e9 and whose radii by up to 100, and counts the outcomes. Trials that are fi
 until all are: a run that was interrupted continues where it was, and begins anew where the code has changed.
 """
 
+import argparse
+import json
+import platform
 import shutil
 import sys
 import time
 from collections import Counter
+from collections.abc import Mapping
 from functools import partial
+from importlib import metadata
 from pathlib import Path
 
-import counts
 import numpy as np
 from stress.random_scenes import Trial, log_uniform, run, thrown
 
+from granular_response import __version__
+from granular_response.inputs import read_json
+from granular_response.store import atomic
+from granular_response.sweeps.keys import sources
 from granular_response.sweeps.resources import using
 from granular_response.sweeps.tasks import map_tasks
 
@@ -60,6 +68,25 @@ def told():
     return progress
 
 
+def write(path: Path, number: int, seed: int, outcomes: Mapping[str, Mapping[str, int]]) -> None:
+    """Write how many of which kind (the keys of ``outcomes``) had which outcome, with what repeats them."""
+    versions = {name: metadata.version(name) for name in ("numba", "numpy", "scipy")}
+    made = {
+        "number": number,
+        "seed": seed,
+        "outcomes": {kind: dict(sorted(counts.items())) for kind, counts in sorted(outcomes.items())},
+        "package_version": __version__,
+        "sources": sources("", "granular_response_paper"),
+        "versions": {"python": platform.python_version(), **versions},
+    }
+    atomic.write_bytes(path, (json.dumps(made, indent=1) + "\n").encode())
+
+
+def totals(path: Path) -> dict[str, int]:
+    """How many of all kinds together had which outcome. Raises OSError and ValueError for a file that is not one."""
+    return sum(map(Counter, read_json(path)["outcomes"].values()), Counter())
+
+
 def main(number: int, seed: int, output: Path | None = None) -> int:
     """Try ``number`` scenes; prints what is wrong with which and the counts of the outcomes. 1 if any is wrong."""
     kept = None if output is None else output.absolute().with_name(f".{output.stem}.checkpoint")
@@ -74,13 +101,17 @@ def main(number: int, seed: int, output: Path | None = None) -> int:
     for kind, outcomes in sorted(found.items()):
         print(f"{kind}: " + ", ".join(f"{count} {outcome}" for outcome, count in outcomes.most_common()))
     if output is not None:
-        counts.write(output, number, seed, found)
+        write(output, number, seed, found)
         shutil.rmtree(kept, ignore_errors=True)
     return int(any(trial.outcome == "wrong" for trial in trials))
 
 
 if __name__ == "__main__":
-    given = counts.arguments("Solve and check random scenes.", 20260101)
+    parser = argparse.ArgumentParser(description="Solve and check random scenes.")
+    parser.add_argument("number", type=int, help="how many to try")
+    parser.add_argument("--seed", type=int, default=20260101, help="the same ones for the same seed")
+    parser.add_argument("--output", type=Path, help="file of the counts (JSON)")
+    given = parser.parse_args()
     try:
         sys.exit(main(given.number, given.seed, given.output))
     except KeyboardInterrupt:

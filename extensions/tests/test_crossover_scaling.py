@@ -8,7 +8,6 @@ import reduced
 
 from granular_response_extensions.crossover_scaling.parameters import Parameters
 from granular_response_extensions.crossover_scaling.simulate import series as study
-from granular_response_paper.groups.frictionless_crossover import simulate as frictionless
 
 
 @pytest.fixture(scope="module")
@@ -60,32 +59,6 @@ def test_the_first_opening_is_that_of_a_lattice_of_springs(datasets, at):
     expected = opening_of_springs(int(one["layers"]), int(one["disks_per_row"]), float(one["confinement"]))
     low, high = one["first_opening_bracket"].values
     assert 0.99 * low < expected < 1.01 * high
-
-
-def test_gravity_presses_no_horizontal_contact_of_a_periodic_lattice(datasets):
-    slabs = datasets["slabs"]
-    inside = slabs.isel(slab=np.flatnonzero(slabs["periodic"].values))
-    for name, asked in (("constant confinement", [0.15] * 3), ("friction", [0.15 * n / 15 for n in (5, 7, 9)])):
-        assert of(datasets, name)["confinement"].values == pytest.approx(asked, rel=1e-6)
-    assert (inside["by_motion"].values >= 0).all()
-
-
-def test_without_friction_forces_are_in_proportion_to_the_confinement(datasets):
-    one = of(datasets, "confinement")
-    per = one["crossover_bracket"].values / one["confinement"].values[:, None]
-    assert per[0] == pytest.approx(per[1], rel=1e-6)
-    exponent = datasets["powers"]["exponent"].sel(series="confinement", event="crossover").values
-    assert exponent[1] < 1.0 < exponent[2]
-
-
-def test_between_walls_two_peaks_come_where_the_older_study_finds_them(datasets, parameters):
-    one = of(datasets, "walls").isel(slab=0)
-    slab = frictionless.OrderedSlab(int(one["layers"]), int(one["disks_per_row"]), float(one["normal_stiffness"]))
-    scene = slab.scene(parameters.base.updated({"contact.friction": 0.0}))
-    forces = tuple(np.geomspace(0.2, 4.0, 12).tolist())
-    event = next(one for one in frictionless.solve(scene, forces, 0.1, (), False).events if one.name == "crossover")
-    low, high = one["two_peaks_bracket"].values
-    assert max(low, event.low) < min(high, event.high)
 
 
 def test_powers_and_their_intervals_are_those_of_every_corner():

@@ -10,7 +10,7 @@ from granular_response_extensions.hysteresis.simulate.loops import keep_books
 
 PARAMETERS = reduced.parameters("hysteresis")
 #: Cases of the reduced parameters.
-SMOOTH, ROUGH, DISORDERED = 0, 1, 2
+SMOOTH, ROUGH = 0, 1
 
 
 def part_of_work(loops, name):
@@ -48,17 +48,3 @@ def test_books_close_better_with_smaller_increments():
 
     coarse, fine = left_over(6), left_over(48)
     assert fine < 1e-4 and fine < 0.2 * coarse
-
-
-def test_the_reversible_range_is_where_a_loop_begins_to_leave_something(datasets):
-    events, loops = datasets["events"], datasets["loops"]
-    for case in (ROUGH, DISORDERED):
-        for realization in range(PARAMETERS["cases"][case].get("realizations", 1)):
-            one = events.sel(event="reversible_range").isel(case=case, realization=realization)
-            loop = loops.isel(case=case, realization=realization)
-            force, left = loop["force"].values, loop["floor_left"].values
-            assert (left[force < float(one["low"]) * (1 - 1e-9)] <= PARAMETERS["left"]).all()
-            if np.isfinite(one["high"]):
-                assert (left[force >= float(one["high"])][:1] > PARAMETERS["left"]).all()
-    without = events.sel(event="reversible_range").isel(case=SMOOTH, realization=0)
-    assert np.isnan(without["high"]) and without["low"] == PARAMETERS["cases"][SMOOTH]["forces"][-1]

@@ -91,14 +91,6 @@ def test_triangles_that_are_not_averaged_are_the_network_without_friction():
     assert np.abs(found - expected).max() < 0.03 * expected.max()
 
 
-def test_the_tangent_is_that_of_the_path_and_floors_bear_all(datasets):
-    slabs = datasets["slabs"]
-    assert float(slabs["tangent_error"].max()) < 1e-4
-    known = np.isfinite(slabs["force"])
-    np.testing.assert_allclose(slabs["measured"].sum("floor_disk").values[known], 1.0, atol=1e-9)
-    np.testing.assert_allclose(slabs["predicted"].sum("floor_disk").values[known], 1.0, atol=1e-9)
-
-
 def test_the_smallest_slab_has_moduli_too():
     loaded = Parameters(**reduced.parameters("moduli")).loaded
     small = UNIT_LOAD.updated({"packing.layers": 2, "packing.disks_per_row": 5})

@@ -14,19 +14,6 @@ from granular_response_extensions.preparation.parameters import Parameters
 PARAMETERS = reduced.parameters("preparation")
 
 
-def test_an_event_is_between_the_forces_that_show_it(datasets):
-    found = datasets["events"]
-    assert found.sizes["event"] == 6 * 6
-    first = found.isel(event=slice(None, None, 6))
-    assert first["way"].values.tolist() == [
-        "at once", "at once", "slow", "without friction", "soft dashpots", "without friction"
-    ]  # fmt: skip
-    np.testing.assert_array_equal(first["wall_friction"], [0.0, 0.0, 0.0, 0.0, 0.0, 0.2])
-    assert set(first["name"].values.tolist()) == {"first_opening"}
-    low, high = first["low"].values, first["high"].values
-    assert (low <= high).all() and (high - low <= 1e-5 * high).all() and (high <= max(PARAMETERS["forces"])).all()
-
-
 def test_mobilized_contacts_of_every_slab_stand_beside_its_events(datasets):
     mobilized, events = datasets["mobilized"], datasets["events"]
     tapped = mobilized["taps"].values > 0

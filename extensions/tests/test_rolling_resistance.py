@@ -19,14 +19,6 @@ def test_balance_of_two_layers_in_closed_form():
     assert steps[0] <= steps[1] == pytest.approx(2.0 - np.sqrt(3.0), abs=0.001)
 
 
-def test_only_rolling_resistance_hands_on_couples_between_equal_disks(datasets):
-    slabs = datasets["slabs"].sel(friction=0.2)
-    np.testing.assert_allclose(slabs["floor_response"].sum("floor_disk"), 1.0, atol=1e-9)
-    assert (slabs["modulus"].sel(rolling_friction=0.0) == 0.0).all()
-    resisting = slabs.sel(rolling_friction=0.1)
-    assert float(resisting["modulus"][0]) == pytest.approx(np.sqrt(3.0) / 4.0 * 0.8, rel=0.2)
-
-
 def test_couples_between_rows_in_closed_form(datasets):
     """Rows of a lattice whose contacts stick, under a torque of 1 on the top row: sums over each row are enough.
 

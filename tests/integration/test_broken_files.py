@@ -10,7 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-import counts
 import numpy as np
 import pytest
 import unlike_scenes
@@ -166,7 +165,7 @@ def test_packings_that_are_changed_are_refused_or_account_for_the_change(tmp_pat
 
 def test_no_random_scene_was_solved_wrongly():
     path = DATA / "random_scenes.json"
-    found = counts.totals(path)
+    found = unlike_scenes.totals(path)
     assert set(found) <= set(random_scenes.OUTCOMES) - {"wrong"}
     outcomes = read_json(path)["outcomes"]
     assert {kind.removesuffix(unlike_scenes.ROLL) for kind in outcomes} == set(unlike_scenes.KINDS)

@@ -14,7 +14,7 @@ import granular_response as gr
 from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
-from granular_response.store.result import ResultError, load_coordinates, state_from, to_dataset
+from granular_response.store.result import ResultError, load_coordinates, to_dataset
 
 
 @pytest.fixture(scope="module")
@@ -27,20 +27,6 @@ def path(solution, tmp_path_factory):
     path = tmp_path_factory.mktemp("checked") / "result.nc"
     store.write(path, to_dataset(solution))
     return path
-
-
-def test_a_load_is_found_by_its_factor(path):
-    with xr.open_dataset(path) as plain:
-        assert plain["floor_response"].dims == ("load", "floor_disk")
-        assert plain["load_factor"].dims == ("load",) and {"load", "load_factor", "step"} <= set(plain.coords)
-        for factor, place in ((0.5, 0), (1.0, 1), (2.0, 2)):
-            expected = plain["floor_response"].values[place]
-            np.testing.assert_array_equal(plain["floor_response"].sel(load=factor), expected)
-            ours = read_result(path)["floor_response"]
-            np.testing.assert_array_equal(ours.sel(load_factor=factor), expected)
-        with pytest.raises(KeyError):
-            plain["floor_response"].sel(load=3)
-        assert plain["state_load_factor"].values.tolist() == [0.0, 0.5, 1.0, 2.0]
 
 
 @pytest.mark.parametrize("factors", [[], [1.0]], ids=["no load", "one load"])
@@ -88,18 +74,6 @@ def test_force_vectors_carry_weight_and_load(path):
             total[:, 1] -= data["mass"].values
             total[data["loaded_disk"].values] += factor * data["applied_load"].values[:, :2]
             np.testing.assert_allclose(total, 0.0, atol=1e-9)
-
-
-def test_the_record_of_a_state_comes_back(solution, path):
-    data = read_result(path)
-    assert data["reached_factorisations"].values[-1] == solution.loaded[-1].reached.factorisations > 0
-    for k, state in enumerate((solution.rest, *solution.loaded)):
-        back = state_from(data, k).reached
-        for name in ("method", "settled", "steps", "factorisations", "kinetic_energy", "time", "increments"):
-            assert getattr(back, name) == getattr(state.reached, name), name
-            assert type(getattr(back, name)) is type(getattr(state.reached, name)), name
-    shown = succeeded("show", path, folder=path.parent)
-    assert "work" in shown and "factorisations" in shown
 
 
 def test_what_another_program_writes_is_shown_as_not_sealed_and_exported(solution, path, tmp_path):

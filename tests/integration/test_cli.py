@@ -18,7 +18,7 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
-from claims_data import PILE, pile_study, preparation_study
+from claims_data import PILE, pile_dip, preparation
 from commands import LIBRARY, LONGEST, PAPER, SCENE, call, process, python, refused, succeeded
 from places import DATA, ROOT
 
@@ -83,7 +83,7 @@ def test_run_and_show(folder):
 
 
 def test_stored_claims_are_listed_and_not_judged_anew(tmp_path):
-    store.write(tmp_path / "data" / "pile_dip.nc", pile_study(), PILE)
+    store.write(tmp_path / "data" / "pile_dip.nc", pile_dip(), PILE)
     table = tmp_path / "figures" / "claims.json"
     assert succeeded("claims", folder=tmp_path).startswith("figures/claims.json: ")
     before = table.read_bytes()
@@ -100,7 +100,7 @@ def test_stored_claims_are_listed_and_not_judged_anew(tmp_path):
 
 
 def test_the_claims_of_the_extensions_come_with_the_summary_that_the_paper_reads(tmp_path):
-    store.write(tmp_path / "data" / "preparation.nc", preparation_study(), {"group": "preparation"})
+    store.write(tmp_path / "data" / "preparation.nc", preparation(), {"group": "preparation"})
     said = succeeded("claims", "--collection", "extensions", folder=tmp_path)
     assert said.startswith("summary.nc\nfigures/claims.json: ")
     assert store.read_attributes(tmp_path / "summary.nc")["group"] == "preparation"
@@ -137,7 +137,7 @@ def test_claims_without_datasets_leave_the_table_alone(tmp_path):
 
 def test_claims_without_some_datasets_keep_the_verdicts_on_them(tmp_path):
     """A clone has the whole table, and the datasets alone that somebody has made."""
-    store.write(tmp_path / "data" / "pile_dip.nc", pile_study(), PILE)
+    store.write(tmp_path / "data" / "pile_dip.nc", pile_dip(), PILE)
     succeeded("claims", folder=tmp_path)
     table = tmp_path / "figures" / "claims.json"
     before = table.read_bytes()

@@ -5,7 +5,6 @@ import runpy
 from pathlib import Path
 
 import pytest
-from commands import call
 from places import ROOT
 
 from granular_response.scene import Scene
@@ -60,12 +59,6 @@ def test_an_example_uses_public_names_only(script):
     assert internal(script) == []
 
 
-def test_an_internal_import_is_found(tmp_path):
-    script = tmp_path / "script.py"
-    script.write_text("import granular_response as gr\nfrom granular_response.scene import Scene\n")
-    assert internal(script) == ["granular_response.scene"]
-
-
 def test_the_starts_of_a_disordered_slab_differ_as_the_notes_say():
     example = runpy.run_path(str(EXAMPLES / "two_starts.py"))
     table = example["compare"](example["scene"](0.01, layers=8, disks_per_row=21), 3, workers=1)
@@ -75,9 +68,3 @@ def test_the_starts_of_a_disordered_slab_differ_as_the_notes_say():
     assert touching[oblique][0] > literal[oblique][0]
     assert touching["coordination number"][0] < literal["coordination number"][0]
     assert all(row["response"][0].shape == example["X"].shape for row in table.values())
-
-
-def test_an_example_runs_on_the_command_line_from_another_folder(tmp_path):
-    done = call("run", EXAMPLES / "own_packing.yaml", "-o", "out.nc", folder=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "52 disks" in done.stdout

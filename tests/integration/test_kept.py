@@ -68,41 +68,8 @@ def kept(tmp_path_factory):
     return folder, shutil.copytree(folder, tmp_path_factory.mktemp("copy") / "kept"), printed
 
 
-def no_entry(folder):
-    for name in FOLDERS:
-        (folder / name).chmod(0)
-
-
-def read_only(folder):
-    for path in folder.rglob("*"):
-        path.chmod(0o555 if path.is_dir() else 0o444)
-
-
-def no_reading(folder):
-    for path in files(folder):
-        path.chmod(0)
-
-
-def empty(folder):
-    for path in files(folder):
-        path.write_bytes(b"")
-
-
-def cut(folder):
-    for path in files(folder):
-        path.write_bytes(path.read_bytes()[:-10])
-
-
-def full(folder):
-    for name in FOLDERS:
-        shutil.rmtree(folder / name)
-
-
-def files(folder):
-    found = [path for name in FOLDERS for path in (folder / name).rglob("*") if path.is_file()]
-    return [path for path in found if path.suffix != ".lock"]
-
-
+ALL = " ".join(FOLDERS)
+EACH_FILE, FULL = f"find {ALL} -type f ! -name '*.lock' -exec", f"rm -r {ALL}"
 AGAIN = r"machine code in \S+ cannot be read \(\w+\), so kernels are compiled again"
 DENIED = ["kept results cannot be read and are computed again: Permission denied"]
 CLOSED = "nothing more is kept there: "
@@ -111,22 +78,22 @@ CLOSED = "nothing more is kept there: "
 @pytest.mark.parametrize(
     ("damage", "of_code", "of_values"),
     [
-        (no_entry, NOWHERE, [*DENIED, f"{CLOSED}Permission denied"]),
-        (read_only, NOWHERE, []),
-        (no_reading, AGAIN, [*DENIED, f"{CLOSED}Permission denied"]),
-        (empty, AGAIN, ["damaged results are computed again"]),
-        (cut, AGAIN, ["damaged results are computed again"]),
-        (full, r"machine code in \S+ cannot be written \(\w+\), so kernels are", [f"{CLOSED}File too large"]),
+        (f"chmod 0 {ALL}", NOWHERE, [*DENIED, f"{CLOSED}Permission denied"]),
+        (f"chmod -R a-w {ALL}", NOWHERE, []),
+        (f"{EACH_FILE} chmod 0 {{}} +", AGAIN, [*DENIED, f"{CLOSED}Permission denied"]),
+        (f"{EACH_FILE} truncate -s 0 {{}} +", AGAIN, ["damaged results are computed again"]),
+        (f"{EACH_FILE} truncate -s -10 {{}} +", AGAIN, ["damaged results are computed again"]),
+        (FULL, r"machine code in \S+ cannot be written \(\w+\), so kernels are", [f"{CLOSED}File too large"]),
     ],
-    ids=lambda one: getattr(one, "__name__", ""),
+    ids=["no entry", "read-only", "no reading", "empty", "cut", "full"],
 )
 def test_what_is_kept_changes_no_result_and_each_folder_is_named_once(kept, damage, of_code, of_values):
     folder, copy, printed = kept
     shutil.rmtree(folder)
     shutil.copytree(copy, folder)  # kept code is that of a file in its place
-    damage(folder)
+    subprocess.run(damage, shell=True, cwd=folder, check=True)
     try:
-        same, found, said, lines = run(folder, full=damage is full)
+        same, found, said, lines = run(folder, full=damage == FULL)
     finally:
         subprocess.run(["chmod", "-R", "u+rwX", folder], check=True)  # else nobody but root can remove it
     assert (same, found) == (printed, 0)

@@ -1,11 +1,8 @@
 """Datasets on disk: whole or not there, equal after a round trip, equal bytes for equal data."""
 
-import contextlib
 import os
-import resource
 import tempfile
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import netCDF4
@@ -63,16 +60,6 @@ def test_one_dataset_comes_back(path):
     assert attributes["note"] == "gravity only"
     assert attributes["package_version"] == __version__
     assert attributes["residual"] == 1e-11
-
-
-def test_a_study_comes_back_by_group(path):
-    study = {"mu_0.2": dataset(1), "mu_1": dataset(2), "slab/rest": dataset(3)}
-    store.write(path, study, {"group": "test"})
-    back = store.read(path)
-    assert list(back) == list(study)
-    for name in study:
-        xr.testing.assert_equal(back[name], study[name])
-    assert store.read_attributes(path)["group"] == "test"
 
 
 def test_bytes_depend_on_the_data_alone(path, tmp_path):
@@ -136,27 +123,6 @@ def test_a_damaged_file_is_never_read(tmp_path, whole, cut, place, flip):
     damaged[int(place * len(whole))] ^= flip
     path.write_bytes(damaged)
     refuses(StoreError, None, store.read, path)
-
-
-@contextlib.contextmanager
-def space_for(size: int) -> Iterator[None]:
-    """No file may be longer than ``size`` bytes, as if its disk were full."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-
-
-def test_no_space_left_keeps_the_old_file(path):
-    store.write(path, dataset(0))
-    before = path.read_bytes()
-    with space_for(20_000), pytest.raises(OSError, match="File too large") as raised:
-        atomic.write_bytes(path, bytes(50_000))
-    assert raised.value.filename == str(path)  # else a command says that standard output is full
-    assert path.read_bytes() == before
-    assert [entry.name for entry in path.parent.iterdir()] == [path.name]
 
 
 def test_without_a_folder_for_temporary_files_a_dataset_is_made_beside_its_place(path, tmp_path, monkeypatch):

@@ -1,5 +1,5 @@
 """Fixtures of figure groups at reduced size."""
 
-from group_fixtures import datasets, looks_as_stored, one_process
+from group_fixtures import looks_as_stored, one_process
 
-__all__ = ["datasets", "looks_as_stored", "one_process"]
+__all__ = ["looks_as_stored", "one_process"]

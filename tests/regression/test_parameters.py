@@ -24,12 +24,8 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"series": [SERIES | {"layers": [6, 8]}]}, r"layers\[0\] = 6: must be odd"),
         ({"series": [SERIES, SERIES]}, "must have different names"),
     ],
-    "friction_fields": [
-        ({"profiles": {"frictions": [0.5], "force": 12.0, "rows": [1.5]}}, r"profiles\.frictions = \[0\.5\]")
-    ],
-    "friction_linear_range": [
-        ({"frictions": [0.0, 0.3, 1.0]}, r"frictions = \[0\.0, 0\.3, 1\.0\]: must have 0\.2 and 1 among them")
-    ],
+    "friction_fields": [({"profiles": {"frictions": [0.5], "force": 12.0, "rows": [1.5]}}, r"profiles\.frictions = ")],
+    "friction_linear_range": [({"frictions": [0.0, 0.3, 1.0]}, "frictions = .*: must have 0\\.2 and 1 among them")],
     "frictionless_crossover": [
         ({"scene": {"packing": {"layers": 0}}}, r"scene\.packing\.layers = 0: must be a whole number from 1"),
         ({"scene": {"contact": {"friction": 0.2}}}, r"scene\.contact\.friction = 0\.2: is decided by the group"),
@@ -65,14 +61,8 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     ],
     "influence": [({"fitted": [6.0, 1.0]}, r"fitted = \[6.0, 1.0\]: must be two growing numbers")],
     "moduli": [
-        (
-            {"cases": [SIZES | {"realizations": [4]}]},
-            r"realizations = \[4\]: must have a number for each of the layers",
-        ),
-        (
-            {"loaded": LOADED | {"scene": {"packing.layers": 1}}},
-            r"loaded\.scene\.packing\.layers = 1: must be 2 or more",
-        ),
+        ({"cases": [SIZES | {"realizations": [4]}]}, r"realizations = \[4\]: must have a number for each of the"),
+        ({"loaded": LOADED | {"scene": {"packing.layers": 1}}}, r"loaded\.scene\.packing\.layers = 1: must be 2 or"),
     ],
     "pile_dip": [({"dip_height": -1.0}, r"dip_height = -1\.0: must be a number greater than 0")],
     "polydisperse_averages": [
@@ -84,10 +74,7 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     "preparation": [
         ({"ways": [WAY | {"changes": {"contact.friction": 1.0}}]}, "must have keys among preparation.gravity"),
         ({"ways": [WAY, WAY]}, "must have different names"),
-        (
-            {"parts": [{"friction": 0.2, "ways": ["none"], "to": 4.0}]},
-            r"parts\[0\]\.ways = .*: must be among the names in ways",
-        ),
+        ({"parts": [{"friction": 0.2, "ways": ["none"], "to": 4.0}]}, r"parts\[0\]\.ways = .*: must be among the"),
         ({"parts": [{"friction": 0.2, "to": 0.01}]}, "must not be below the first of forces"),
         ({"parts": [{"friction": 0.2, "to": 4.0, "taps": TAPS}]}, r"parts\[0\]\.taps = .*: must be left out"),
     ],

@@ -10,11 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
-from granular_response.errors import SolveError
 from granular_response.scene import Scene
 from granular_response.solvers.dynamics import Dynamics, DynamicsError
 from granular_response.solvers.problem import Problem
@@ -23,7 +21,7 @@ from granular_response.solvers.timestep import stability_limit
 from granular_response.state import State
 
 #: What becomes of a kick.
-SETTLES, CYCLES, BLOWS_UP, NO_REST = 0, 1, 2, 3
+SETTLES, CYCLES, BLOWS_UP = 0, 1, 2
 #: Largest velocity of the kick, in units of the mean overlap times the frequency of a contact.
 KICK = 1e-3
 #: Parts into which a run is divided to see whether the energy still falls.
@@ -35,27 +33,13 @@ LOOK_EVERY = 100
 GROWN, FALLEN = 1e10, 0.3
 
 
-class Steps(NamedTuple):
-    """One scene and integrator."""
-
-    limit: float  #: predicted largest stable time step in sqrt(radius/g)
-    outcome: list[int]  #: what becomes of a kick, for each ratio
-
-
-def tried(scene: Scene, integrators: Sequence[str], ratios: Sequence[float], steps: int, seed: int) -> list[Steps]:
-    """For each integrator, what becomes of a kick at time steps that are ``ratios`` of its predicted limit."""
+def tried(scene: Scene, integrator: str, ratios: Sequence[float], steps: int, seed: int) -> list[int]:
+    """What becomes of a kick at time steps that are ``ratios`` of the predicted limit."""
     problem = Problem.from_scene(scene)
-    limits = [stability_limit(problem, integrator) for integrator in integrators]
-    try:
-        problem, state, load = prepared(problem)
-    except SolveError:
-        return [Steps(limit, [NO_REST] * len(ratios)) for limit in limits]
+    limit = stability_limit(problem, integrator)
+    problem, state, load = prepared(problem)
     kicked = kick(problem, state, seed)
-    found = []
-    for name, limit in zip(integrators, limits, strict=True):
-        outcomes = [outcome(problem, kicked, load, name, ratio * limit, steps) for ratio in ratios]
-        found.append(Steps(limit, outcomes))
-    return found
+    return [outcome(problem, kicked, load, integrator, ratio * limit, steps) for ratio in ratios]
 
 
 def prepared(problem: Problem) -> tuple[Problem, State, float]:

@@ -9,7 +9,7 @@ from itertools import chain
 
 import numpy as np
 import pytest
-from claims_data import PILE, dataset, everything, parameters, pile_study
+from claims_data import PILE, dataset, everything, parameters, pile_dip
 from places import ROOT
 from refusals import refuses
 from scipy.stats import binom
@@ -80,9 +80,8 @@ def changed(data, group, name, /, **variables):
     """The data with other variables in one dataset; None leaves one out."""
     study = data.groups[group][name]
     for variable, values in variables.items():
-        study = (
-            study.drop_vars(variable) if values is None else study.assign({variable: study[variable].copy(data=values)})
-        )
+        given = {} if values is None else {variable: study[variable].copy(data=values)}
+        study = study.drop_vars(variable).assign(given)
     return replace(data, groups={**data.groups, group: {**data.groups[group], name: study}})
 
 
@@ -179,12 +178,9 @@ def test_data_of_other_parameters_decide_nothing(good, name):
             given |= {key: other} if other else {}
             entry = judge(claim, replace(good, parameters={**good.parameters, claim.group: given}))
             assert without_numbers(entry) and key in entry.missing
-
-
-def test_parameters_that_hold_more_than_the_papers_are_its_own(good):
-    given = {**good.parameters["friction_fields"], "frictions": [0.0, 0.1, 0.2, 1.0]}
-    entry = judge(CLAIM["S2"], replace(good, parameters={**good.parameters, "friction_fields": given}))
-    assert entry.verdict == "supported"
+    given = {**good.parameters["friction_fields"], "frictions": [0.0, 0.1, 0.2, 1.0]}  # more than the paper's
+    more = replace(good, parameters={**good.parameters, "friction_fields": given})
+    assert judge(CLAIM["S2"], more).verdict == "supported"
 
 
 def test_the_papers_own_numbers_pass_every_test_that_has_one():
@@ -196,15 +192,8 @@ def test_the_papers_own_numbers_pass_every_test_that_has_one():
 
 def mutations(values):
     """Wrong data: emptied, larger, smaller, turned round along each dimension, of the other sign, all alike."""
-    yield from (
-        0.0 * values,
-        30.0 * values,
-        0.2 * values,
-        0.03 * values,
-        -values,
-        values + 5.0,
-        np.abs(values - values.max()),
-    )
+    yield from (factor * values for factor in (0.0, 30.0, 0.2, 0.03, -1.0))
+    yield from (values + 5.0, np.abs(values - values.max()))
     for ends in ((0.1, 3.0), (3.0, 0.1)):
         yield values * np.linspace(*ends, values.size).reshape(values.shape)
     yield np.full_like(values, 7)
@@ -221,11 +210,8 @@ def test_every_claim_can_fail(few_draws, good, name):
         wanted.add("cannot tell")  # that something is rare is known from 146 packings on
     wrong = []
     places = [(*place, good.groups[place[0]][place[1]]) for place in sorted(read_by(claim, good))]
-    ends = [
-        [(*place, end) for end in ("low", "high")]
-        for *place, study in places
-        if {"low", "high"} <= set(study.data_vars)
-    ]
+    with_ends = [place for *place, study in places if {"low", "high"} <= set(study.data_vars)]
+    ends = [[(*place, end) for end in ("low", "high")] for place in with_ends]
     alone = [[(*place, one)] for *place, study in places for one in study.data_vars]
     moved = [list(chain(*ends))] if ends else []  # an event moves in every table that has it
     for some in moved + alone + [all_ends + one for all_ends in moved for one in alone]:
@@ -327,22 +313,16 @@ def test_the_primary_case_alone_decides():
     assert verdict(("b", YES)) == verdict((Case("a", "gravity"), YES)) == verdict() == "not measured"
 
 
-def test_a_row_spells_its_other_cases_out():
+def test_a_row_spells_its_other_cases_out_and_has_a_sentence_for_its_verdict_alone():
     entry = judge(a_claim(("a", YES), ("b", YES), ("c", NO), ("d", OPEN), here="From {0} to {c|0}."), Data({}))
     assert entry.here == "From 1.5 (1.0 to 2.0) to 2.5 (2.1 to 3.0)."
     assert entry.cases == "For: b. Not for: c. Open for: d."
-
-
-def test_a_sentence_is_said_only_for_the_verdict_it_is_written_for():
-    def said(found, here, **of):
-        return judge(a_claim(("a", found), here=here, **of), Data({})).here
-
-    assert said(NO, "It holds, {0}.") == "Number: 2.5 (2.1 to 3.0)."
-    assert said(YES, "{b|0}") == "Number: 1.5 (1.0 to 2.0)."
-    assert said(NO, "It fails, {0}.", finds="not supported") == "It fails, 2.5 (2.1 to 3.0)."
-
-
-def test_a_claim_needs_as_many_numbers_as_bounds():
+    for found, here, given, said in (
+        (NO, "It holds, {0}.", {}, "Number: 2.5 (2.1 to 3.0)."),
+        (YES, "{b|0}", {}, "Number: 1.5 (1.0 to 2.0)."),
+        (NO, "It fails, {0}.", {"finds": "not supported"}, "It fails, 2.5 (2.1 to 3.0)."),
+    ):
+        assert judge(a_claim(("a", found), here=here, **given), Data({})).here == said
     refuses(ClaimsError, "theory: F1: 2 numbers for 1 bounds", judge, a_claim(("a", YES, NO)), Data({}))
 
 
@@ -358,39 +338,33 @@ def test_a_star_marks_verdicts_that_hang_on_a_threshold():
 
 
 def test_no_quantity_is_made_of_nothing():
-    for nothing in (
-        lambda: Quantity.exact(NAN),
-        lambda: Quantity.exact(np.inf),
-        lambda: Quantity.bracket(NAN, 1.0),
-        lambda: Quantity.over([]),
-    ):
-        with pytest.raises(NotMeasured):
-            nothing()
+    refuses(NotMeasured, None, Quantity.over, [])
+    for nothing in ([NAN], [np.inf], [NAN, 1.0]):
+        refuses(NotMeasured, None, Quantity.exact if len(nothing) == 1 else Quantity.bracket, *nothing)
     assert Quantity.bracket(50.0, NAN).value is None
 
 
-def test_strict_bounds_leave_out_their_ends():
-    def outcome(low, high, strict):
-        return Limits(1.0, math.inf, strict).outcome(Quantity(low, low, high))
-
-    assert outcome(1.0, 2.0, False) == "yes" and outcome(1.0, 2.0, True) == "cannot tell"
-    assert outcome(1.1, math.inf, True) == "yes" and outcome(0.5, 1.0, True) == "no"
+#: A strict bound leaves out its ends; sampled events lie at most a term below the paper's force.
+STRICT, LOOSE = (Limits(1.0, math.inf, strict) for strict in (True, False))
+SAMPLED = sampled(10.0).limits(bounds.THRESHOLDS)
 
 
-def test_sampled_events_lie_at_most_a_term_below_the_papers_force():
-    def outcome(low, high):
-        return sampled(10.0).limits(bounds.THRESHOLDS).outcome(Quantity.bracket(low, high))
-
-    assert outcome(7.5, 10.0) == "yes"
-    assert outcome(7.4, 7.6) == outcome(9.9, 10.1) == "cannot tell"
-    assert outcome(7.0, 7.4) == outcome(10.1, 10.2) == outcome(20.0, NAN) == "no"
+@pytest.mark.parametrize(
+    ("limits", "low", "high", "outcome"),
+    [
+        (LOOSE, 1.0, 2.0, "yes"), (STRICT, 1.0, 2.0, "cannot tell"), (STRICT, 1.1, math.inf, "yes"),
+        (STRICT, 0.5, 1.0, "no"), (SAMPLED, 7.5, 10.0, "yes"), (SAMPLED, 7.4, 7.6, "cannot tell"),
+        (SAMPLED, 9.9, 10.1, "cannot tell"), (SAMPLED, 7.0, 7.4, "no"), (SAMPLED, 10.1, 10.2, "no"),
+        (SAMPLED, 20.0, NAN, "no"),
+    ],
+)  # fmt: skip
+def test_a_bound_tells_what_lies_within_it(limits, low, high, outcome):
+    assert limits.outcome(Quantity.bracket(low, high)) == outcome
 
 
 def test_bounds_are_said_in_words():
-    said = [
-        one.limits(bounds.THRESHOLDS).text(unit)
-        for one, unit in ((about(20.0), "mg"), (less_than(1.0), "%"), (more_than(4.0), ""))
-    ]
+    asked = (about(20.0), "mg"), (less_than(1.0), "%"), (more_than(4.0), "")
+    said = [one.limits(bounds.THRESHOLDS).text(unit) for one, unit in asked]
     assert said == ["15.0 mg to 25.0 mg", "less than 100 %", "more than 4.00"]
 
 
@@ -496,6 +470,7 @@ def test_the_interval_of_a_part_is_exact_and_open_at_its_ends():
     assert none.low == 0.0 and none.high == pytest.approx(1.0 - 0.025 ** (1.0 / 20.0))
     assert (few.value, few.low, few.high) == pytest.approx((0.25, 0.0866, 0.4910), abs=1e-4)
     assert part_of(np.ones(20)).high == 1.0
+    assert part_of(np.zeros(145)).high > RARE > part_of(np.zeros(146)).high  # from so many on it is rare
     refuses(NotMeasured, "no realizations", part_of, [])
 
 
@@ -552,10 +527,6 @@ def test_the_power_of_a_part(packings, least, powers):
     clear = [part_of(np.arange(packings) < hits).low > least for hits in range(packings + 1)]
     for part, power in powers:
         assert binom.pmf(np.arange(packings + 1), packings, part)[clear].sum() == pytest.approx(power, abs=0.005)
-
-
-def test_what_no_packing_has_is_rare_from_146_packings_on():
-    assert part_of(np.zeros(145)).high > RARE > part_of(np.zeros(146)).high
 
 
 def test_the_notes_quote_the_power():
@@ -627,7 +598,7 @@ def test_labels_are_found_exactly_and_together():
 
 
 def test_the_stored_table_is_the_one_file_of_verdicts(tmp_path):
-    store.write(tmp_path / "data" / "pile_dip.nc", pile_study(), PILE)
+    store.write(tmp_path / "data" / "pile_dip.nc", pile_dip(), PILE)
     found = table.write(tmp_path / "claims.json", tmp_path / "data", tmp_path / "none.nc")
     stored = json.loads((tmp_path / "claims.json").read_text())
     assert stored == found == table.read(tmp_path / "claims.json")
@@ -668,7 +639,7 @@ def test_the_summary_of_preparations_is_read_in_place_of_their_datasets(tmp_path
     assert made["source"] == "preparation.nc" and made["parameters"] == "ways: []" and len(made["source_md5"]) == 32
     read = table.collect(tmp_path / "none", path).groups["preparation"]["events"]
     assert read["low"].values.tolist() == events["events"]["low"].values.tolist()
-    store.write(tmp_path / "other.nc", pile_study(), {"group": "pile_dip"})
+    store.write(tmp_path / "other.nc", pile_dip(), {"group": "pile_dip"})
     with pytest.raises(NotMeasured, match="no events of the group preparation"):
         preparations.write(tmp_path / "other.nc", tmp_path / "summary.nc")
 

@@ -16,7 +16,6 @@ from printed import rounded
 
 import granular_response as gr
 from granular_response.cli import scene_reference
-from granular_response.scene import Scene, SceneError
 from granular_response.scene.scene import AnyPacking
 from granular_response_paper.claims.claim import ClaimsError
 
@@ -142,18 +141,6 @@ def test_the_shell_blocks_of_the_readme_say_what_a_reader_runs():
     commands = [line.partition("#")[0].strip() for line in "".join(blocks).splitlines()]
     assert {"make reproduce", "make test", "make figure FIGURE=7", "make extensions"} <= set(commands)
     assert any(line.endswith("pip install .") for line in commands)
-
-
-def test_the_reference_says_what_the_scene_allows():
-    keys = {key.path: key for section in scene_reference.sections() for key in section.listed()}
-    with pytest.raises(SceneError) as caught:
-        Scene.from_dict({"contact": {"friction": -1}})
-    assert str(caught.value).endswith(f"must be {keys['contact.friction'].allowed}")
-    assert keys["wall.normal_stiffness"].allowed.endswith(", or null")
-    assert Scene.from_text(f"contact: {{normal_stiffness: {keys['contact.normal_stiffness'].default}}}") == Scene()
-    assert not keys["loads[].disk"].default and not keys["packing.kind"].default
-    assert keys["loads[].force"].unit == "mg"
-    assert keys["loads[].displacement"].unit == keys["loads[].disk.x"].unit == "mean radius"
 
 
 def test_every_kind_of_packing_has_a_section_and_a_public_name():

@@ -1,4 +1,4 @@
-"""Certified states are in balance, overlap no more than their forces need, and weigh what they weigh.
+"""Certified states are in balance, weigh what they weigh, and stay at rest in full dynamics (claims N1 to N3).
 
 Measured anew from positions by the audit, which ``tests/unit/test_audit.py`` tries on wrong states.
 """
@@ -9,6 +9,7 @@ from small_scenes import scene
 from solved import slab
 from stress.random_scenes import check, contradiction, rounding_of
 
+from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR
 
@@ -50,3 +51,15 @@ def test_floor_and_walls_carry_the_weight_and_the_load(solution):
             assert 0.5 * carried < on_floor and abs(on_floor - carried) > 1e-6  # side walls bear a part of it
         else:
             assert on_floor == pytest.approx(carried, rel=1e-9)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+@pytest.mark.parametrize("which", ["rest", "loaded"])
+def test_a_finished_state_stays_at_rest(friction, which):
+    solution = slab(friction, 4.0, "auto" if friction == 0 else "dynamics")
+    state = solution.rest if which == "rest" else solution.loaded[-1]
+    dynamics = Dynamics(solution.problem, state)
+    dynamics.set_ramps(load=(state.load_factor, state.load_factor, 0.0))
+    for _ in range(40):
+        dynamics.advance(100)
+        assert dynamics.kinetic_energy() < 1e-22

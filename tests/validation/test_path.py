@@ -14,10 +14,8 @@ from granular_response.solvers.energy import minimise
 from granular_response.solvers.equilibrium import finish
 from granular_response.solvers.path import PathError, PathRecord, follow
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.solution import continue_solution, solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.state import OPEN, SLIDING, STICKING, State
-from granular_response.store import files as store
-from granular_response.store.result import solution_from, to_dataset
 
 FLOOR = np.arange(13)
 LOAD = pushed(0.0, -1.0)
@@ -40,15 +38,6 @@ def test_dynamics_approaches_the_path_as_its_ramp_grows(settled):
     assert difference[0] < 4e-3
     assert difference[1] < 0.5 * difference[0]
     assert difference[2] < 0.7 * difference[1]
-
-
-def test_a_path_back_leads_elsewhere_with_friction_and_back_within_the_reversible_range(settled):
-    problem, rest = settled
-    up, _, down = follow(problem, rest, [2.0, 4.0, 2.0])
-    assert np.abs(floor_force(up, FLOOR) - floor_force(down, FLOOR)).max() > 1e-3
-    first, _, again = follow(problem, rest, [1e-4, 2e-4, 1e-4])
-    change = np.abs(floor_force(first, FLOOR) - floor_force(rest, FLOOR)).max()
-    assert np.abs(floor_force(first, FLOOR) - floor_force(again, FLOOR)).max() < 0.02 * change
 
 
 def test_an_equilibrium_that_is_left_slowly_is_not_called_stable():
@@ -199,24 +188,6 @@ def test_a_mirror_pair_changes_at_one_event():
     for f, kind, wall, i, j in found:
         other = (mirror[i], turned[j]) if wall else frozenset((mirror[i], mirror[j]))
         assert (f, kind, wall, other) in as_set
-
-
-@pytest.mark.parametrize("changes", KINDS.values(), ids=KINDS)
-def test_a_path_cut_anywhere_has_the_bits_of_one_that_is_not(changes, tmp_path):
-    base = scene(**{"contact__friction": 0.2, "wall__friction": 0.2, **changes})
-    programme = [0.2, 0.5, 1.0, 0.4]
-    base = base.updated({"protocol.method": "path"})
-    whole = solve_scene(base, load_factors=programme)
-    for cut in (1, 2, 3):
-        part = solve_scene(base, load_factors=programme[:cut])
-        store.write(tmp_path / "part.nc", to_dataset(part))
-        read = solution_from(gr.open_result(tmp_path / "part.nc").to_dataset())
-        again = continue_solution(read, programme[cut:])
-        for one, other in zip(whole.loaded, again.loaded, strict=True):
-            for a, b in ((one.pairs, other.pairs), (one.walls, other.walls)):
-                assert all(np.array_equal(getattr(a, name), getattr(b, name)) for name in vars(a))
-            assert np.array_equal(one.position, other.position) and np.array_equal(one.angle, other.angle)
-            assert one.reached.events == other.reached.events
 
 
 def test_without_friction_a_path_leads_back_and_to_the_minimum_of_the_energy():

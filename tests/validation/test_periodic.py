@@ -18,10 +18,6 @@ from granular_response.observe.teardrop import open_region
 from granular_response.scene import Scene
 from granular_response.solvers.close_pairs import close_pairs
 from granular_response.solvers.solution import solve_scene
-from granular_response.store.result import to_dataset
-from granular_response.theory import lattice
-from granular_response.theory.lattice import Springs
-from granular_response.theory.slab import response_of_layers
 
 LAYERS, ROW = 7, 24
 
@@ -67,26 +63,6 @@ def test_neighbours_across_the_sides():
     for position in (packing.position, shifted):
         found = close_pairs(position, packing.radius, 0.1, packing.box.period)
         assert np.array_equal(np.stack(found, axis=1), pairs)
-
-
-def distance_to_the_elastic_slab(sides: str, disks_per_row: int) -> float:
-    """Largest difference of the response of 15 pressed layers under a small force, per largest elastic response."""
-    packing = {"layers": 15, "disks_per_row": disks_per_row, "sides": sides, "lattice_constant": 1.9998}
-    changes = {"contact.friction": 1.0, "loads": [{"disk": "top-centre", "force": [0.0, -0.2]}]}
-    stored = to_dataset(solve_scene(Scene().updated({"packing": packing, **changes})))
-    width = stored.attrs["width"]
-    inside = np.abs(stored["x"].values) < 0.5 * width - 1.5
-    x, response = stored["x"].values[inside], stored["floor_response"].values[-1, inside]
-    moduli = lattice.moduli(Springs.uniform(1.0, 0.8), "free")
-    elastic = response_of_layers(x, layers=15, moduli=moduli, floor="smooth", width=width)
-    return float(np.abs(response - elastic).max() / elastic.max())
-
-
-def test_without_walls_the_elastic_slab_is_near():
-    """Smooth walls in the middle between two loads are mirrors, so the elastic slab is the same one."""
-    periodic, walls = distance_to_the_elastic_slab("periodic", 20), distance_to_the_elastic_slab("walls", 21)
-    assert periodic < 1e-3
-    assert walls > 20.0 * periodic
 
 
 def test_forces_across_a_line_and_their_stress_are_those_of_one_period():

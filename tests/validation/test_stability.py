@@ -4,14 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_scenes import at_rest, pushed, scene
 from stress import closed_forms, random_scenes
 from stress.time_steps import BLOWS_UP, CYCLES, SETTLES, tried
 
 from granular_response.kernels.integrators import INTEGRATORS
-from granular_response.observe.floor import floor_force
 from granular_response.scene import Scene
-from granular_response.solvers.energy import minimise
 
 SEED = 20260101
 #: Of a system without dashpots: time step per limit of velocity Verlet, and the velocity of the kick, in mean overlaps
@@ -42,10 +39,8 @@ def test_the_predicted_time_step_is_neither_too_long_nor_much_too_short(integrat
     if integrator == "leapfrog" and changes == {"contact.damping_ratio": 0.0}:
         changes = {"contact.damping_ratio": 0.02}  # it adds no damping of its own: without any, no kick dies out
     scene = Scene.from_dict(SMALL).updated({**changes, "protocol.time_step": "auto"})
-    (found,) = tried(scene, (integrator,), (0.95, 2.0), 4000, SEED)
-    assert found.limit > 0
-    assert found.outcome[0] == SETTLES
-    assert found.outcome[1] in (CYCLES, BLOWS_UP)
+    below, beyond = tried(scene, integrator, (0.95, 2.0), 4000, SEED)
+    assert below == SETTLES and beyond in (CYCLES, BLOWS_UP)
 
 
 # Energy
@@ -152,19 +147,3 @@ def test_a_solver_that_gives_a_wrong_answer_is_caught(tmp_path, monkeypatch):
     monkeypatch.setattr(random_scenes, "solve_scene", wrong)
     trial = random_scenes.attempt(DESCRIPTION, str(tmp_path))
     assert trial.outcome == "wrong" and "force_residual is" in trial.message
-
-
-def test_a_rest_state_disturbed_in_its_last_digits_gives_the_same_response():
-    problem, rest = at_rest(scene(contact__friction=0.0, loads=pushed(0.0, -3.0)))
-    assert rest.certificate.negative_modes == 0
-
-    def floor(state):
-        return floor_force(state, np.arange(7))
-
-    response = floor(minimise(problem, rest, load_factor=1.0)) - floor(rest)
-    for seed in (1, 2):
-        by = 1e-12 * np.random.default_rng(seed).uniform(-1.0, 1.0, rest.position.shape)
-        again = minimise(problem, problem.with_static_forces(replace(rest, position=rest.position + by)))
-        assert again.position == pytest.approx(rest.position, abs=1e-11)
-        changed = floor(minimise(problem, again, load_factor=1.0)) - floor(again)
-        assert changed == pytest.approx(response, abs=1e-8 * np.abs(response).max())

@@ -9,24 +9,20 @@ import numpy as np
 import pytest
 from observe_states import contacts, state
 from scipy.spatial import Delaunay
-from scipy.special import erf
 from small_scenes import pushed, scene
 
-from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.observe.stress import (
     ContactForces,
     coarse_grained_stress,
     contact_forces,
     couple_stress,
     grid_points,
-    load_forces,
 )
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, State
 
 #: Far enough for the Gaussian to be below rounding, where a test wants the identity itself.
 WHOLE = 7.0
-LOAD = 12.0
 
 
 def body_force_density(position: np.ndarray, force: np.ndarray, points: np.ndarray, w: float) -> np.ndarray:
@@ -78,13 +74,6 @@ def random_packing() -> tuple[State, float]:
     return state(position, pairs, at_walls, width), width
 
 
-@pytest.fixture(scope="module")
-def solved() -> tuple[State, State, float]:
-    """A slab at rest and under 12 mg, and its width; walls with friction bear a part of both."""
-    solution = solve_scene(scene(9, 15, contact__friction=1.0, wall__friction=0.3, loads=pushed(0.0, -LOAD)))
-    return solution.rest, solution.loaded[0], solution.problem.packing.width
-
-
 @pytest.mark.parametrize("w", [0.8, 2.0])
 def test_divergence_is_the_body_force_and_the_push_of_the_walls(w):
     s, width = random_packing()
@@ -93,35 +82,6 @@ def test_divergence_is_the_body_force_and_the_push_of_the_walls(w):
     expected = body_force_density(s.position, outer_force(s), points, w)
     expected += body_force_density(wall_points(s, width), s.wall_force(), points, w)
     np.testing.assert_allclose(got, expected, atol=1e-9 * np.abs(expected).max())
-
-
-def line_integral(forces: ContactForces, z: float, width: float, w: float = 2.0) -> float:
-    x = np.linspace(-8.0 * w, width + 8.0 * w, 601)
-    stress = coarse_grained_stress(forces, grid_points(x, np.array([z])), w, WHOLE)
-    return float(stress[0, :, 1, 1].sum() * (x[1] - x[0]))
-
-
-def test_sigma_zz_over_a_line_carries_the_load_above_it(solved):
-    rest, loaded, width = solved
-    # Side walls carry a share; below the line it is what they do not take above it.
-    for z, tolerance in ((6.5, 2e-4), (7.5, 2e-5)):
-        side = loaded.walls.second != FLOOR
-        height = loaded.position[loaded.walls.first, 1]
-        force = loaded.wall_force() - rest.wall_force()
-        # A point force is counted above the line to the extent of its smeared-out share there.
-        share = 0.5 * (1.0 + erf((height[side] - z) / 2.0))
-        expected = LOAD - np.sum(force[side, 1] * share)
-        assert line_integral(load_forces(rest, loaded), z, width) == pytest.approx(expected, rel=tolerance)
-
-
-def test_sigma_zz_just_above_the_floor_carries_the_floor_force(solved):
-    """With a Gaussian much narrower than a disk, the stress below the bottom row is the floor force."""
-    _, s, width = solved
-    floor = floor_force(s, floor_disks([s])).sum()
-    w = 0.1
-    x = np.linspace(-1.0, width + 1.0, 6401)
-    stress = coarse_grained_stress(contact_forces(s), grid_points(x, np.array([0.5])), w, WHOLE)
-    assert stress[0, :, 1, 1].sum() * (x[1] - x[0]) == pytest.approx(floor, rel=1e-9)
 
 
 @pytest.mark.parametrize("w", [0.8, 2.0])

@@ -19,14 +19,6 @@ def result() -> gr.Result:
     return gr.solve(SMALL, load_factors=[0.5, 1.0])
 
 
-def test_a_result_has_states_certificates_and_response(result):
-    assert result.load_factors == (0.5, 1.0) and result.rest.load_factor == 0.0
-    assert len(result.certificates) == 3 and result.certificate.stable
-    assert result.certificate.force_residual < 1e-10
-    assert float(result.floor_response.isel(load=1).sum()) == pytest.approx(1.0, abs=1e-9)
-    assert result.scene == gr.Scene.from_dict(SMALL).updated({"protocol.load_factors": [0.5, 1.0]})
-
-
 def test_contacts_as_a_table(result, tmp_path):
     table = result.contacts_table()
     state, data = result.loaded[-1], result.to_dataset()
@@ -102,17 +94,6 @@ def test_the_forces_on_sensors_sum_to_the_weight_of_all_disks(sides):
         rest, added = slab.floor_profile(units, width, state=0), slab.floor_profile(units, width)
         assert float(rest.sum()) == pytest.approx(weight, rel=1e-9)
         assert float(added.sum()) == pytest.approx(applied, rel=1e-9)
-
-
-def test_a_profile_of_sensors_has_a_band_over_preparations():
-    units, ways = gr.LaboratoryUnits(), {"at once": {}, "frictionless": {"gravity": "frictionless"}}
-    profile = lambda result: result.floor_profile(units, 15.0)  # noqa: E731
-    found = gr.preparations(SMALL, ways, profile, workers=1, progress=False)
-    base = gr.Scene.from_dict(SMALL)
-    both = [profile(gr.solve(base.updated({"preparation": way}))) for way in ways.values()]
-    np.testing.assert_array_equal(found["floor_profile_low"], np.minimum(*both))
-    np.testing.assert_array_equal(found["floor_profile_high"], np.maximum(*both))
-    assert float((found["floor_profile_high"] - found["floor_profile_low"]).max()) > 1e-6
 
 
 def test_displacements_are_from_the_initial_equilibrium(result):

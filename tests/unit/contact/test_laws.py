@@ -177,18 +177,6 @@ def test_a_law_that_lacks_something_is_refused(arguments, said):
     assert "mine" not in KNOWN_LAWS
 
 
-class Stronger(Cubic):
-    """With a force that is not the derivative of its energy."""
-
-    def elastic_force(self, overlap, shape):
-        return 1.3 * self.factor * overlap * overlap * overlap
-
-
-class Softer(Cubic):
-    def stiffness(self, overlap, shape):
-        return 2.0 * self.factor * overlap * overlap
-
-
 class Growth(Description):
     growth: NonNegative = Field(default=0.0, description="Of the force with the overlap.")
 
@@ -210,67 +198,28 @@ class Growing(Cohesive):
         return 0.5 * self.normal_stiffness * overlap * overlap
 
 
-class Unlike(Cubic):
-    """Of which walls have a geometry factor, and disks have none."""
-
-    def shapes(self, first, second):
-        return np.ones(len(first)) if second is None else None
-
-
-class OneShape(Cubic):
-    """With one geometry factor for all contacts."""
-
-    def shapes(self, first, second):
-        return 0.5
-
-
-class Limp(Cubic):
-    def stiffest(self, force):
-        return np.nan
-
-
-class Misspelt(Cubic):
-    def energy(self, overlap, shape):
-        return self.faktor * overlap
+#: A method of the cubic law, what takes its place, and what is said of the class.
+WRONG = [
+    ("elastic_force", lambda self, overlap, shape: 1.3 * self.factor * overlap * overlap * overlap,
+     r"elastic_force is \S+ at overlap 1\.01e-06, where the derivative of energy is \S+$"),
+    ("stiffness", lambda self, overlap, shape: 2.0 * self.factor * overlap * overlap,
+     r"stiffness is .* at overlap 1\.01e-06, where the derivative of elastic_force is"),
+    ("shapes", lambda self, first, second: np.ones(len(first)) if second is None else None,
+     r"shapes is None for two disks or for a disk and a wall, must be for both or for neither$"),
+    ("shapes", lambda self, first, second: 0.5, r"shapes is 0\.5 for 3 contacts, must be as many finite numbers$"),
+    ("stiffest", lambda self, force: np.nan, r"stiffest is nan at a force of 1, must be a finite number greater"),
+    ("energy", lambda self, overlap, shape: self.faktor * overlap,
+     r"cannot be compiled, .*: Unknown attribute 'faktor' of type Wrong"),
+    ("elastic_force", lambda self, overlap, shape: self.factor * overlap**3.0,  # for one contact alone
+     r"cannot be compiled, must be arithmetic and functions of machine/lanes\.py: .*function pow"),
+    ("energy", lambda self, delta, shape: delta, r"cannot be compiled, .* signature: \(self, delta, shape\)$"),
+    ("of", classmethod(lambda cls, *constants: None), r"of\(\) gave None, must give the law$"),
+]  # fmt: skip
 
 
-class Powered(Cubic):
-    """For one contact alone."""
-
-    def elastic_force(self, overlap, shape):
-        return self.factor * overlap**3.0
-
-
-class Renamed(Cubic):
-    def energy(self, delta, shape):
-        return delta
-
-
-class Nothing(Cubic):
-    @classmethod
-    def of(cls, *constants):
-        return None
-
-
-@pytest.mark.parametrize(
-    ("wrong", "said"),
-    [
-        (Stronger, r"Stronger: elastic_force is \S+ at overlap 1\.01e-06, where the derivative of energy is \S+$"),
-        (Softer, r"Softer: stiffness is .* at overlap 1\.01e-06, where the derivative of elastic_force is"),
-        (Unlike, r"Unlike: shapes is None for two disks or for a disk and a wall, must be for both or for neither$"),
-        (Limp, r"Limp: stiffest is nan at a force of 1, must be a finite number greater than 0$"),
-        (Misspelt, r"Misspelt: cannot be compiled, .*: Unknown attribute 'faktor' of type Misspelt\(.*\)$"),
-        (
-            Powered,
-            r"Powered: cannot be compiled, must be arithmetic and functions of machine/lanes\.py: .*function pow",
-        ),
-        (Renamed, r"Renamed: cannot be compiled, .* signature: \(self, delta, shape\)$"),
-        (Nothing, r"Nothing: of\(\) gave None, must give the law$"),
-        (OneShape, r"OneShape: shapes is 0\.5 for 3 contacts, must be as many finite numbers$"),
-    ],
-)
-def test_a_law_that_contradicts_itself_is_refused(wrong, said):
-    refuses(gr.GranularError, said, gr.register_law, "wrong", wrong)
+@pytest.mark.parametrize(("method", "wrong", "said"), WRONG)
+def test_a_law_that_contradicts_itself_is_refused(method, wrong, said):
+    refuses(gr.GranularError, f"Wrong: {said}", gr.register_law, "wrong", type("Wrong", (Cubic,), {method: wrong}))
     assert "wrong" not in KNOWN_LAWS
 
 

@@ -1,97 +1,24 @@
-"""The force loops against an independent loop over pairs, and the balance of momentum."""
+"""The force loops against one pair after the other, and single contacts by hand."""
 
 import numpy as np
 import pytest
-from reference_loop import Material, forces
+from reference_loop import Material
 
 from granular_response.contact import CUT, LITERAL, RULES, UNLOADING, coulomb
 from granular_response.contact.law import frictional, frictionless, normal_force
 from granular_response.contact.rolling import Rolling
-from granular_response.kernels import neighbours
 from granular_response.kernels.forces import SCRATCH, add_pair_forces, add_wall_forces
 from granular_response.kernels.model import Motion, Pairs, Rolls, Walls
-from granular_response.scene import SlabPacking
-from granular_response.solvers.close_pairs import close_pairs
 
 
-def run_kernel(position, velocity, spin, radius, first, second, springs, material, dt, rule=CUT, **runs_options):
-    """The kernel on given pairs: forces (n, 2), torques (n,), springs of the pairs, springs of all slots, slots."""
-    n = len(radius)
-    runs, slot = neighbours.make_runs(np.asarray(first), np.asarray(second), n, **runs_options)
-    i, j = neighbours.run_pairs(runs)
-    friction = material.mu > 0
-    # reference positions a little off, so that displacements count
-    reference = position + 0.01 * np.sin(np.arange(2 * n)).reshape(n, 2)
-    q = np.concatenate([(position - reference).T.ravel(), np.zeros(n)])
-    v = np.concatenate([velocity.T.ravel(), spin])
-    d = (reference[i] - reference[j]).T
-    slots = len(i)
-    spring = np.zeros(slots)
-    spring[slot] = springs
-    out = np.zeros(3 * n if friction else 2 * n)
-    size = len(out)
-    pairs = Pairs(
-        runs, np.ascontiguousarray(d[0]), np.ascontiguousarray(d[1]), radius[i] + radius[j], None,
-        spring if friction else None, None, np.zeros(SCRATCH), material.law,
-    )  # fmt: skip
-    rim = radius * spin if friction else None
-    add_pair_forces(pairs.spring, None, pairs, Motion(n, q[:size], v[:size], rim, out, rule, dt))
-    force = out[: 2 * n].reshape(2, n).T
-    torque = -radius * out[2 * n :] if friction else np.zeros(n)
-    return force, torque, spring[slot], spring, slot
-
-
-def lattice(rng, disks_per_row=61, layers=3):
-    packing = SlabPacking(kind="slab", layers=layers, disks_per_row=disks_per_row).build()
-    pairs = packing.neighbour_pairs()
-    return packing.position + rng.normal(0, 0.02, (packing.n, 2)), packing.radius, pairs[:, 0], pairs[:, 1]
-
-
-def random_packing(rng):
-    n = 80
-    position = rng.uniform(0, 14, (n, 2))
-    # no two centres coincide nearly, where a normal means nothing
-    keep = [0]
-    for k in range(1, n):
-        if np.linalg.norm(position[keep] - position[k], axis=1).min() > 0.8:
-            keep.append(k)
-    position = position[keep]
-    radius = rng.uniform(0.5, 1.2, len(keep))
-    return position, radius, *close_pairs(position, radius, 0.6)
-
-
-PACKINGS = {"lattice": lattice, "random": random_packing}
-RUNS = {
-    "as used": {},
-    "single pairs": {"shortest_run": 10**9},
-    "long gaps": {"shortest_run": 1, "longest_gap": 50},
-}
-
-
-@pytest.mark.parametrize("rule", RULES.values(), ids=RULES)
-@pytest.mark.parametrize("friction", [0.0, 0.3])
-@pytest.mark.parametrize("runs", RUNS)
-@pytest.mark.parametrize("packing", PACKINGS)
-def test_loops_agree_with_plain_python(packing, runs, friction, rule):
-    rng = np.random.default_rng(7)
-    position, radius, first, second = PACKINGS[packing](rng)
-    n = len(radius)
-    velocity, spin = rng.normal(0, 0.1, (n, 2)), rng.normal(0, 0.1, n)
-    material = Material(mu=friction)
-    springs = rng.normal(0, 3e-3, len(first)) if friction else np.zeros(len(first))
-    pairs = list(zip(first.tolist(), second.tolist(), strict=True))
-    dt = 5e-4
-    expected = forces(position, velocity, spin, radius, pairs, springs, material, dt, list(RULES)[rule])
-    closed = sum(np.linalg.norm(position[i] - position[j]) < radius[i] + radius[j] for i, j in pairs)
-    assert 20 < closed < len(pairs)
-    force, torque, new, _, _ = run_kernel(
-        position, velocity, spin, radius, first, second, springs, material, dt, rule, **RUNS[runs]
-    )
-    assert force == pytest.approx(expected[0], abs=1e-10)
-    assert torque == pytest.approx(expected[1], abs=1e-10)
-    assert new == pytest.approx(expected[2], abs=1e-13)
-    # momentum: internal forces add up to nothing
-    assert force.sum(axis=0) == pytest.approx([0.0, 0.0], abs=1e-9)
+@pytest.mark.parametrize(("overlap", "bears"), [(1e-3, True), (-1e-3, False)])
+def test_a_contact_acts_along_its_normal_and_across_it_and_forgets_where_it_is_open(overlap, bears):
+    material = Material()
+    ft, spring = coulomb.tangential(1e-4, 0.02, 3.0, material.law, CUT, 1e-3)
+    expected = (0.6 * 3.0 - 0.8 * ft, 0.8 * 3.0 + 0.6 * ft, ft, spring) if bears else (0.0, 0.0, 0.0, 0.0)
+    found = frictional(overlap, 0.6, 0.8, 3.0, 0.02, 1e-4, material.law, CUT, 1e-3)
+    assert found == pytest.approx(expected, rel=1e-15) and ft != 0.0
+    assert frictionless(overlap, 0.6, 0.8, 3.0) == pytest.approx((1.8 * bears, 2.4 * bears), rel=1e-15)
 
 
 ROUGHNESS = pytest.mark.parametrize(

@@ -2,17 +2,15 @@
 
 import numpy as np
 import pytest
-from observe_states import ROW, contacts, opened, pair_index, slab, state, with_pairs
+from observe_states import contacts, state
 from refusals import refusals
 
 from granular_response.observe.difference import (
-    force_misalignment,
     match_candidates,
     pair_force_difference,
     wall_force_difference,
 )
 from granular_response.observe.floor import floor_disks, floor_force, floor_response, interior_mask, smoothed_response
-from granular_response.observe.profile import force_profile, row_depth
 from granular_response.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, SLIDING, STICKING
 
 
@@ -77,39 +75,6 @@ test_what_cannot_be_is_named = refusals(
 )
 
 
-REST = slab(3, 5)  # 5 + 4 + 5 disks; the middle disk of the top row is 11
-TOP = 11
-
-
-def test_rows_and_the_contacts_between_them_are_told_apart():
-    assert REST.position[TOP].tolist() == pytest.approx([5.0, 1.0 + 2 * ROW])
-    x, _ = force_profile(REST, REST, TOP, row_depth(1))
-    np.testing.assert_allclose(x, [-2.0, 0.0, 2.0], atol=1e-12)
-    x, _ = force_profile(REST, REST, TOP, row_depth(1.5))
-    np.testing.assert_allclose(x, np.arange(-3.5, 4.0), atol=1e-12)
-    x, _ = force_profile(REST, REST, TOP, 0.0)
-    np.testing.assert_allclose(x, [-3.0, -1.0, 1.0, 3.0], atol=1e-12)
-    assert force_profile(REST, REST, TOP, 20.0)[0].size == 0
-    assert row_depth(14) == pytest.approx(14 * np.sqrt(3.0), rel=1e-12)
-
-
-def test_magnitude_of_the_vector_difference():
-    k = pair_index(REST, 5, 6)  # second row, centre at x = -2
-    loaded = with_pairs(REST, k, normal_force=4.0, tangential_force=-4.0)
-    x, f = force_profile(REST, loaded, TOP, row_depth(1))
-    np.testing.assert_allclose(f, [5.0, 0.0, 0.0], atol=1e-12)
-    np.testing.assert_allclose(x, [-2.0, 0.0, 2.0], atol=1e-12)
-
-
-def test_contacts_open_in_both_states_are_left_out():
-    k = pair_index(REST, 5, 6)
-    without = opened(REST, np.array([k]))
-    assert force_profile(without, without, TOP, row_depth(1))[0].size == 2
-    x, f = force_profile(REST, without, TOP, row_depth(1))
-    assert x.size == 3
-    assert f[0] == pytest.approx(1.0)  # the load removed the whole force
-
-
 def two(angle, normal, tangential):
     """Two disks whose line of centres makes ``angle`` with the horizontal; 0 is the upper right one."""
     position = np.array([[2.0 * np.cos(angle), 2.0 * np.sin(angle)], [0.0, 0.0]]) + 5.0
@@ -123,19 +88,6 @@ def test_forces_are_subtracted_as_vectors_in_their_own_geometry():
     np.testing.assert_allclose(pair_force_difference(rest, loaded), [[-1.5, 3.0]], atol=1e-15)
     # Floor: normal upwards, tangent to the left.
     np.testing.assert_allclose(wall_force_difference(rest, loaded), [[-0.5, 2.0]], atol=1e-15)
-
-
-def test_misalignment_is_the_weighted_angle_to_the_contact_line():
-    rest = slab(2, 2)
-    first, second = pair_index(rest, 0, 1), pair_index(rest, 0, 2)
-    along = with_pairs(rest, first, normal_force=4.0)
-    assert force_misalignment(rest, along) == pytest.approx(0.0, abs=1e-12)
-    # 3 along its contact, and 1 across another: a quarter of the weight at a right angle.
-    both = with_pairs(along, second, tangential_force=-1.0)
-    assert force_misalignment(rest, both) == pytest.approx(np.pi / 8)
-    pulled = with_pairs(rest, first, normal_force=-2.0)
-    assert force_misalignment(rest, pulled) == pytest.approx(0.0, abs=1e-12)
-    assert np.isnan(force_misalignment(rest, rest))
 
 
 def test_matching_gives_one_list_and_keeps_the_forces():

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from observe_states import contacts, opened, pair_index, slab, state
+from observe_states import contacts, opened, slab, state
 from refusals import refusals
 
 from granular_response.observe import network
@@ -36,14 +36,6 @@ def test_interior_contacts_by_their_centres():
     assert network.contact_centre(s)[:, 0].tolist() == [2.0, 4.0, 6.0]
     assert network.interior_contacts(s, 8.0, 3.0).tolist() == [False, True, False]
     assert network.interior_contacts(s, 8.0, 2.0).tolist() == [True, True, True]
-
-
-def test_coordination_number_of_a_lattice_is_six_in_the_bulk():
-    s = slab(9, 15)
-    bulk = network.bulk_disks(s, 30.0, side_margin=4.0)
-    assert 0 < bulk.sum() < s.position.shape[0]
-    assert network.coordination_number(s, bulk) == 6.0
-    assert network.coordination_number(s, walls=False) == 2.0 * s.pairs.first.size / s.position.shape[0] < 6.0
 
 
 def test_bulk_disks_keep_all_four_margins():
@@ -84,16 +76,6 @@ def test_coordination_number_by_definition():
     assert network.coordination_number(s, np.arange(6) == 2) == 3.0
 
 
-def test_contact_angle_histogram_of_a_lattice():
-    s = slab(4, 6)
-    centre, density = network.contact_angle_histogram(s, 18)
-    assert density.sum() * (centre[1] - centre[0]) == pytest.approx(1.0)
-    assert np.flatnonzero(density).tolist() == [0, 6, 12]
-    direction = network.lattice_direction(s)
-    share = np.bincount(direction) / direction.size
-    np.testing.assert_allclose(density[[0, 6, 12]] * np.pi / 18, share)
-
-
 def test_contact_angle_histogram_counts_touching_contacts_only():
     s = slab(4, 6)
     horizontal = network.lattice_direction(s) == network.HORIZONTAL
@@ -105,16 +87,6 @@ def test_contact_angle_histogram_counts_touching_contacts_only():
 def test_mirror_of_a_slab():
     s = slab(2, 3)  # disks 0 1 2 below, 3 4 above
     assert network.mirror_disks(s.position, 3.0).tolist() == [2, 1, 0, 4, 3]
-
-
-def test_network_asymmetry_counts_contacts_without_an_image():
-    s = slab(2, 3)
-    mirror = network.mirror_disks(s.position, 3.0)
-    assert network.network_asymmetry(s.pairs, mirror) == 0.0
-    left, right = pair_index(s, 0, 1), pair_index(s, 1, 2)
-    lopsided = opened(s, np.array([left]))
-    assert network.network_asymmetry(lopsided.pairs, mirror) == pytest.approx(1 / (s.pairs.first.size - 1))
-    assert network.network_asymmetry(opened(s, np.array([left, right])).pairs, mirror) == 0.0
 
 
 test_what_cannot_be_is_named = refusals(

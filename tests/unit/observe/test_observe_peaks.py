@@ -108,31 +108,35 @@ def test_distinct_heights_agree_with_scipy(values):
     np.testing.assert_allclose(peaks.prominence, properties["prominences"])
 
 
-def test_double_peak_needs_both_sides_higher_than_the_centre():
-    assert not is_double_peaked(X, ONE)
-    assert is_double_peaked(X, TWO)
-    one_side = ONE.copy()
-    one_side[X == 6.0] = 1.5
-    assert len(find_peaks(X, one_side)) == 2
-    assert not is_double_peaked(X, one_side)
-    one_side[X == -6.0] = 0.8
-    assert len(find_peaks(X, one_side)) == 3
-    assert not is_double_peaked(X, one_side)
-    assert not is_double_peaked(X, one_side[::-1])
-    lower = profile(1.0, 0.2, 0.6)
-    assert len(find_peaks(X, lower)) == 3
-    assert not is_double_peaked(X, lower)
+def raised(*places):
+    """One peak in the middle, with other values at some places."""
+    r = ONE.copy()
+    for x, value in places:
+        r[x == X] = value
+    return r
 
 
-def test_double_peak_needs_the_stated_dip():
-    assert is_double_peaked(X, profile(0.998, 1.0, 0.5))
-    assert not is_double_peaked(X, profile(0.9995, 1.0, 0.5))
+#: The middle of samples that avoid the axis; a dip of 0.002, and one of 0.0005.
+BETWEEN, DIP, SHALLOW = np.arange(-5.0, 6.0, 2.0), profile(0.998, 1.0, 0.5), profile(0.9995, 1.0, 0.5)
+DOUBLE = {
+    "one": (X, ONE, {}, False),
+    "two": (X, TWO, {}, True),
+    "one of two in the middle": (X, raised((6.0, 1.5)), {}, False),
+    "a lower one at the left": (X, raised((6.0, 1.5), (-6.0, 0.8)), {}, False),
+    "a lower one at the right": (X, raised((6.0, 1.5), (-6.0, 0.8))[::-1], {}, False),
+    "lower ones beside the middle": (X, profile(1.0, 0.2, 0.6), {}, False),
+    "a dip": (X, DIP, {}, True),
+    "hardly a dip": (X, SHALLOW, {}, False),
+    "the dip that is asked for": (X, DIP, {"relative_prominence": 0.0019}, True),
+    "less than the dip that is asked for": (X, DIP, {"relative_prominence": 0.0021}, False),
+    "two beside the axis": (BETWEEN, [0.0, 1.0, 0.5, 0.5, 1.0, 0.0], {}, True),
+    "a plateau on the axis": (BETWEEN, [0.0, 0.5, 1.0, 1.0, 0.5, 0.0], {}, False),
+}
 
 
-def test_double_peak_on_samples_that_avoid_the_axis():
-    x = np.arange(-5.0, 6.0, 2.0)
-    assert is_double_peaked(x, [0.0, 1.0, 0.5, 0.5, 1.0, 0.0])
-    assert not is_double_peaked(x, [0.0, 0.5, 1.0, 1.0, 0.5, 0.0])
+@pytest.mark.parametrize(("x", "r", "options", "double"), DOUBLE.values(), ids=DOUBLE)
+def test_two_peaks_are_both_higher_than_the_centre_by_the_stated_dip(x, r, options, double):
+    assert is_double_peaked(x, r, **options) is double
 
 
 def test_third_peak_is_one_between_two():
@@ -177,9 +181,3 @@ test_bad_samples_are_refused = refusals(
     (lambda: find_peaks(X, np.ones(X.size), relative_prominence=0.0), r"relative_prominence = 0\.0"),
     (lambda: asymmetry(X, -np.ones(X.size)), "positive"),
 )
-
-
-def test_the_dip_that_separates_two_peaks_is_an_argument():
-    shallow = profile(0.998, 1.0, 0.5)
-    assert is_double_peaked(X, shallow, relative_prominence=0.0019)
-    assert not is_double_peaked(X, shallow, relative_prominence=0.0021)

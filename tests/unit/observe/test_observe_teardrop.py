@@ -30,28 +30,30 @@ def teardrop(rest, loaded, disk, **options):
     return open_region(rest, network.opened(rest.pairs, loaded.pairs), rest.position[disk], **options)
 
 
-def test_region_is_the_component_nearest_to_the_load():
-    drop = row_pairs(5, 0.0) + row_pairs(4, -1.0, 1.0) + row_pairs(3, -2.0, 0.0, 2.0)
-    apart = row_pairs(1, 0.0) + row_pairs(3, 8.0) + row_pairs(0, -3.0)
-    region = teardrop(REST, opened(REST, drop + apart), TOP)
-    assert np.flatnonzero(region.contacts).tolist() == sorted(drop)
-    assert region.count == 6
-    assert region.depth == pytest.approx(3 * ROW)
-    assert region.width == pytest.approx(6.0)
-    assert not region.reaches_floor
+DROP, SLANTED = [(5, 0), (4, -1), (4, 1), (3, -2), (3, 0), (3, 2)], [(5, 0), (4, 1), (4, 3), (3, 4)]
+APART, DOWN = [(1, 0), (3, 8), (0, -3)], [(5, 0), (4, 1), (3, 0), (2, 1), (1, 0)]
+#: Opened contacts (row, x) of the region and beside it, depth in rows, width, and whether it is at the floor.
+REGIONS = {
+    "nearest to the load": (DROP, APART, (3, 6.0, False)),
+    "as wide as its widest row": (SLANTED, [], (3, 4.0, False)),
+    "down to the row above the floor": (DOWN, [], (5, 2.0, False)),
+    "down to the floor": ([*DOWN, (0, 1)], [], (6, 2.0, True)),
+    "without four aside and two rows down": ([(5, 0)], [(5, 4), (3, 0)], (1, 2.0, False)),
+    "not more than five lattice constants, 10, away": ([], [(4, -11), (4, 11)], (0, 0.0, False)),
+    "9.6 away": ([(4, -9), (4, 9)], [], (2, 20.0, False)),
+}
 
 
-def test_width_is_that_of_the_widest_row_not_of_the_whole_region():
-    slanted = row_pairs(5, 0.0) + row_pairs(4, 1.0, 3.0) + row_pairs(3, 4.0)
-    region = teardrop(REST, opened(REST, slanted), TOP)
-    assert region.count == 4
-    assert region.width == pytest.approx(4.0)
-
-
-def test_second_neighbours_are_not_adjacent():
-    # Two rows down on the axis is 3.46 away, four aside in one row is 4 away.
-    region = teardrop(REST, opened(REST, row_pairs(5, 0.0, 4.0) + row_pairs(3, 0.0)), TOP)
-    assert region.count == 1
+@pytest.mark.parametrize(("region", "apart", "expected"), REGIONS.values(), ids=REGIONS)
+def test_region_is_the_component_nearest_to_the_load(region, apart, expected):
+    inside, beside = ([p for row, x in places for p in row_pairs(row, x)] for places in (region, apart))
+    found = teardrop(REST, opened(REST, inside + beside), TOP)
+    assert np.flatnonzero(found.contacts).tolist() == sorted(inside) and found.count == len(inside)
+    rows, width, at_floor = expected
+    assert (found.depth, found.width) == pytest.approx((rows * ROW, width)) and found.reaches_floor == at_floor
+    # an oblique contact has one floor disk only
+    oblique = pair_index(REST, 10, LONG + 10)
+    assert at_floor or not teardrop(REST, opened(REST, [*inside, *beside, oblique]), TOP).reaches_floor
 
 
 def test_equally_near_contacts_begin_the_region_together():
@@ -61,26 +63,6 @@ def test_equally_near_contacts_begin_the_region_together():
     uneven = replace(REST, position=moved)
     assert teardrop(uneven, opened(uneven, pair), TOP).count == 2
     assert np.flatnonzero(teardrop(REST, opened(REST, pair), TOP).contacts).tolist() == sorted(pair)
-
-
-def test_region_reaches_the_floor_with_a_contact_of_two_floor_disks():
-    to_row_one = [p for row, x in ((5, 0.0), (4, 1.0), (3, 0.0), (2, 1.0), (1, 0.0)) for p in row_pairs(row, x)]
-    short = teardrop(REST, opened(REST, to_row_one), TOP)
-    assert short.depth == pytest.approx(5 * ROW)
-    assert not short.reaches_floor
-    full = teardrop(REST, opened(REST, to_row_one + row_pairs(0, 1.0)), TOP)
-    assert full.depth == pytest.approx(6 * ROW)
-    assert full.reaches_floor
-    # An oblique contact has one floor disk only.
-    bottom, above = 10, LONG + 10
-    oblique = pair_index(REST, bottom, above)
-    assert not teardrop(REST, opened(REST, [*to_row_one, oblique]), TOP).reaches_floor
-
-
-def test_contacts_far_from_the_load_are_not_a_teardrop():
-    both_sides = opened(REST, row_pairs(4, -11.0, 11.0))
-    assert teardrop(REST, both_sides, TOP).count == 0
-    assert teardrop(REST, opened(REST, row_pairs(4, -9.0, 9.0)), TOP).count == 2  # 9.6 away, 5 lattice constants are 10
 
 
 def test_start_narrows_where_the_region_begins():

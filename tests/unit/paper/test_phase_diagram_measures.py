@@ -6,17 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from claims_data import dataset
 from places import ROOT
 
-from granular_response.plot import style
-from granular_response.store import files as store
 from granular_response.studies import linear_end
 from granular_response_paper.claims import bounds
-from granular_response_paper.ensembles import AT_REST, COLLAPSED, NOT_REACHED
-from granular_response_paper.groups.phase_diagram import draw as figures
-from granular_response_paper.groups.phase_diagram.parameters import Parameters
-from granular_response_paper.groups.phase_diagram.simulate import read_ensemble, simulate
 from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import (
     ABOVE,
@@ -27,13 +20,11 @@ from granular_response_paper.survey.crossover import (
     cross,
     folded,
     grown,
-    lean,
     passed,
     seen_in_samples,
     shape,
     shape_of_single,
     shapes_of_samples,
-    singles,
     weights,
 )
 
@@ -114,21 +105,6 @@ def test_bootstrap_interval_narrows_with_the_scatter_and_holds_the_crossover() -
     assert 0.0 < np.ptp(narrow.interval) < 0.3 * np.ptp(wide.interval)
 
 
-def test_mean_leaves_out_what_is_not_at_rest() -> None:
-    ensemble = make_ensemble(1.0, 4)
-    ensemble.response[1, 3] = np.nan
-    np.testing.assert_allclose(ensemble.mean()[3], ensemble.response[[0, 2, 3], 3].mean(axis=0))
-    strict = replace(ensemble, least=4)
-    assert np.isnan(strict.mean()[3]).all()
-    assert np.isfinite(strict.mean()[:3]).all()
-
-
-def test_weights_count_a_realization_as_often_as_it_is_drawn() -> None:
-    ensemble = make_ensemble(1.0, 3)
-    weighted = ensemble.means(np.array([[2.0, 0.0, 1.0]]))[0]
-    np.testing.assert_allclose(weighted, ensemble.response[[0, 0, 2]].mean(axis=0))
-
-
 def test_a_large_ensemble_knows_better_how_far_its_means_dip() -> None:
     """Means of fifteen alike dip as each does; of a mixed ensemble by something between, known the better the more."""
     for place in (0.0, 12.0):
@@ -177,34 +153,6 @@ def test_crossing_counts_draws_beyond_the_path() -> None:
     assert 0.0 < np.mean(found.draws == np.inf) < 1.0
     assert found.interval[-1] == np.inf
     assert np.all(np.diff(found.shape_interval, axis=1) >= 0.0)
-
-
-def test_read_ensemble_smooths_both_sides() -> None:
-    at = np.array([-4.0, 0.0, 4.0])
-    source = xr.Dataset(
-        {
-            "force": (("case", "step"), [[1.0, 2.0, np.nan]]),
-            "x": (("case", "realization", "slot"), [[[*at, np.nan], [*at, np.nan]]]),
-            "floor_response": (
-                ("case", "realization", "step", "slot"),
-                [[[[0.0, 0.0, 1.0, np.nan]] * 3, [[1.0, 0.0, 0.0, np.nan]] * 3]],
-            ),
-            "outcome": (("case", "realization", "step"), [[[AT_REST] * 3, [AT_REST, COLLAPSED, 3]]]),
-        },
-        coords={"realizations": (("case",), [2])},
-    )
-    ensemble = read_ensemble(source, 0, X, 2.0, Parameters.model_construct(least_part=0.5, tolerance=0.0))
-    np.testing.assert_array_equal(ensemble.force, [1.0, 2.0])
-    assert ensemble.least == 1
-    np.testing.assert_allclose(ensemble.response[0, 0], ensemble.response[1, 0, ::-1])  # mirror images
-    assert ensemble.response.shape[-1] == 2 * len(X) - 1
-    symmetric = folded(ensemble.response)
-    np.testing.assert_allclose(symmetric[0, 0], symmetric[1, 0])
-    assert X[np.argmax(symmetric[0, 0])] == 4.0
-    np.testing.assert_allclose(symmetric[0, 0].max(), 0.5 * ensemble.response[0, 0].max(), rtol=1e-5)
-    assert np.isnan(symmetric[1, 1]).all()
-    np.testing.assert_allclose(lean(ensemble.response[0, 0]), 1.0, rtol=1e-6)
-    np.testing.assert_allclose(lean(ensemble.response[:, 0].mean(axis=0)), 0.0, atol=1e-15)
 
 
 def test_linear_end() -> None:
@@ -265,144 +213,12 @@ def test_a_value_that_counts_several_times_is_as_many_values() -> None:
     assert np.isinf(medians).any() and np.isfinite(medians).any()
 
 
-def test_single_realizations_and_their_mean() -> None:
-    """Two mirror images: each leans, their mean does not; one collapses before its crossover and is censored."""
-    one = np.exp(-(((np.concatenate([-X[:0:-1], X]) - 12.0) / 6.0) ** 2))
-    side = one + 0.5 * one[::-1]
-    middle = bumps(0.0)
-    single = np.concatenate([middle[:0:-1], middle])
-    response = np.array([[single, side], [single, side[::-1]], [single, np.full(side.size, np.nan)]])
-    found = singles(Ensemble(np.array([1.0, 4.0]), response, X, 6.0, 2), draws=50, seed=0)
-    assert found.middle(1.0, 4.0).kind == FOUND and 1.0 < found.median < 4.0  # two of three reach it
-    np.testing.assert_allclose(found.asymmetry[:, 0], 0.0, atol=1e-12)
-    np.testing.assert_allclose(found.asymmetry[:2, 1], 0.5, atol=0.02)
-    # the mean's two bumps are three quarters as high as the larger one of a realization
-    np.testing.assert_allclose(found.difference[:2, 1], 1.0 / 3.0, atol=0.05)
-    assert np.isnan(found.difference[2, 1])
-    means = shape(X, folded(response[:2].mean(axis=0)), 6.0)
-    np.testing.assert_allclose(found.largest_step, means[1] - means[0])
-    np.testing.assert_allclose(found.spread[0], 0.0, atol=1e-8)
-    assert found.spread[1] > 0.05
-
-
-SIZES = {"lattice": (0.0, 0.2, 1), "few": (0.1, 0.2, 8), "many": (0.1, 0.5, 10)}
-
-
-@pytest.fixture(scope="module")
-def stored(tmp_path_factory):
-    """Blocks of slabs whose two peaks part from one as the force grows, at two frictions, and a lattice."""
-    disks = np.arange(-60.0, 61.0, 2.0)
-    folder = tmp_path_factory.mktemp("survey")
-    rng = np.random.default_rng(2)
-    for block, (delta, mu, count) in SIZES.items():
-        force = np.array([1.0, 2.0, 4.0, 8.0, 16.0])[: 4 if block != "many" else 5]
-        shift = rng.normal(0.0, 1.0, (count, force.size)) if count > 1 else 0.0
-        away = np.maximum(0.0, 4.0 + 3.0 * np.log2(force) - (3.0 if mu > 0.2 else 0.0) + shift)
-        sides = (disks + side * np.broadcast_to(away, (1, count, force.size))[..., None] for side in (-1.0, 1.0))
-        response = sum(np.exp(-((x / 6.0) ** 2)) for x in sides)
-        response /= response.sum(axis=-1, keepdims=True)
-        outcome = np.zeros((1, count, force.size), np.int8)
-        if block == "few":  # one collapses under the largest force
-            outcome[0, 0, -1], response[0, 0, -1] = COLLAPSED, np.nan
-        cases = {"polydispersity": delta, "friction": mu, "wall_friction": mu, "lattice_constant": "touching-largest"}
-        cases |= {"gravity_ramp": ""} if block != "few" else {}  # as blocks that do not say it
-        cases = {name: ("case", [value]) for name, value in (cases | {"realizations": count}).items()}
-        ensembles = dataset(
-            cases,
-            force=(("case", "step"), force[None]),
-            x=(("case", "realization", "slot"), np.tile(disks, (1, count, 1))),
-            floor_response=(("case", "realization", "step", "slot"), response),
-            outcome=(("case", "realization", "step"), outcome),
-        )
-        several = rng.normal(0.0, 0.01, (1, count))
-        contacts = {"coordination_number_with_walls": 4.0, "horizontal_contacts": 0.9, "oblique_contacts": 1.8}
-        if delta:  # three of the four missing contacts are horizontal
-            contacts = {"coordination_number_with_walls": 4.2, "horizontal_contacts": 0.6, "oblique_contacts": 1.7}
-        packings = dataset(
-            cases, **{name: (("case", "realization"), value + several) for name, value in contacts.items()}
-        )
-        store.write(folder / f"{block}.nc", {"ensembles": ensembles, "packings": packings})
-    return folder
-
-
-def test_blocks_of_different_size_become_one(stored) -> None:
-    found = survey.read(stored, list(SIZES))
-    ensembles = found["ensembles"]
-    assert dict(ensembles.sizes) == {"case": 3, "realization": 10, "step": 5, "slot": 61}
-    assert ensembles["realizations"].values.tolist() == [1, 8, 10]
-    for case, (block, (_, _, count)) in enumerate(SIZES.items()):
-        alone = store.read(stored / f"{block}.nc")["ensembles"].isel(case=0)
-        steps = alone.sizes["step"]
-        np.testing.assert_array_equal(
-            ensembles["floor_response"].values[case, :count, :steps], alone["floor_response"].values
-        )
-        assert np.isnan(ensembles["floor_response"].values[case, count:]).all()
-        assert (ensembles["outcome"].values[case, count:] == NOT_REACHED).all()
-        assert np.isnan(ensembles["force"].values[case, steps:]).all()
-    assert found["packings"]["coordination_number_with_walls"].shape == (3, 10)
-    assert ensembles["gravity_ramp"].values.tolist() == ["", "", ""]
-    twice = survey.read(stored, [*SIZES, "few"])["ensembles"]  # the first of two cases that are prepared alike
-    assert twice.sizes["case"] == 3 and survey.usual(twice).sizes["case"] == 3
-
-
-def parameters(stored, **changes) -> Parameters:
-    given = {
-        "draws": 50, "numbers": [5], "seed": 0, "least_part": 0.5,
-        "spacing": 0.5, "reach": 30.0, "widths": [3.0, 6.0],
-        "tolerance": 0.01, "other_tolerances": [0.0, 0.05], "survey": str(stored), "blocks": list(SIZES),
-        "linear_range": "few", "linear_width": 3.0, "compared": [{"polydispersity": 0.1, "force": 4.0}],
-    }  # fmt: skip
-    return Parameters(**given | changes)
-
-
-def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
-    found = simulate(parameters(stored))
-    again = simulate(parameters(stored))
-    for name, one in found.items():
-        xr.testing.assert_identical(one, again[name])
-    data = found["crossovers"]
-    assert data["kind"].values[1].tolist() == [FOUND] * 3
-    force, interval = data["force"].values[1], data["interval"].values[1]
-    assert 1.7 < force[2] / force[1] < 2.4  # three radii later: twice the force
-    np.testing.assert_allclose(interval[0], force[0])  # one packing has no scatter
-    assert np.all(interval[1:, 0] < force[1:])
-    assert np.all(force[1:] < interval[1:, -1])
-    np.testing.assert_allclose(data["limits"].values[1], [[1.0, 8.0], [1.0, 8.0], [1.0, 16.0]])
-    # more smoothing merges the peaks at larger forces, and so does a larger tolerance
-    assert np.all(data["force"].values[0] < force)
-    others = found["definitions"]["force"].values[1]
-    assert np.all(others[:, 0] < force) and np.all(force < others[:, 1])
-    single = found["realizations"]
-    assert single["collapse_force"].values[1, 0] == 8.0
-    assert np.isnan(single["collapse_force"].values[1, 1:]).all()
-    medians = found["medians"]
-    low, high = medians["interval"].values[1, 2, [0, -1]]
-    assert low <= single["median"].values[1, 2] <= high
-    np.testing.assert_array_equal(medians["force"], single["median"])  # none beyond a path
-    assert found["linear_range"]["response_at_centre"].shape == (1, 8, 4)
-    np.testing.assert_array_equal(found["linear_range"]["profile_change"].values[..., 0], 0.0)
-    assert np.nanmin(found["linear_range"]["profile_change"].values[..., -1]) > 0.1
-    assert found["packings"]["horizontal_contacts"].shape == (3, 10)
-    side = found["starts"]
-    assert side["friction"].values.tolist() == [0.2, 0.5]
-    np.testing.assert_allclose(side["distance"], 2.0 / 0.95)
-    np.testing.assert_allclose(side["contacts"], 4.2, atol=0.02)
-    np.testing.assert_allclose(side["missing_horizontal"], 0.75, atol=0.02)
-    np.testing.assert_array_equal(side["dip"].values[:, 0], found["shapes"]["shape"].values[:, 1, 2])
-    low, high = (side["dip_of_means_interval"].values[..., end] for end in (0, -1))
-    assert np.all((low <= side["dip_of_means"]) & (side["dip_of_means"] <= high))
-    assert np.all(np.diff(side["dip_of_means"], axis=-1) >= 0.0)
-    assert np.all(np.diff(side["contacts_interval"], axis=1) >= 0.0)
-    store.write(tmp_path / "phase_diagram.nc", found)
-    drawn = figures.draw(store.read(tmp_path / "phase_diagram.nc"))
-    assert list(drawn) == ["fig22_phase_diagram", "initial_lattice"]
-    (axes,) = drawn["fig22_phase_diagram"].axes
-    marks = [line for line in axes.get_lines() if line.get_marker() in figures.MARKERS]
-    found = [y for line in marks for y in line.get_ydata()]
-    found += [float(text.get_text()[2:]) for text in axes.texts if text.get_text()[:1] in tuple("≤>")]
-    assert sorted(found) == pytest.approx(sorted(force), rel=1e-3)
-    for figure in drawn.values():
-        assert style.render(figure, "png", dpi=40).startswith(b"\x89PNG")
+def test_a_case_of_several_blocks_is_read_once_and_gravity_acts_at_once_where_nothing_else_is_said() -> None:
+    once, twice = (
+        survey.read(ROOT / "data" / "survey", ["lattice", *["delta_25"] * times])["ensembles"] for times in (1, 2)
+    )
+    xr.testing.assert_identical(twice, once)
+    assert set(once["gravity_ramp"].values.tolist()) == {""} and survey.usual(once).sizes == once.sizes
 
 
 def test_the_tolerance_is_the_bound_of_the_word() -> None:

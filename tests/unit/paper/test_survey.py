@@ -34,16 +34,6 @@ def file(tmp_path):
     return path
 
 
-def test_the_cases_of_a_block_are_all_combinations():
-    parameters = survey.Parameters(**SMALL)
-    cases = parameters.cases("small")
-    assert [(c.polydispersity, c.friction, c.lattice_constant, c.realizations, c.wall_friction) for c in cases] == [
-        (0.01, 0.0, "touching-largest", 3, 0.0),
-        (0.01, 0.2, "touching-largest", 3, 0.0),
-        (0.0, 0.0, 2.0, 1, None),  # a lattice has one
-    ]
-
-
 def test_gravity_grows_over_each_ramp_that_a_block_names():
     slow = {"polydispersities": [0.01], "frictions": [0.2], "forces": [0.5], "gravity_ramps": [5.0, 20.0]}
     blocks = {"slow": [slow, slow | {"gravity_ramps": None}]}

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import granular_response as gr
-from granular_response.plot import animation, style
+from granular_response.plot import animation
 
 SCENE = {
     "packing": {"kind": "slab", "layers": 5, "disks_per_row": 11},
@@ -84,16 +84,6 @@ def test_in_the_linear_range_nothing_moves(result) -> None:
         found.append(widths(frames))
     np.testing.assert_allclose(found[1], found[0], atol=1e-3)
     assert len(found[2]) != len(found[0]) or np.abs(np.array(found[2]) - found[0]).max() > 0.1
-
-
-def test_results_stand_side_by_side_with_their_titles(result) -> None:
-    rough = gr.solve({**SCENE, "contact": {"friction": 0.5}}, load_factors=FORCES)
-    frames = animation.Frames({"smooth": result, "rough": rough.to_dataset()}, half_width=8.0, figure=Figure())
-    frames.draw(-1)
-    assert [axes.get_title() for axes in frames.panels[0]] == ["smooth", "rough"]
-    assert {axes.get_xlim() for axes in frames.panels[1]} == {(-8.0, 8.0)}
-    assert len({axes.get_ylim() for axes in frames.panels[1]}) == 1
-    assert style.equals(style.F_EXT, 6.0, style.WEIGHT) in [text.get_text() for text in frames.panels[0, 0].texts]
 
 
 def test_a_film_holds_its_last_frame(result, tmp_path) -> None:

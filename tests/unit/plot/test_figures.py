@@ -6,12 +6,9 @@ import matplotlib as mpl
 import matplotlib.image
 import numpy as np
 import pytest
-import xarray as xr
-from matplotlib.colors import to_hex
 
 from granular_response.plot import network as nd
 from granular_response.plot import style
-from granular_response.state import FLOOR, LEFT_WALL
 from granular_response_paper import panels
 
 
@@ -75,18 +72,6 @@ def test_lines_of_forces_and_their_key_have_one_scale():
     assert len(axes.collections) == 2
 
 
-def test_contacts_with_walls_come_last_and_their_normals_point_inwards():
-    data = xr.Dataset(
-        {
-            "radius": ("disk", [1.0, 1.0]), "contact_disk": ("contact", [0]), "contact_partner": ("contact", [1]),
-            "wall_disk": ("wall_contact", [0, 1]), "wall_index": ("wall_contact", [FLOOR, LEFT_WALL]),
-        }
-    )  # fmt: skip
-    found = panels.ContactLines.of(data, np.array([[3.0, 1.0], [1.0, 1.0]]))
-    np.testing.assert_allclose(found.point, [[2.0, 1.0], [3.0, 0.0], [0.0, 1.0]])
-    np.testing.assert_allclose(found.normal, [[2.0, 0.0], [0.0, 1.0], [1.0, 0.0]])
-
-
 POSITION = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 1.0 + np.sqrt(3.0)], [4.2, 2.5]])
 RADIUS = np.array([1.0, 1.0, 1.0, 0.5])
 FIRST, SECOND = np.array([0, 0, 1, 1]), np.array([1, 2, 2, 3])
@@ -115,23 +100,3 @@ def test_contact_points_lie_between_the_surfaces() -> None:
         distance = np.linalg.norm(point - POSITION[disk], axis=1) - RADIUS[disk]
         other = np.linalg.norm(POSITION[FIRST] - POSITION[SECOND], axis=1) - RADIUS[FIRST] - RADIUS[SECOND]
         np.testing.assert_allclose(distance, 0.5 * other, atol=1e-12)
-
-
-def test_forces_that_press_together_and_apart_are_told_apart(axes) -> None:
-    point, normal = np.zeros((4, 2)), np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
-    force = np.array([[2.0, 1.0], [0.0, -1.0], [-1.0, 3.0], [0.0, 2.0]])
-    drawn = nd.draw_forces(axes, point, force, normal, length_per_force=1.0, width_per_force=1.0)
-    vectors = {name: np.diff(np.array(one.get_segments()), axis=1)[:, 0] for name, one in drawn.items()}
-    np.testing.assert_allclose(vectors["force increased"], force[[0, 2]])
-    np.testing.assert_allclose(vectors["force decreased"], force[[1, 3]])
-    colours = {name: to_hex(one.get_colors()[0]).upper() for name, one in drawn.items()}
-    assert colours == {"force increased": style.INCREASED, "force decreased": style.DECREASED}
-    only = nd.draw_forces(axes, point[:1], force[:1], normal[:1], length_per_force=1.0, width_per_force=1.0)
-    assert list(only) == ["force increased"]
-
-
-def test_rotation_marks_start_vertical_and_turn_counter_clockwise(axes) -> None:
-    marks = np.array(nd.draw_rotations(axes, POSITION[:2], RADIUS[:2], [0.0, np.pi / 2]).get_segments())
-    direction = marks[:, 1] - marks[:, 0]
-    np.testing.assert_allclose(direction / np.linalg.norm(direction, axis=1)[:, None], [[0, 1], [-1, 0]], atol=1e-15)
-    np.testing.assert_allclose(marks.mean(axis=1), POSITION[:2])

@@ -1,5 +1,7 @@
 """Any valid scene survives YAML; any other input is a SceneError of one line."""
 
+import re
+
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -81,15 +83,10 @@ scenes = options(
     ),
 ).map(carried)
 
-# fmt: off
-words = st.sampled_from([
-    "packing", "contact", "wall", "loads", "preparation", "protocol", "kind", "slab", "pile", "file",
-    "path", "width", "layers", "disks_per_row", "polydispersity", "lattice_constant",
-    "touching-largest", "seed", "realization", "normal_stiffness", "stiffness_ratio", "friction", "damping_ratio",
-    "disk", "force", "torque", "row", "offset", "top", "bottom", "top-centre", "gravity", "ramp_time",
-    "method", "auto", "time_step", "stop_kinetic_energy", "static_finish", "maximum_steps",
-])
-# fmt: on
+#: Keys of a scene and some of their values.
+words = st.sampled_from(
+    sorted({*re.findall(r"[a-z][\w-]+", Scene().to_yaml()), "pile", "file", "path", "width", "row", "offset", "top"})
+)
 anything = st.recursive(
     st.none()
     | st.booleans()

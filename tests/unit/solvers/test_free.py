@@ -67,22 +67,25 @@ def test_disks_that_roll_freely_are_named_and_those_that_do_not_are_not():
     assert [one.undetermined for one in gr.solve(slab, progress=False).certificates] == [(), ()]
 
 
+def alone(z: float, **changes):
+    """A disk beside nothing: its problem, its static equations, and their trial where it is."""
+    problem, state = free_disks([[500.0, z]], **changes)
+    equations = StaticSystem(problem, state)
+    known = equations.start(state)
+    return problem, equations, equations.trial(known, known.q)
+
+
 @pytest.mark.parametrize("force", [3e-9, 3e-8])
 def test_a_contact_is_a_tie_from_the_force_that_an_event_leaves_on(force):
     """Up to 1e-8 mean weights it may open; its disk then lies on nothing."""
-    alone, state = free_disks([[500.0, 1.0 - force / 6000.0]])
-    equations = StaticSystem(alone, state)
-    known = equations.start(state)
-    opened = free.without_bare(equations, equations.trial(known, known.q))
-    assert (opened is None) == (force > 1e-8)
+    _, equations, trial = alone(1.0 - force / 6000.0)
+    assert (free.without_bare(equations, trial) is None) == (force > 1e-8)
 
 
 @pytest.mark.parametrize("part", [0.03, 0.3])
 def test_a_residual_along_a_null_direction_moves_nothing_and_the_lightest_disk_falls(part):
     """Of a disk in the air: forces up to a tenth of the least mass are taken out of its step."""
-    alone, state = free_disks([[500.0, 50.0]])
-    equations = StaticSystem(alone, state)
-    trial = equations.trial(equations.start(state), equations.start(state).q)
+    _, equations, trial = alone(50.0)
     force = part * LEAST_MASS * np.array([0.0, 1.0, 0.0])
     step = equations.step(trial, force)
     by = free.solved_by(equations, equations.kept_factor(trial))
@@ -92,10 +95,8 @@ def test_a_residual_along_a_null_direction_moves_nothing_and_the_lightest_disk_f
 
 @pytest.mark.parametrize("part", [3e-4, 3e-3])
 def test_a_step_is_suspicious_from_a_thousandth_of_one_along_a_null_direction(part):
-    alone, state = free_disks([[500.0, 50.0]])
-    equations = StaticSystem(alone, state)
-    trial = equations.trial(equations.start(state), equations.start(state).q)
-    fall = np.abs(equations.step(trial, external_force(alone, 0.0))).max()  # of a disk in the air, under its weight
+    problem, equations, trial = alone(50.0)
+    fall = np.abs(equations.step(trial, external_force(problem, 0.0))).max()  # of a disk in the air, under its weight
     assert free.suspicious(equations, part * fall, 1.0) == (part > 1e-3)
 
 
@@ -104,10 +105,8 @@ def test_a_disk_rolls_freely_up_to_a_stiffness(stiffness, rolls):
     """Against springs of so many times the regularisation, which is 1e-10 of a contact's stiffness: 70 of them leave
     (1 + 70)^-3, 2.8e-6 of a random number of about 0.4, of its part along the rolling."""
     rough = {"wall__friction": 0.5, "wall__rolling_friction": 0.1, "wall__rolling_stiffness_ratio": 1e-10 * stiffness}
-    alone, state = free_disks([[500.0, 1.0 - 1.0 / 6000.0]], contact__friction=0.5, **rough)
-    equations = StaticSystem(alone, state)
-    known = equations.start(state)
-    assert free.free_disks(equations, equations.trial(known, known.q)) == ((0,) if rolls else ())
+    _, equations, trial = alone(1.0 - 1.0 / 6000.0, contact__friction=0.5, **rough)
+    assert free.free_disks(equations, trial) == ((0,) if rolls else ())
 
 
 def test_a_periodic_slab_rolls_on_a_rough_floor_as_a_whole():

@@ -38,14 +38,6 @@ def test_unloading_with_friction_leads_along_another_branch():
     assert again == pytest.approx(full, rel=0.01)
 
 
-def test_dynamics_agrees_with_the_path_on_the_way_down():
-    path, dynamics = (
-        under_the_load(solve_scene(slab(contact__friction=0.2, **changes), load_factors=(1.0, 0.5)))
-        for changes in ({}, {"protocol__method": "dynamics", "protocol__ramp_time": 200.0})
-    )
-    assert dynamics == pytest.approx(path, abs=0.02)
-
-
 def test_a_result_holds_the_programme_that_was_solved():
     solution = solve_scene(slab(), load_factors=[0.5])
     assert solution.scene.protocol.load_factors == (0.5,)

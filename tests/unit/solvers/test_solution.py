@@ -72,11 +72,6 @@ def test_a_setting_without_effect_is_named_and_has_none(changes, key, value, idl
     assert same is idle
 
 
-def test_minimise_with_friction_is_refused():
-    with pytest.raises(SceneError, match="must be path, dynamics or auto in a scene with friction"):
-        solve_scene(scene(loads=LOAD, protocol__method="minimise"))
-
-
 @pytest.mark.parametrize("method", ["path", "dynamics", "auto"])
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_a_load_that_tears_a_disk_off_is_one_clear_line_and_soon(method, friction):

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from refusals import refuses
 from small_scenes import free_disks, scene
 
 from granular_response.kernels.integrators import INTEGRATORS
@@ -14,18 +13,12 @@ from granular_response.solvers.dynamics import Dynamics, DynamicsError
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import solve_scene
 from granular_response.solvers.timestep import (
-    UnstableTimeStep,
     oscillator_limit,
     resolve_time_step,
     stability_limit,
     time_step_reason,
 )
 from granular_response.store.result import to_dataset
-
-
-def test_unstable_time_step_is_one_clear_line():
-    message = r"^protocol\.time_step: 0\.01 is unstable .*must be at most .*auto$"
-    refuses(UnstableTimeStep, message, solve_scene, scene(protocol__time_step=0.01))
 
 
 @pytest.mark.parametrize("integrator", ["beeman", "verlet", "gear"])

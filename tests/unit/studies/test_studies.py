@@ -11,8 +11,6 @@ from small_scenes import scene
 
 import granular_response as gr
 from granular_response.observe.peaks import asymmetry_sign
-from granular_response.observe.widths import half_maximum_width
-from granular_response.state import OPEN, STICKING
 from granular_response.state import Event as PathEvent
 from granular_response.studies import (
     EventNotBracketed,
@@ -28,7 +26,6 @@ from granular_response.studies import (
 )
 from granular_response.studies import path as paths
 from granular_response.studies.path import EXACT, NARROW
-from granular_response_paper.slab_response import Scalars
 
 UNIT_LOAD = [{"disk": "top-centre", "force": [0.0, -1.0]}]
 
@@ -77,42 +74,6 @@ def test_the_literal_protocol_starts_at_rest_every_time(calls):
     path.at(0.3)
     assert [start for start, _ in calls] == [0.0, 0.0]
     assert path.method == "dynamics"
-
-
-def test_measures_know_the_symmetric_slab(path):
-    measures = Measures(path)
-    assert measures.x[len(measures.x) // 2] == pytest.approx(0.0, abs=1e-9)
-    state = path.at(0.05)
-    scalars = Scalars.of(measures, state)
-    assert scalars.asymmetry < 1e-9
-    assert scalars.opened_contacts == scalars.sliding_contacts == scalars.network_asymmetry == 0
-    assert scalars.response_at_centre == pytest.approx(scalars.peak_height)
-    assert measures.response(state).sum() == pytest.approx(1.0, abs=1e-9)
-
-
-def test_mobilised_contacts_are_near_the_coulomb_limit(path):
-    state = path.rest
-    touching = np.flatnonzero(state.pairs.touching)[:4]
-    status = np.full(state.pairs.status.shape, OPEN, dtype=np.int8)
-    status[touching] = STICKING
-    normal, tangential = np.zeros(status.shape), np.zeros(status.shape)
-    normal[touching] = 2.0
-    tangential[touching] = 2.0 * 0.3 * np.array([-1.0, 0.985, 0.94, 0.0])
-    pairs = replace(state.pairs, status=status, normal_force=normal, tangential_force=tangential)
-    made = replace(state, pairs=pairs)
-    assert [int(made.pairs.near_limit(0.3, margin).sum()) for margin in (1e-6, 0.02, 0.1)] == [1, 2, 3]
-    assert int(made.pairs.near_limit(0.0, 0.1).sum()) == 0
-    opened = replace(made, pairs=replace(pairs, status=np.zeros_like(status)))
-    assert int(opened.pairs.near_limit(0.3, 0.1).sum()) == 0
-
-
-def test_half_maximum_width():
-    x = np.arange(-4.0, 5.0)
-    assert half_maximum_width(x, 4.0 - np.abs(x)) == pytest.approx(4.0)
-    assert half_maximum_width(x, np.where(x > -0.5, 4.0 - x, 0.0)) == pytest.approx(2.5)
-    two = np.array([0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0])
-    assert half_maximum_width(x, two) == pytest.approx(5.0)
-    assert np.isnan(half_maximum_width(x, x))
 
 
 def test_asymmetry_sign():

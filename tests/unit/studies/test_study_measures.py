@@ -1,15 +1,16 @@
-"""What the studies of fields, piles and torques measure themselves, on hand-made input."""
+"""What the studies of fields, piles and torques measure themselves, on hand-made input, and how it is put together."""
+
+from dataclasses import replace
 
 import numpy as np
-import pytest
-from observe_states import slab, with_pairs
 
 from granular_response.observe import stress as coarse
-from granular_response.scene import SlabPacking
+from granular_response.scene import Scene, SlabPacking
+from granular_response.studies import LoadPath, Measures
 from granular_response.theory.lattice import poisson_ratio
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab
-from granular_response_paper.groups.friction_fields.simulate import axis_measures
+from granular_response_paper import slab_response
 from granular_response_paper.harmonic import harmonic_lattice
 
 
@@ -27,16 +28,11 @@ def test_harmonic_lattice_is_isotropic_where_it_is_fine() -> None:
     np.testing.assert_allclose(found[:, 1, 1], expected, atol=0.04 * expected.max())
 
 
-def test_axis_measures_see_the_direction_and_the_share() -> None:
-    rest = slab(6, 9)
-    disk = int(np.argmin(np.linalg.norm(rest.position - [9.0, rest.position[:, 1].max()], axis=1)))
-    offset = 0.5 * (rest.position[rest.pairs.first] + rest.position[rest.pairs.second]) - rest.position[disk]
-    depth = -offset[:, 1] / np.sqrt(3.0)
-    gap = (np.abs(depth - 2.5) < 0.2) | (np.abs(depth - 3.5) < 0.2) | (np.abs(depth - 4.5) < 0.2)
-    axis = gap & (np.abs(offset[:, 0]) < 1.0)
-    force = np.where(axis, 3.0, np.where(gap, 1.0, 0.0))
-    loaded = with_pairs(rest, np.arange(len(force)), normal_force=rest.pairs.normal_force + force)
-    angle, share = axis_measures(rest, loaded, disk)
-    assert angle == pytest.approx(30.0)
-    counts = [(np.abs(depth - g) < 0.2).sum() for g in (2.5, 3.5, 4.5)]
-    assert share == pytest.approx(np.mean([6.0 / (6.0 + n - 2) for n in counts]))
+def test_measurements_fit_together_where_few_states_have_disks_that_nothing_determines():
+    described = Scene().updated({"packing": {"layers": 4, "disks_per_row": 11}, "loads.0.force": [0.0, -1.0]})
+    path = LoadPath.of(described)
+    state, measures = path.at(0.1), Measures(path)
+    loose = replace(state, reached=replace(state.reached, certificate=replace(state.certificate, undetermined=(2,))))
+    found = [slab_response.measured(measures, [one]) for one in (state, loose, state)]
+    assert slab_response.measured_along("force", found).sizes["force"] == 3
+    assert slab_response.measured_along("force", found[1:]).sizes["force"] == 2

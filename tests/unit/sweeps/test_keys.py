@@ -176,15 +176,29 @@ mine = util.module_from_spec(spec)
 spec.loader.exec_module(mine)
 """
 
-#: Ways to a module that neither an import statement nor ``import_module("name")`` shows: that with the task, the other.
+#: Ways to a module whose ``FACTOR`` a task takes: the text above the task, and the other file.
 WAYS = {
+    "by_statement": ("import factor_of_statement as mine\n", "factor_of_statement.py"),
+    "inside": (
+        "def inside():\n    import factor_inside as mine\n    return mine\nmine = inside()\n",
+        "factor_inside.py",
+    ),
+    "further": ("import between_them\nmine = between_them.mine\n", "factor_further.py"),
+    "all_of_it": ("from factor_of_all import *\nmine = None\n", "factor_of_all.py"),
+    "by_name": ("import importlib\nmine = importlib.import_module('factor_by_name')\n", "factor_by_name.py"),
+    "deep": ("import top.deep.helper\nmine = top.deep.helper\n", "top/deep/helper.py"),
+    "its_top": ("import roof.deep.helper\nmine = roof\n", "roof/__init__.py"),
+    "without_a_top": ("from space import factor_in_space as mine\n", "space/factor_in_space.py"),
+    "relative": ("from near.deep.other import mine\n", "near/deep/helper.py"),
     "by_word": ("import importlib\nmine = importlib.import_module(name='factor_by_word')\n", "factor_by_word.py"),
     "by_alias": ("from importlib import import_module as load\nmine = load('factor_by_alias')\n", "factor_by_alias.py"),
     "by_file": (BY_FILE.format("'mine'"), "elsewhere/factor.py"),
     "by_file_under_the_same_name": (BY_FILE.format("__name__"), "elsewhere/factor.py"),
     "by_name_of_the_library": ("import tabnanny as mine\n", "tabnanny.py"),
-    "of_package.task": ("import of_package as mine\n".replace("import", "mine = None  #"), "of_package/__init__.py"),
+    "of_package.task": ("mine = None  # of_package as mine\n", "of_package/__init__.py"),
 }
+#: What stands between a task and the other file.
+BETWEEN = {"between_them.py": "import factor_further as mine\n", "near/deep/other.py": "from . import helper as mine\n"}
 
 
 @pytest.mark.parametrize("module", WAYS)
@@ -192,12 +206,15 @@ def test_modules_count_whatever_the_way_to_them(tmp_path, monkeypatch, module):
     text, other = WAYS[module]
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
-    for folder in ("elsewhere", "of_package"):
-        (tmp_path / folder).mkdir()
-    (tmp_path / other).write_text("FACTOR = 1\n")
-    (tmp_path / f"{module.replace('.', '/')}.py").write_text(f"{text}def task(x): return mine.FACTOR * x\n")
+    empty = [f"{top}/{name}__init__.py" for top in ("top", "roof", "near") for name in ("", "deep/")]
+    files = dict.fromkeys([*empty, "roof/deep/helper.py", "unrelated.py", "of_package/none.py"], "") | BETWEEN
+    files |= {other: "FACTOR = 1\n", f"{module.replace('.', '/')}.py": f"{text}def task(x): return mine.FACTOR * x\n"}
+    for name, content in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(content)
     task = importlib.import_module(module).task
     before = key(task)
+    (tmp_path / "unrelated.py").write_text("# another\n")
     assert key(task) == before
     (tmp_path / other).write_text("FACTOR = 2\n")
     assert key(task) != before

@@ -1,14 +1,133 @@
-"""The elastic slab: closed forms of its transform, totals, boundary conditions, balance of forces, images."""
+"""Elastic references: moduli of the spring lattice (eqs. 7 to 10), the half plane, the rays, and the slab.
+
+Closed forms, totals, limits, boundary conditions and the balance of forces.
+"""
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from refusals import refusals
 from scipy.integrate import quad
 
-from granular_response.theory import half_plane, lattice
+from granular_response.theory import half_plane, lattice, rays
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab, response_of_layers
+
+stiffness = st.floats(0.05, 5.0)
+SETS = [
+    Springs(1.0, 1.0),
+    Springs(2.0, 1.0, 0.4, 0.0),
+    Springs(0.7, 1.3, 0.2, 0.9),
+    Springs.uniform(3000.0, 2400.0),
+    Springs(0.0, 1.0, 0.0, 0.3),
+]
+
+
+@pytest.mark.parametrize("springs", SETS)
+def test_periodic_lattice_has_the_moduli_of_the_paper_and_free_rotations_another_shear_modulus(springs) -> None:
+    suppressed, free = (lattice.moduli(springs, rotations).matrix() for rotations in ("suppressed", "free"))
+    for rotations, expected in (("suppressed", suppressed), ("free", free)):
+        measured = lattice.measured_moduli(springs, rotations)
+        np.testing.assert_allclose(measured, expected, rtol=0, atol=1e-13 * expected.max())
+    np.testing.assert_array_equal(free[:2, :2], suppressed[:2, :2])
+    assert free[2, 2] == pytest.approx(suppressed[2, 2], rel=1e-14) or springs.k1t != springs.k2t
+    assert free[2, 2] < suppressed[2, 2] or springs.k1t == springs.k2t
+
+
+def test_r_without_horizontal_springs_is_the_papers_function() -> None:
+    for beta in (0.0, 0.1, 0.5, 2.0):
+        expected = (beta**2 + 10.0 * beta - 3.0) / (beta**2 + 6.0 * beta + 9.0)
+        assert lattice.peak_criterion(beta) == pytest.approx(expected, abs=1e-14)
+        if beta:
+            moduli = lattice.moduli(Springs(0.0, 1.0, 0.0, beta))
+            assert moduli.peak_criterion == pytest.approx(expected, abs=1e-14)
+
+
+def test_roots_of_r() -> None:
+    assert lattice.peak_criterion_root() == pytest.approx(2.0 * np.sqrt(7.0) - 5.0, abs=1e-14)
+    assert round(lattice.peak_criterion_root(), 4) == 0.2915
+    assert lattice.peak_criterion_root("free") == pytest.approx(3.0 / 11.0, abs=1e-14)
+
+
+@given(k_n=stiffness, k_t=st.floats(0.0, 5.0))
+def test_equal_bonds_are_isotropic(k_n: float, k_t: float) -> None:
+    for rotations in ("suppressed", "free"):
+        m = lattice.moduli(Springs.uniform(k_n, k_t), rotations)
+        assert (m.b, m.d) == pytest.approx((m.a, m.a - m.c), abs=1e-12 * m.a)
+        assert m.poisson_ratio == pytest.approx(lattice.poisson_ratio(k_n, k_t), abs=1e-12)
+        assert m.shape == pytest.approx((2.0, 1.0), rel=1e-10)
+        assert m.peak_criterion == pytest.approx(1.0, rel=1e-10)
+
+
+@given(k1n=stiffness, k2n=stiffness, k1t=stiffness, k2t=stiffness)
+def test_criterion_r_is_a_ratio_of_the_shape(k1n: float, k2n: float, k1t: float, k2t: float) -> None:
+    m = lattice.moduli(Springs(k1n, k2n, k1t, k2t))
+    s, p = m.shape
+    assert m.peak_criterion == pytest.approx(s / (2.0 * p), rel=1e-9, abs=1e-12)
+
+
+def test_isotropic_constructor_inverts() -> None:
+    m = Moduli.isotropic(0.3, 2.5)
+    a11, a12, a22, a66 = m.compliances
+    assert (a11, a12, a22, a66) == pytest.approx((1 / 2.5, -0.3 / 2.5, 1 / 2.5, 2.6 / 2.5), rel=1e-14)
+    np.testing.assert_allclose(
+        m.matrix() @ np.array([[a11, a12, 0], [a12, a22, 0], [0, 0, a66 / 2]]), np.eye(3), atol=1e-14
+    )
+
+
+test_bad_springs_are_named = refusals(
+    ValueError,
+    (lambda: Moduli(1.0, 1.0, 1.0, 1.0), r"modulus c = 1\.0"),
+    (lambda: Moduli.isotropic(1.0), r"poisson_ratio = 1\.0"),
+    (lambda: Springs(-1.0, 1.0), r"k1n = -1\.0"),
+    (lambda: Springs(1.0, 0.0), r"k2n = 0\.0: must be positive"),
+    (lambda: lattice.moduli(Springs(0.0, 1.0)), r"modulus c"),
+    (lambda: lattice.moduli(Springs(1.0, 1.0), "some"), r"rotations = 'some'"),
+)
+
+
+HALF_PLANES = [
+    Moduli.isotropic(0.3),
+    lattice.moduli(Springs(2.0, 1.0)),
+    lattice.moduli(Springs(0.1, 1.0)),
+    lattice.moduli(Springs(0.0, 1.0, 0.0, 0.1)),
+]
+
+
+@pytest.mark.parametrize("moduli", HALF_PLANES)
+@pytest.mark.parametrize("depth", [0.5, 7.0])
+def test_pressure_below_a_half_plane_integrates_to_the_force(moduli: Moduli, depth: float) -> None:
+    right, _ = quad(lambda x: float(half_plane.pressure(x, depth, moduli, 15.0)), 0.0, np.inf, limit=400)
+    assert 2.0 * right == pytest.approx(15.0, rel=1e-7)
+
+
+def test_isotropic_limit_is_flamant() -> None:
+    x, depth = np.linspace(-5.0, 5.0, 21), 2.0
+    flamant = 2.0 * depth**3 / (np.pi * (x**2 + depth**2) ** 2)
+    np.testing.assert_allclose(half_plane.pressure(x, depth, Moduli.isotropic(-0.2)), flamant, rtol=1e-12)
+
+
+@pytest.mark.parametrize("moduli", HALF_PLANES)
+def test_peaks_are_where_the_pressure_is_largest(moduli: Moduli) -> None:
+    x = np.linspace(0.0, 2.0, 200_001)
+    largest = x[np.argmax(half_plane.pressure(x, 1.0, moduli))]
+    assert np.sqrt(max(0.0, -moduli.peak_criterion)) == pytest.approx(largest, abs=2e-5)
+
+
+def test_rays_carry_the_force_and_widen_like_a_random_walk() -> None:
+    x = np.linspace(-300.0, 300.0, 60_001)
+    for depth in (40.0, 160.0):
+        pressure = rays.pressure(x, depth, angle=np.pi / 6, diffusion_length=0.1, force=3.0)
+        right = np.where(x > 0.0, pressure, 0.0)
+        assert pressure.sum() * 0.01 == pytest.approx(3.0, rel=1e-10)
+        np.testing.assert_allclose(pressure, pressure[::-1], rtol=1e-9, atol=1e-300)
+        mean = (x * right).sum() / right.sum()
+        variance = ((x - mean) ** 2 * right).sum() / right.sum()
+        assert mean == pytest.approx(depth / np.sqrt(3.0), rel=1e-9)
+        assert variance == pytest.approx(0.1 * depth, rel=1e-9)
+
 
 ISOTROPIC = Moduli.isotropic(0.0526)
 SOLIDS = [ISOTROPIC, Moduli.isotropic(-0.5), *(lattice.moduli(Springs(ratio, 1.0)) for ratio in (2.0, 0.1))]
@@ -123,7 +242,7 @@ def test_shares_of_the_floor_disks(width: float | None) -> None:
     assert share[30] == pytest.approx(0.9195 * 2.0 / height, rel=2e-3)
 
 
-test_bad_input_is_named = refusals(
+test_bad_slabs_are_named = refusals(
     ValueError,
     (lambda: Slab(0.0, ISOTROPIC), r"height = 0\.0"),
     (lambda: Slab(1.0, ISOTROPIC, width=-2.0), r"width = -2\.0"),
