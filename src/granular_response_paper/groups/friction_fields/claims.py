@@ -98,7 +98,7 @@ def fits(data: Data) -> Numbers:
     simulations with frictionless and frictional (µ = 1; for the particles used in the experiments, µ ≃ 0.94 [76]) are
     shown in Fig. 15.
     Short: Friction fits the measured force profiles better"""
-    needs(False, "the sentence is about measured profiles, which are not stored here")
+    needs(False, "The sentence is about measured profiles, which are not stored here.")
     yield
 
 
