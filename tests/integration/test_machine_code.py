@@ -125,6 +125,20 @@ def test_code_for_other_arguments_and_a_pipe_are_not_taken_for_what_the_index_na
         assert called("i8")[0] == [["6", "0"]]
 
 
+@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
+def test_a_pipe_in_the_place_of_the_lock_is_not_waited_for(tmp_path, monkeypatch):
+    monkeypatch.setattr(machine_code, "cache_folder", lambda: tmp_path)
+    compiled = machine_code.kernel(_doubled)
+    lock = Path(compiled._cache._cache_path) / f"{compiled._cache._impl.filename_base}.lock"
+    os.mkfifo(lock)
+    assert compiled(3.0) == 6.0
+    assert list(tmp_path.rglob("*.nbi"))  # kept all the same
+
+
+def _doubled(x):
+    return 2.0 * x
+
+
 def test_an_installed_package_keeps_nothing_within_itself(tmp_path, monkeypatch):
     """Else ``pip uninstall`` leaves a folder that can be imported."""
     package = tmp_path / "lib" / "site-packages" / "granular_response"
