@@ -11,8 +11,9 @@ from granular_response.machine import floating_point
 
 floating_point.pin()  # before anything loads numpy, as the command line does
 os.environ.setdefault("MPLBACKEND", "Agg")
-# Repositories of tests are their own, whatever the user's settings are and though a hook of git runs the tests.
-for _name in ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE"):
+# Repositories of tests are their own, whatever the user's settings are and though a hook of git runs the tests; what
+# make gives to a make within it does not reach the ones that tests start.
+for _name in ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MAKEOVERRIDES"):
     os.environ.pop(_name, None)
 os.environ["GIT_CONFIG_GLOBAL"] = os.devnull
 # modules that new processes import find the helpers of tests, as here

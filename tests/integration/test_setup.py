@@ -290,7 +290,7 @@ def made(tmp_path):
 def test_a_python_may_have_a_path_with_blanks_and_one_that_is_none_is_refused(made, tmp_path):
     other = tmp_path / "my Python's" / "python"
     other.parent.mkdir()
-    other.write_text(f'#!/bin/sh\nexec {sys.executable} "$@"\n')
+    other.write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
     other.chmod(0o755)
     assert made("setup", f"PYTHON={other}") == (0, "set up --this-python\n", "")
     for name in "", "/nowhere/python3":
