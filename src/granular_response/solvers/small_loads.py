@@ -42,7 +42,7 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
     -------
     (k, n, freedoms) mean disk weights per mean disk weight along x and z, and per mean disk weight times mean radius
     for a torque where disks turn. NaN where nothing bears the load: for disks with less than two contacts, unless one
-    bears a couple too, and along x where nothing holds the packing as a whole. 0 where a load holds the disk.
+    transmits a couple, and along x where nothing holds the packing as a whole. 0 where a load holds the disk.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
 
 def _loose(problem: Problem, state: State) -> np.ndarray:
     """(n, freedoms) which unknowns nothing holds."""
-    # one contact that bears a couple too holds a disk alone
+    # one contact that transmits a couple holds a disk alone
     rows = zip(state.pairs.statuses != OPEN, state.walls.statuses != OPEN, strict=True)
     ties = np.sum([state.contact_count(between, walls=at_wall) for between, at_wall in rows], axis=0)
     loose = np.repeat(ties[:, None] < 2, problem.freedoms, axis=1)

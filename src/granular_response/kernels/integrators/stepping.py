@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ...machine.lanes import WIDTH, anywhere, put, root, spread, take
+from ...machine.lanes import WIDTH, anywhere, magnitude, put, root, spread, take
 from ...machine.machine_code import by_type, kernel
 from ..forces import forces
 
@@ -171,6 +171,9 @@ def ramp(time, start, end, duration):
 @kernel(forceinline=True)
 def _beyond(k, like, q, v, n, limit, horizon):
     x, z, u, w = take(q, k, like), take(q, n + k, like), take(v, k, like), take(v, n + k, like)
+    # most disks are far from that, which sums of components show without a root
+    if not anywhere(magnitude(x) + magnitude(z) + horizon * (magnitude(u) + magnitude(w)) > limit):
+        return False
     return anywhere(root(x * x + z * z) + horizon * root(u * u + w * w) > limit)
 
 

@@ -176,9 +176,9 @@ def _teardrop(sizes: xr.Dataset) -> Figure:
         for axes, name, label in ((deep, "teardrop_depth", style.DEPTH), (wide, "teardrop_width", style.WIDTH)):
             _growth(axes, slabs, name)
             axes.set_ylabel(label)
-    handles, names = panels[0, 0].get_legend_handles_labels()
+    handles, names = panels[-1, -1].get_legend_handles_labels()
     handles.append(Line2D([], [], color=style.MUTED, **AT_FLOOR, marker="o"))
-    panels[0, 0].legend(handles, [*names, "open: at the floor"], title="layers", loc="upper left")
+    panels[-1, -1].legend(handles, [*names, "open: at the floor"], title="layers", loc="lower right")
     for axes in panels[-1]:
         axes.set(xlabel=style.FORCE)
     for axes in panels.flat:
