@@ -155,6 +155,7 @@ def _bounds(axes: Axes, crossovers: xr.Dataset, looks: Iterable[tuple[float, dic
             inwards = (10.0 * row + 8.0) * (-1) ** above
             text, (ha, va) = (f"> {bound:g}", ("right", "center")) if above else (f"≤ {bound:g}", ("left", "center"))
             leader = {"arrowstyle": "-", "color": look["color"], "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0}
+            leader |= {"relpos": (float(above), 0.5)}  # to the near end of the text, beside those of other rows
             at_edge = {"xycoords": axes.get_xaxis_transform(), "ha": ha, "va": va, "color": look["color"]}
             place = (-14.0 if above else 14.0, inwards)
             note(axes, text, (friction, float(above)), place, fontsize=8, arrowprops=leader, **at_edge)
