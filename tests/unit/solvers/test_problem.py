@@ -84,16 +84,18 @@ def test_a_torque_that_nothing_can_balance_is_refused(smooth):
         scene(loads=loads).updated(smooth)
 
 
-def test_a_period_in_which_disks_may_meet_on_both_sides_is_refused():
+def test_a_period_in_which_the_two_largest_disks_may_meet_on_both_sides_is_refused():
     def problem(width):
         sides = {"width": width, "sides": "periodic"}
-        return Problem.from_scene(Scene.from_arrays([1, 3.1], [1, 1], 1, **sides, scene={"loads": []}))
+        return Problem.from_scene(
+            Scene.from_arrays([1.2, 3.5, 2.2], [1.2, 1, 3], [1.2, 1.0, 0.8], **sides, scene={"loads": []})
+        )
 
-    for width in (4.1, 5.1):
-        said = rf"packing.width: the period is {width} mean radii, must be at least 5.2 for disks of this size"
+    for width in (4.1, 5.5):
+        said = rf"packing.width: the period is {width} mean radii, must be at least 5.6 for disks of this size"
         with pytest.raises(SceneError, match=said):
             problem(width)
-    assert problem(5.3).n == 2
+    assert problem(5.7).n == 3
 
 
 @pytest.mark.parametrize("width", [2.0, 2.2, 2.5, 2.59, 2.7, 5.0])
