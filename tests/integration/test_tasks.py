@@ -344,7 +344,7 @@ def test_a_killed_sweep_continues_and_leaves_no_workers(tmp_path):
     run = subprocess.Popen([sys.executable, script, Path(__file__).parent, marks, kept])
     deadline = time.monotonic() + LONGEST
     workers: set[int] = set()
-    while len(list(kept.rglob("*.kept"))) < 5 or len(workers) < 2:  # one that begins later would leave its mark later
+    while len(list(kept.glob("*/*.kept"))) < 5 or len(workers) < 2:  # one that begins later would leave its mark later
         assert time.monotonic() < deadline
         time.sleep(0.02)
         workers = {int(pid) for item in range(40) for pid in starts(marks, item)}
