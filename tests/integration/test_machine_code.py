@@ -202,6 +202,15 @@ def test_sums_are_the_same_compiled_for_processors_with_wide_and_with_narrow_reg
     assert set(others) == {first}
 
 
+@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
+def test_no_kernel_has_a_form_for_c_to_call():
+    """Which nobody calls, and which a sixth of the time to compile went to."""
+    added = machine_code.kernel(lambda x: x + 1.0)
+    assert added(1.0) == 2.0
+    (code,) = added.inspect_llvm().values()
+    assert "cpython" in code and "cfunc" not in code
+
+
 def test_every_compiled_module_is_among_the_sources_that_name_the_machine_code():
     compiled = [path for path in PACKAGE.rglob("*.py") if re.search(r"^@kernel|^@by_type", path.read_text(), re.M)]
     names = [path.relative_to(PACKAGE).as_posix() for path in compiled]

@@ -15,6 +15,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..machine.machine_code import tell_apart
+from ..state import Contacts, FloatArray
+from .geometry import reduced_radii
 
 
 class Rolling(NamedTuple):
@@ -32,3 +34,9 @@ tell_apart(Rolling)
 
 #: Of contacts that roll freely.
 FREE = Rolling()
+
+
+def couples(pairs: Contacts, walls: Contacts, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(m,) and (w,) couples on the first bodies of contacts of disks of ``radius`` (n,)."""
+    at_pairs, at_walls = reduced_radii(radius[pairs.first], radius[pairs.second]), reduced_radii(radius[walls.first])
+    return at_pairs * pairs.rolling_force, at_walls * walls.rolling_force

@@ -34,36 +34,28 @@ def _couples(overlap, normal, spin, c, rolls, dt):
 
 
 @kernel(forceinline=True)
-def _of(array, start, i, column, table, like):
-    """What disk ``i``, or several from there on, have; with a ``table`` the disks in its row ``i`` and those below."""
-    if table is None:
-        return take(array, start + i, like)
-    return gather(array, start, table, i, column, like)
-
-
-@kernel(forceinline=True)
 def _forces(like, i, j, s, table, spring, rolls, pairs, motion):
     """Force on the first disk, its tangential part, and couple, of the disks ``i`` and ``j`` with slot ``s``.
 
     Or of as many pairs from there on as ``like`` has lanes; with a ``table`` those in its rows. Springs advance.
     """
     n, q, v, rim = motion.n, motion.q, motion.v, motion.rim
-    dx = take(pairs.dx, s, like) + (_of(q, 0, i, 0, table, like) - _of(q, 0, j, 1, table, like))
-    dz = take(pairs.dz, s, like) + (_of(q, n, i, 0, table, like) - _of(q, n, j, 1, table, like))
-    du = _of(v, 0, i, 0, table, like) - _of(v, 0, j, 1, table, like)
-    dw = _of(v, n, i, 0, table, like) - _of(v, n, j, 1, table, like)
+    dx = take(pairs.dx, s, like) + (gather(q, 0, table, i, 0, like) - gather(q, 0, table, j, 1, like))
+    dz = take(pairs.dz, s, like) + (gather(q, n, table, i, 0, like) - gather(q, n, table, j, 1, like))
+    du = gather(v, 0, table, i, 0, like) - gather(v, 0, table, j, 1, like)
+    dw = gather(v, n, table, i, 0, like) - gather(v, n, table, j, 1, like)
     overlap, nx, nz = between(dx, dz, take(pairs.reach, s, like))
     normal = normal_force(overlap, take(pairs.shape, s, like), du * nx + dw * nz, pairs.law)
     if spring is None:
         px, pz = frictionless(overlap, nx, nz, normal)
         return px, pz, like, like
-    rims = _of(rim, 0, i, 0, table, like) + _of(rim, 0, j, 1, table, like)
+    rims = gather(rim, 0, table, i, 0, like) + gather(rim, 0, table, j, 1, like)
     slip, before = dw * nx - du * nz - rims, take(spring, s, like)
     px, pz, pt, new = frictional(overlap, nx, nz, normal, slip, before, pairs.law, motion.rule, motion.dt)
     put(spring, s, new)
     if rolls is None:
         return px, pz, pt, like
-    spin = _of(v, 2 * n, i, 0, table, like) - _of(v, 2 * n, j, 1, table, like)
+    spin = gather(v, 2 * n, table, i, 0, like) - gather(v, 2 * n, table, j, 1, like)
     return px, pz, pt, _couples(overlap, normal, spin, s, rolls, motion.dt)
 
 
@@ -228,12 +220,3 @@ def _fill(gravity, load_factor, rim, pair_rolls, wall_rolls, motion, model):
         f[n + i] += load_factor * load[c, 1]
         if rim is not None:
             f[2 * n + i] += load_factor * load[c, 2]
-
-
-@kernel
-def accelerations(q, v, a, gravity, load_factor, dt, model):
-    """Fill ``a`` with all accelerations; arguments as of :func:`forces`."""
-    forces(q, v, a, gravity, load_factor, dt, model)
-    inverse_mass = model.inverse_mass
-    for k in range(a.size):
-        a[k] *= inverse_mass[k]

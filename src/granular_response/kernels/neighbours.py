@@ -100,7 +100,7 @@ def near(along, across, radius, skin, farthest, period, found):
                 if abs(aside) <= farthest:
                     apart = along[i] - along[j]
                     if period < math.inf:
-                        apart -= period * np.round(apart / period)
+                        apart -= period * np.rint(apart / period)
                     if apart * apart + aside * aside < reach * reach:
                         if count < found.shape[0]:
                             found[count, 0], found[count, 1] = i, j

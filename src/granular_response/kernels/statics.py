@@ -360,13 +360,12 @@ def contacts(step, pair_spring, wall_spring, listed, room, out, force):
         force[n + j] -= fz
         if turns:
             force[2 * n + j] -= radius[j] * tangential
-    further = _along_rolling(step, step.fixed, listed, out, force) if out.status.size > listed.gap.size else 0.0
-    return bend, max(worst, wrong, further)
+    return bend, max(worst, wrong)
 
 
 @kernel
-def _along_rolling(step, fixed, listed, out, force):
-    """Fill in rolling resistance after all else of :func:`contacts`; arguments as there.
+def along_rolling(step, fixed, listed, out, force):
+    """Fill in rolling resistance, where there is some, after :func:`contacts`; arguments as there.
 
     ``fixed`` : ``step.fixed``. Returns the largest force by which those with kept statuses differ from those by the
     return map.

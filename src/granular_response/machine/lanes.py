@@ -134,6 +134,11 @@ def _at(context, builder, kind, array, k, element):
     return builder.bitcast(place, element.as_pointer())
 
 
+def _taken(context, builder, kind, array, k, like):
+    element = _DOUBLES if like == LANES else ir.DoubleType()
+    return builder.load(_at(context, builder, kind, array, k, element), align=8)
+
+
 @intrinsic
 def take(typing, array, k, like):
     """``array[k]`` or, where ``like`` is lanes, ``array[k : k + WIDTH]``; nothing is checked. Of None it is None."""
@@ -143,15 +148,16 @@ def take(typing, array, k, like):
         return None
 
     def generate(context, builder, sig, args):
-        element = _DOUBLES if like == LANES else ir.DoubleType()
-        return builder.load(_at(context, builder, sig.args[0], args[0], args[1], element), align=8)
+        return _taken(context, builder, sig.args[0], args[0], args[1], like)
 
     return like(array, types.intp, like), generate
 
 
 @intrinsic
 def put(typing, array, k, value):
-    """Set what :func:`take` takes."""
+    """Set what :func:`take` takes; of None nothing."""
+    if array == types.none:
+        return types.none(array, types.intp, value), lambda context, builder, sig, args: context.get_dummy_value()
     if not _is_line(array) or value not in (LANES, types.float64):
         return None
 
@@ -164,12 +170,18 @@ def put(typing, array, k, value):
 
 @intrinsic
 def gather(typing, array, start, table, row, column, like):
-    """``array[start + table[row, column]]`` or, where ``like`` is lanes, of ``WIDTH`` rows from there on."""
-    if not _is_line(array) or not (isinstance(table, types.Array) and table.ndim == 2 and table.layout == "C"):
+    """``array[start + table[row, column]]`` or, where ``like`` is lanes, of ``WIDTH`` rows from there on.
+
+    Without a table (None) what :func:`take` takes at ``start + row``.
+    """
+    listed = isinstance(table, types.Array) and table.ndim == 2 and table.layout == "C"
+    if not _is_line(array) or not (listed or table == types.none):
         return None
 
     def generate(context, builder, sig, args):
         array, start, table, row, column, _ = args
+        if not listed:
+            return _taken(context, builder, sig.args[0], array, builder.add(start, row), like)
         data = builder.gep(context.make_array(sig.args[0])(context, builder, array).data, [start])
         indices = context.make_array(sig.args[2])(context, builder, table)
         columns = builder.extract_value(indices.shape, 1)
@@ -288,12 +300,16 @@ if config.DISABLE_JIT:  # the same functions for numpy arrays and floats
         return array[k : k + WIDTH].copy() if isinstance(like, np.ndarray) else array[k]
 
     def put(array, k, value):
+        if array is None:
+            return
         if isinstance(value, np.ndarray):
             array[k : k + WIDTH] = value
         else:
             array[k] = value
 
     def gather(array, start, table, row, column, like):
+        if table is None:
+            return take(array, start + row, like)
         return array[start + table[slice(row, row + WIDTH) if isinstance(like, np.ndarray) else row, column]]
 
     def select(condition, yes, no):

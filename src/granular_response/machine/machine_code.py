@@ -44,8 +44,9 @@ def kernel(function: Callable | None = None, **options: Any) -> Any:
     """Decorator: compile with Numba on first use and keep the machine code.
 
     Kernels have no Python errors of division, make no arrays and so count no references to them: counting costs a
-    small scene half of its time. ``options`` are those of ``numba.njit`` beside that. Raises ValueError for
-    ``fastmath``: the compiler then sums in the order of a processor's registers, and others give other digits.
+    small scene half of its time. Nor are they for C to call, which would take a seventh longer to compile. ``options``
+    are those of ``numba.njit`` beside that. Raises ValueError for ``fastmath``: the compiler then sums in the order of
+    a processor's registers, and others give other digits.
     """
     if options.get("fastmath"):
         raise ValueError("fastmath is not allowed: results would depend on the processor; write out the order of sums")
@@ -56,7 +57,9 @@ def kernel(function: Callable | None = None, **options: Any) -> Any:
     if folder is not None:
         nb.config.CACHE_DIR = str(folder)  # asked for when a function is decorated, so others keep their own
     try:
-        compiled = nb.njit(cache=folder is not None, error_model="numpy", _nrt=False, **options)(function)
+        compiled = nb.njit(
+            cache=folder is not None, error_model="numpy", _nrt=False, no_cfunc_wrapper=True, **options
+        )(function)  # fmt: skip
     finally:
         nb.config.CACHE_DIR = before
     if folder is not None and hasattr(compiled, "_cache"):  # not with compilation off

@@ -25,7 +25,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import SolveError
-from ..kernels.forces import SCRATCH, accelerations
+from ..kernels.forces import SCRATCH, forces
 from ..kernels.integrators import INTEGRATORS, LOOK_EVERY, Memory, advance
 from ..kernels.model import Model, Pairs, Schedule, Walls, rows, springs_of
 from ..kernels.neighbours import count_closed, mark_closed
@@ -168,14 +168,15 @@ class Dynamics:
 
     def _fill_history(self) -> None:
         self.history[:] = 0.0
-        gravity, load = self._now(self.gravity), self._now(self.load)
-        accelerations(self.q, self.v, self.history[0, : self.q.size], gravity, load, 0.0, self.model)
+        acceleration = self.history[0, : self.q.size]
+        forces(self.q, self.v, acceleration, self._now(self.gravity), self._now(self.load), 0.0, self.model)
+        acceleration *= self._inverse_mass
         self.integrator.begin(self.history)
 
     def _now(self, ramp: Ramp) -> float:
         """Where a ramp is now."""
         start, end, duration = ramp
-        return end if self.time >= duration else start + (end - start) * self.time / duration
+        return float(end if self.time >= duration else start + (end - start) * self.time / duration)
 
     def set_ramps(self, gravity: Ramp = (1.0, 1.0, 0.0), load: Ramp = (0.0, 0.0, 0.0)) -> None:
         """Start new linear ramps ``(from, to, duration)`` now; the clock restarts at zero."""

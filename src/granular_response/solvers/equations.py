@@ -165,7 +165,7 @@ class Equations:
         if not self.problem.rotations:
             return np.empty(0, np.int64)
         self.count[:] = 0
-        transitions.count_ties(self.listed, sense, trial.normal, 0.0, self.count)
+        transitions.count_ties(self.listed, sense.astype(float), trial.normal, 0.0, self.count)
         return 2 * self.problem.n + np.flatnonzero(self.count[2] == 0)
 
     def coupled(self, sense: np.ndarray) -> np.ndarray:
@@ -243,6 +243,8 @@ class Equations:
             step, known.spring if problem.pair_friction else None, known.spring if problem.wall_friction else None,
             listed, self._room, out, force,
         )  # fmt: skip
+        if self.rows > 1:
+            contradiction = max(contradiction, statics.along_rolling(step, step.fixed, listed, out, force))
         if self.held.size:
             force[self.held] = 0.0
 

@@ -16,8 +16,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..contact.coulomb import limit
+from ..contact.rolling import couples
 from ..errors import EquilibriumError
-from ..state import Certificate, FloatArray, State
+from ..state import EXCESSES, Certificate, FloatArray, State
 from .free import least_at_rest, solved_by, suspicious
 from .overlaps import too_deep
 from .problem import Problem
@@ -160,10 +161,10 @@ def unbalanced(problem: Problem, state: State) -> tuple[FloatArray, FloatArray]:
     turned = -radius[disk[n + len(load) :]] * tangential
     torque = np.asarray(np.bincount(disk, np.concatenate([np.zeros(n), load[:, 2], turned]), n), float)
     if len(problem.laws) > 1:
-        couple = problem.pair_arms(pairs.first, pairs.second) * pairs.rolling_force
-        np.add.at(torque, pairs.first, couple)
-        np.add.at(torque, pairs.second, -couple)
-        np.add.at(torque, walls.first, problem.wall_arms(walls.first) * walls.rolling_force)
+        at_pairs, at_walls = couples(pairs, walls, radius)
+        np.add.at(torque, pairs.first, at_pairs)
+        np.add.at(torque, pairs.second, -at_pairs)
+        np.add.at(torque, walls.first, at_walls)
     return force, torque
 
 
@@ -202,14 +203,13 @@ def certify(
     return Certificate(
         force_residual=float(np.abs(force).max()),
         torque_residual=float(np.abs(torque).max()) if problem.rotations else 0.0,
-        coulomb_excess=excess[0],
         smallest_normal_force=smallest,
         kinetic_energy=float(energy) / n,
         negative_modes=modes,
         loose_disks=int((state.contact_count() < 2).sum()),
         unbalanced_part=float((np.maximum(np.abs(force).max(axis=1), turned) / bears).max()),
-        rolling_excess=excess[1],
         undetermined=undetermined,
+        **dict(zip(EXCESSES, excess, strict=True)),
     )
 
 

@@ -17,6 +17,7 @@ from .index import StateIndexError as StateIndexError
 from .index import state_index as state_index
 from .state import AT_LIMIT as AT_LIMIT
 from .state import OPEN as OPEN
+from .state import EXCESSES as EXCESSES
 from .state import ROWS as ROWS
 from .state import SLIDING as SLIDING
 from .state import STICKING as STICKING

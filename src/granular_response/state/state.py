@@ -25,6 +25,8 @@ MEANINGS = ("open", "sticking", "sliding")
 
 #: Names of force, spring and status in each row of a contact: along the tangent, and along the rolling.
 ROWS = (("tangential_force", "spring", "status"), ("rolling_force", "rolling_spring", "rolling_status"))
+#: Names in a certificate of how far a force is beyond its limit, in each row.
+EXCESSES = ("coulomb_excess", "rolling_excess")
 
 #: Part of what a disk bears that may be out of balance.
 BALANCED = 1e-6

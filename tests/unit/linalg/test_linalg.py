@@ -164,6 +164,24 @@ def test_the_lowest_is_found_where_it_is_negative(values, expected, seed):
     assert solutions < 120 and points < 20  # that of a slab is decided within 40
 
 
+def test_a_krylov_space_grows_by_a_fifth_between_two_looks_at_its_eigenvalues(monkeypatch):
+    """So hardly farther than it must, with fewer looks than vectors; some dozens of vectors do."""
+    values, cost, eig = np.linspace(1.0, 2.0, 400), [0, 0], np.linalg.eig
+
+    def inverse(right):
+        cost[0] += 1
+        return right / (values - 0.99)
+
+    def looked(matrix):
+        cost[1] += 1
+        return eig(matrix)
+
+    monkeypatch.setattr(np.linalg, "eig", looked)
+    value, _, residual = lowest.nearest(inverse, np.ones(400), 0.99, 1e-9)
+    assert value == pytest.approx(1.0, abs=1e-9) and residual <= 1e-9
+    assert cost == [18, 11]  # the first space that is large enough has 17
+
+
 def test_none_is_found_where_vectors_and_points_run_out(monkeypatch):
     matrix = with_eigenvalues((1e-6, *SPREAD), 0)
     assert lowest_of(matrix)[0] is not None

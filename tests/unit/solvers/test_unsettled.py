@@ -9,8 +9,9 @@ from small_scenes import free_disks, scene
 
 import granular_response as gr
 from granular_response.scene import Scene
-from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.dynamics import Dynamics, Stop, _Relaxation, relax
 from granular_response.solvers.equilibrium import certify
+from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.result import solution_from, state_from, to_dataset
@@ -37,8 +38,38 @@ def test_a_part_of_the_packing_that_nothing_bears_is_in_flight():
     problem, state = free_disks(together, loads=[{"disk": 0, "force": [0.0, 2.0]}])
     dynamics = Dynamics(problem.with_loads(state.position), state)
     assert dynamics.in_flight(dynamics.touching())
-    dynamics.set_ramps(load=(1.0, 1.0, 0.0))  # as much as both weigh: they float
-    assert not dynamics.in_flight(dynamics.touching())
+    for load, falls in ((1.0, False), (1.0 - 1e-14, False), (1.0 - 1e-6, True)):  # as much as both weigh: they float
+        dynamics.set_ramps(load=(load, load, 0.0))
+        assert dynamics.in_flight(dynamics.touching()) == falls
+
+
+@pytest.mark.parametrize("gap, torn", [(4.5, None), (5.5, 1)])
+def test_a_disk_is_torn_off_five_radii_above_all_others(gap, torn):
+    loads = [{"disk": 1, "force": [0.0, 3.0]}]
+    problem, state = free_disks([[10.0, 1.0], [10.0, 3.0 + gap]], velocity=[[0.0, 0.0], [0.0, 1.0]], loads=loads)
+    dynamics = Dynamics(problem.with_loads(state.position), state)
+    dynamics.set_ramps(load=(1.0, 1.0, 0.0))
+    assert dynamics.lifted_disk() == torn
+
+
+@pytest.mark.parametrize("times, stopped", [(5.0, None), (20.0, 1)])
+def test_a_disk_that_has_ten_times_the_energy_of_those_that_bear_others_is_stopped_by_hand(times, stopped):
+    """Where small accelerations end the motion: that of a disk on the floor alone says nothing."""
+    row = [[1.0 + 1.999 * k, 1.0 - 1e-4] for k in range(4)]
+    speed = np.array([0.0, 1.0, 1.0, 0.0, 0.0, np.sqrt(times * 2.0 / 6.0)]) * 1e-5
+    disks = [*row, [60.0, 1.0 - 1e-4], [90.0, 1.0 - 1e-4]]
+    problem, state = free_disks(disks, velocity=np.stack([speed, 0.0 * speed], axis=1), contact__friction=0.2)
+    relaxation = _Relaxation(Dynamics(problem, state), Stop(1e-30, acceleration=1e-3), (1.0, 1.0, 0.0), (0.0, 0.0, 0.0))
+    relaxation.settled = True
+    assert relaxation.state().reached.stopped_rattlers == stopped
+
+
+def test_one_look_in_ten_asks_what_rolls_while_a_packing_is_far_from_rest(monkeypatch):
+    problem = Problem.from_scene(scene(6, 13, contact__friction=0.2))
+    asked, usual = [], Dynamics.rolling
+    monkeypatch.setattr(Dynamics, "rolling", lambda self, *known: asked.append(self.steps) or usual(self, *known))
+    relax(Dynamics(problem, problem.bare_state()), Stop(1e-30, maximum_steps=4000))
+    assert asked == [1000, 2000, 3000, 4000]
 
 
 LOAD = [{"disk": "top-centre", "force": [0.0, -2.0]}]

@@ -70,22 +70,9 @@ def correct(self, x, v, a, b, c, a_new, dt):
 
 
 @kernel(forceinline=True)
-def _read(row, k, like):
-    if row is None:
-        return like
-    return take(row, k, like)
-
-
-@kernel(forceinline=True)
-def _write(row, k, value):
-    if row is not None:
-        put(row, k, value)
-
-
-@kernel(forceinline=True)
 def _turn_at(k, like, integrator, q, v, memory, force, seen, inverse_mass, dt):
     a, b, c = memory.a, memory.b, memory.c
-    x, u, w, y, z = take(q, k, like), take(v, k, like), take(a, k, like), _read(b, k, like), _read(c, k, like)
+    x, u, w, y, z = take(q, k, like), take(v, k, like), take(a, k, like), take(b, k, like), take(c, k, like)
     if force is not None:
         a_new = take(force, k, like) * take(inverse_mass, k, like)
         x, u, w, y, z = correct(integrator, x, u, w, y, z, a_new, dt)
@@ -95,8 +82,8 @@ def _turn_at(k, like, integrator, q, v, memory, force, seen, inverse_mass, dt):
     put(q, k, x)
     put(v, k, u)
     put(a, k, w)
-    _write(b, k, y)
-    _write(c, k, z)
+    put(b, k, y)
+    put(c, k, z)
 
 
 @kernel
