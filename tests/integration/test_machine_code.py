@@ -204,7 +204,7 @@ def test_sums_are_the_same_compiled_for_processors_with_wide_and_with_narrow_reg
 
 @pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
 def test_no_kernel_has_a_form_for_c_to_call():
-    """Which nobody calls, and which a sixth of the time to compile went to."""
+    """Which nobody calls, and which an eighth of the time to compile went to."""
     added = machine_code.kernel(lambda x: x + 1.0)
     assert added(1.0) == 2.0
     (code,) = added.inspect_llvm().values()

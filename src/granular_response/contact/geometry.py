@@ -3,8 +3,6 @@
 The normal points from the second body to the first; that of a wall points inward.
 """
 
-import numpy as np
-
 from ..machine.lanes import root
 from ..machine.machine_code import kernel
 
@@ -34,8 +32,3 @@ def displaced(ux, uz, dx0, dz0, distance0, gap):
 def at_wall(ux, uz, nx, nz, gap):
     """Overlap of a disk with a wall after a displacement ``(ux, uz)`` from the ``gap`` before."""
     return -(gap + ux * nx + uz * nz)
-
-
-def reduced_radii(first, second=None):
-    """(m,) ``R_i R_j / (R_i + R_j)`` of disks with radii ``first`` and ``second``; ``R_i`` at a wall (None)."""
-    return np.array(first, float) if second is None else first * second / (first + second)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..machine.lanes import magnitude, root
-from .geometry import reduced_radii
+from ..state import reduced_radii
 
 
 class Hertz(NamedTuple):

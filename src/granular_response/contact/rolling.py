@@ -2,7 +2,7 @@
 
 All laws share it, as they share the part along the tangent; :func:`.coulomb.tangential` is that of both, here at the
 velocity of the rolling. With the relative spin ``w = w_i - w_j`` (``w_i`` at a wall) and the reduced radius ``R`` of
-:func:`.geometry.reduced_radii`
+:func:`..state.reduced_radii`
 
     dpsi/dt = R w,    F_r = -k_R psi - nu_R R w,    |F_r| <= mu_R |f_n|,
 
@@ -15,8 +15,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..machine.machine_code import tell_apart
-from ..state import Contacts, FloatArray
-from .geometry import reduced_radii
 
 
 class Rolling(NamedTuple):
@@ -34,9 +32,3 @@ tell_apart(Rolling)
 
 #: Of contacts that roll freely.
 FREE = Rolling()
-
-
-def couples(pairs: Contacts, walls: Contacts, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(m,) and (w,) couples on the first bodies of contacts of disks of ``radius`` (n,)."""
-    at_pairs, at_walls = reduced_radii(radius[pairs.first], radius[pairs.second]), reduced_radii(radius[walls.first])
-    return at_pairs * pairs.rolling_force, at_walls * walls.rolling_force

@@ -30,7 +30,6 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.rolling import couples
 from ..errors import check_positive
 from ..state import FloatArray, State
 from .difference import pair_force_difference, wall_force_difference
@@ -166,7 +165,7 @@ def couple_stress(
     pairs, walls = state.pairs, state.walls
     first, second, at_wall = radius[pairs.first], radius[pairs.second], radius[walls.first]
     left = (first - second) * pairs.tangential_force, at_wall * walls.tangential_force
-    each = zip(couples(pairs, walls, radius), left, strict=True)
+    each = zip(state.couples(radius), left, strict=True)
     pair, wall = (np.stack([m - 0.5 * rest, np.zeros_like(m)], axis=1) for m, rest in each)
     return coarse_grained_stress(given_forces(state, pair, wall), points, width, cutoff)[..., 0, :]
 

@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..contact.coulomb import limit
-from ..contact.rolling import couples
 from ..errors import EquilibriumError
 from ..state import EXCESSES, Certificate, FloatArray, State
 from .free import least_at_rest, solved_by, suspicious
@@ -161,7 +160,7 @@ def unbalanced(problem: Problem, state: State) -> tuple[FloatArray, FloatArray]:
     turned = -radius[disk[n + len(load) :]] * tangential
     torque = np.asarray(np.bincount(disk, np.concatenate([np.zeros(n), load[:, 2], turned]), n), float)
     if len(problem.laws) > 1:
-        at_pairs, at_walls = couples(pairs, walls, radius)
+        at_pairs, at_walls = state.couples(radius)
         np.add.at(torque, pairs.first, at_pairs)
         np.add.at(torque, pairs.second, -at_pairs)
         np.add.at(torque, walls.first, at_walls)

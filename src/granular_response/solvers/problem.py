@@ -14,9 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact import RULES, Law, without_friction
-from ..contact.geometry import reduced_radii
 from ..scene import Packing, Scene, SceneError, resolve_disk
-from ..state import FloatArray, State
+from ..state import FloatArray, State, reduced_radii
 from ..state.box import bodies
 from .candidates import SKIN, Candidates, list_candidates
 from .choice import Plan, plan

@@ -16,8 +16,8 @@ from .events import Event as Event
 from .index import StateIndexError as StateIndexError
 from .index import state_index as state_index
 from .state import AT_LIMIT as AT_LIMIT
-from .state import OPEN as OPEN
 from .state import EXCESSES as EXCESSES
+from .state import OPEN as OPEN
 from .state import ROWS as ROWS
 from .state import SLIDING as SLIDING
 from .state import STICKING as STICKING
@@ -26,3 +26,4 @@ from .state import Contacts as Contacts
 from .state import Reached as Reached
 from .state import State as State
 from .state import contact_force as contact_force
+from .state import reduced_radii as reduced_radii

@@ -242,6 +242,12 @@ class State:
         """(w, 2) force on ``walls.first``."""
         return contact_force(wall_normals(self.walls.second), self.walls.normal_force, self.walls.tangential_force)
 
+    def couples(self, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(m,) and (w,) couples of rolling resistance on the first bodies; ``radius`` (n,) : of the disks."""
+        pairs, walls = self.pairs, self.walls
+        arms = reduced_radii(radius[pairs.first], radius[pairs.second]), reduced_radii(radius[walls.first])
+        return arms[0] * pairs.rolling_force, arms[1] * walls.rolling_force
+
     def largest_normal_force(self) -> FloatArray:
         """(n,) of the contacts of each disk, 0 without any (mean weights)."""
         largest = np.zeros(len(self.position))
@@ -273,3 +279,8 @@ def contact_force(normal: FloatArray, normal_force: FloatArray, tangential_force
     """(..., m, 2) forces from their parts along the unit ``normal`` (..., m, 2) and the tangent z × n (eq. 4)."""
     tangent = np.stack([-normal[..., 1], normal[..., 0]], axis=-1)
     return normal_force[..., None] * normal + tangential_force[..., None] * tangent
+
+
+def reduced_radii(first, second=None) -> FloatArray:
+    """(m,) ``R_i R_j / (R_i + R_j)`` of disks with radii ``first`` and ``second``; ``R_i`` at a wall (None)."""
+    return np.array(first, float) if second is None else first * second / (first + second)

@@ -232,8 +232,18 @@ def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
     alone = follow(problem, rest, [1.0])[0]
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
     monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
+    left, solve = [], Sequence.solve
+
+    def watched(steps, matrix, right, most, shift):
+        found = solve(steps, matrix, right, most, shift)
+        if found is not None:
+            left.append(np.linalg.norm(matrix @ found - right) / np.linalg.norm(right))
+        return found
+
+    monkeypatch.setattr(Sequence, "solve", watched)
     kept = follow(problem, rest, [1.0])[0]
     assert 0 < len(roughly) < 0.5 * kept.reached.increments
+    assert 1e-7 < max(left) < 1.01e-6  # of a force out of balance, by the factorisation of another tangent
     # what increments leave out of events
     assert kept.walls.normal_force == pytest.approx(alone.walls.normal_force, abs=12.0 * 1e-5)
     assert kept.reached.certificate.force_residual < 1e-10

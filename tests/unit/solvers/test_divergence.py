@@ -59,6 +59,24 @@ def test_a_disk_in_a_groove_is_stable_whatever_it_weighs(light):
     assert divergence(Spectrum(system, trial)) is None
 
 
+@pytest.mark.parametrize("radius, modes", [(3e5, 1), (3e6, 0)])
+def test_what_grows_slower_than_a_thousandth_does_not_count_as_unstable(radius, modes):
+    """A disk on the tip of a huge one leaves at the root of 2 g / d."""
+    places = [(2.0 * radius, radius - 2.0 / 6000.0), (2.0 * radius, 2.0 * radius + 1.0 - 4.0 / 6000.0)]
+    system, trial = balanced(places, [radius, 1.0], [1.0, 1.0], width=4.0 * radius)
+    assert Spectrum(system, trial).negative_modes == modes
+
+
+@pytest.mark.parametrize("aside, first", [(1e-5, 1.0), (-1e-5, -1.0), (1e-7, 1.0), (-1e-7, 1.0)])
+def test_a_direction_leads_to_the_right_unless_rounding_alone_says_so(aside, first):
+    low = 1.0 - 1.0 / 6000.0
+    system, trial = balanced([(10.0, low), (20.0, low), (30.0, low)], None, [1.0, 1.0, 1.0])
+    spectrum = Spectrum(system, trial)
+    wanted = np.array([1.0, -0.5, aside - 0.5, 0.0, 0.0, 0.0])
+    spectrum._followed = -1.0, system.interleave(wanted) / spectrum._scale
+    assert spectrum.direction[0] == pytest.approx(first, abs=1e-4)
+
+
 @pytest.mark.parametrize("high", [2, 3, 6])
 def test_an_upright_column_has_an_unstable_direction_for_each_contact_between_disks(high):
     """It may move as a whole along a smooth floor, and bend in as many ways as it has joints."""
