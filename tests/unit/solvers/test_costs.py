@@ -28,7 +28,7 @@ def spent(reached: Reached) -> dict[str, int]:
 
 SMOOTH = {"contact__friction": 0.0, "wall__friction": 0.0}
 SOLVED = {
-    "a slab that breaks in": scene(6, 13, contact__friction=0.2, loads=pushed(0.0, -60.0)),
+    "a slab under a large force": scene(6, 13, contact__friction=0.2, loads=pushed(0.0, -60.0)),
     "a slab with much friction": scene(6, 13, contact__friction=1.0, loads=pushed(0.0, -100.0)),
     "a slab that is pushed aside": scene(5, 11, contact__friction=0.5, loads=pushed(2.0, -3.0)),
     "a slab under a load that comes back": scene(
@@ -46,7 +46,7 @@ SOLVED = {
         loads=pushed(0.0, -6.0),
     ),
     "disks by the 3/2 law": scene(4, 9, contact__law="hertz", contact__friction=0.2, loads=pushed(0.0, -4.0)),
-    "a pile with rolling toes": Scene.from_dict({"packing": {"kind": "pile"}, "contact": {"friction": 0.2}}),
+    "a pile": Scene.from_dict({"packing": {"kind": "pile"}, "contact": {"friction": 0.2}}),
 }
 
 
