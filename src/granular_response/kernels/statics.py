@@ -67,9 +67,9 @@ class Increment(NamedTuple):
     ----------
     ahead, length : (dof,) and a number: their product is the displacement were the rates those at ``q0``. Where
         statuses are kept, the slip of pairs that stick along the way that curves from there is counted.
-    limits : fixed limits, None for those of the law.
-    fixed : statuses that contacts keep whatever happens, as floats, negative where they slide under a negative force,
-        None for the return map.
+    limits : (r (m + w),) fixed limits, or (0,) for those of the law.
+    fixed : (r (m + w),) statuses that contacts keep whatever happens, as floats, negative where they slide under a
+        negative force, or (0,) for the return map.
     """
 
     q: Floats  #: (dof,) displacements
@@ -78,8 +78,8 @@ class Increment(NamedTuple):
     length: float
     overlap: Floats  #: (m + w,) at ``q0``
     spring: Floats  #: (r (m + w),) at ``q0``
-    limits: Floats | None
-    fixed: Floats | None
+    limits: Floats
+    fixed: Floats
 
 
 class Response(NamedTuple):
@@ -185,22 +185,6 @@ def _curved(px, pz, wx, wz, ax, az, part):
 
 
 @kernel(forceinline=True)
-def _closed(status, overlap):
-    """Whether contacts are closed: by the ``status`` that they keep or, if that is None, by their overlap."""
-    if status is None:
-        return overlap > 0.0
-    return magnitude(status) > 0.0
-
-
-@kernel(forceinline=True)
-def _most(limit, coulomb):
-    """A limit of the tangential force that is given, or else that of Coulomb."""
-    if limit is None:
-        return coulomb
-    return limit
-
-
-@kernel(forceinline=True)
 def _turned(dx, dz, wx, wz):
     """Separation and distance of a pair before an increment ``(wx, wz)``, and sine and cosine of its turn.
 
@@ -211,45 +195,52 @@ def _turned(dx, dz, wx, wz):
 
 
 @kernel(forceinline=True)
-def _returned(trial, most, stiffness, status):
-    """Force, new spring, signed status, and contradiction, of closed contacts with a spring stretched to ``trial``.
-
-    By the return map, or of the ``status`` that they keep: the contradiction is the force by which both differ.
-    """
-    force, spring, slides = cut(trial, 0.0, most, stiffness)
-    if status is None:
-        return force, spring, select(slides, select(trial < 0.0, float(SLIDING), -float(SLIDING)), 1.0), 0.0 * force
-    slides = magnitude(status) > STICKING
-    kept = select(slides, select(status > 0.0, most, -most), -stiffness * trial)
-    return kept, quotient_where(slides, -kept, stiffness, trial), status + 0.0, magnitude(kept - force)
+def _given(values, c, otherwise):
+    """What is given of place ``c`` of the rows, or else ``otherwise``."""
+    return take(values, c, otherwise) if values.size else otherwise
 
 
 @kernel(forceinline=True)
-def _fill(c, overlap, slip, curved, law, spring0, fixed, step, listed, out):
+def _returned(trial, most, stiffness, c, fixed):
+    """Force, new spring, signed status, and contradiction, of closed contacts with a spring stretched to ``trial``.
+
+    By the return map, or of the status that place ``c`` of the rows keeps: the contradiction is the force by which both
+    differ.
+    """
+    force, spring, slides = cut(trial, 0.0, most, stiffness)
+    if fixed.size == 0:
+        return force, spring, select(slides, select(trial < 0.0, float(SLIDING), -float(SLIDING)), 1.0), 0.0 * force
+    status = take(fixed, c, trial)
+    slides = magnitude(status) > STICKING
+    kept = select(slides, select(status > 0.0, most, -most), -stiffness * trial)
+    return kept, quotient_where(slides, -kept, stiffness, trial), status, magnitude(kept - force)
+
+
+@kernel(forceinline=True)
+def _fill(c, overlap, slip, curved, law, spring0, step, listed, out):
     """Fill in contact ``c``, or those of a vector.
 
-    ``spring0``, ``fixed`` : of ``step``; the first is None without friction. Returns the parts of their springs that
-    curved ways made, and contradictions.
+    ``spring0`` : of ``step``, None without friction. Returns the parts of their springs that curved ways made, and
+    contradictions.
     """
-    status, form = take(fixed, c, overlap), take(listed.shape, c, overlap)
-    presses = overlap > 0.0
-    closed = _closed(status, overlap)
+    form, presses = take(listed.shape, c, overlap), overlap > 0.0
+    now, bent, wrong = select(presses, 1.0, 0.0 * overlap), 0.0 * overlap, 0.0 * overlap
+    if step.fixed.size:  # one that is kept open presses, or one that is kept closed pulls
+        now, size = take(step.fixed, c, overlap), elastic_force(law, magnitude(overlap), form)
+        wrong = select(magnitude(now) > 0.0, select(overlap < 0.0, size, 0.0), select(presses, size, 0.0))
+    closed = magnitude(now) > 0.0
     normal = select(closed, elastic_force(law, overlap, form), 0.0)
-    now, bent, wrong = select(closed, 1.0, 0.0 * overlap), 0.0 * overlap, 0.0 * overlap
-    if fixed is not None:  # one that is kept open presses, or one that is kept closed pulls
-        now, size = status + 0.0, elastic_force(law, magnitude(overlap), form)
-        wrong = select(closed, select(overlap < 0.0, size, 0.0), select(presses, size, 0.0))
     if spring0 is not None:
         spring = take(spring0, c, overlap)
         trial = spring + 0.0
-        if fixed is not None:
-            trial = spring + select(magnitude(status) > STICKING, 0.0, magnitude(status)) * curved
+        if step.fixed.size:
+            trial = spring + select(magnitude(now) > STICKING, 0.0, magnitude(now)) * curved
             bent = magnitude(trial - spring)
         # one that closes collects slip from where it closed
         before = take(step.overlap, c, overlap)
         share = select(presses, quotient_where(before < 0.0, overlap, overlap - before, 1.0), 1.0)
-        most = _most(take(step.limits, c, overlap), limit(law, normal))
-        force, spring, sense, off = _returned(trial + share * slip, most, law.tangential_stiffness, status)
+        most = _given(step.limits, c, limit(law, normal))
+        force, spring, sense, off = _returned(trial + share * slip, most, law.tangential_stiffness, c, step.fixed)
         off = select(closed, off, 0.0)
         now, wrong = select(closed, sense, 0.0), select(off > wrong, off, wrong)
         put(out.tangential, c, select(closed, force, 0.0))
@@ -261,7 +252,7 @@ def _fill(c, overlap, slip, curved, law, spring0, fixed, step, listed, out):
 
 
 @kernel(forceinline=True)
-def fill_pair(c, like, spring0, fixed, step, listed, room, out):
+def fill_pair(c, like, spring0, step, listed, room, out):
     """Fill in pair ``c``, or as many from there on as ``like`` has lanes; the rest as of :func:`_fill`."""
     n, disks, radius = listed.radius.size, listed.disks, listed.radius
     q, q0, ahead, length = step.q, step.q0, step.ahead, step.length
@@ -278,25 +269,25 @@ def fill_pair(c, like, spring0, fixed, step, listed, room, out):
         aj = gather(q, 2 * n, disks, c, 1, like) - gather(q0, 2 * n, disks, c, 1, like)
         roll = gather(radius, 0, disks, c, 0, like) * ai + gather(radius, 0, disks, c, 1, like) * aj
         slip = 0.5 * (before + distance) * _angles(sine, cosine, room) - roll
-        if fixed is not None:
+        if step.fixed.size:
             ax = length * (gather(ahead, 0, disks, c, 0, like) - gather(ahead, 0, disks, c, 1, like))
             az = length * (gather(ahead, n, disks, c, 0, like) - gather(ahead, n, disks, c, 1, like))
             curved = _curved(px, pz, wx, wz, ax, az, 1.0 / distance0)
     put(out.nx, c, dx / distance)
     put(out.nz, c, dz / distance)
-    return _fill(c, overlap, slip, curved, listed.pair_law, spring0, fixed, step, listed, out)
+    return _fill(c, overlap, slip, curved, listed.pair_law, spring0, step, listed, out)
 
 
 @kernel
-def _fill_pairs(spring0, fixed, step, listed, room, out):
+def _fill_pairs(spring0, step, listed, room, out):
     """Fill in all pairs, eight at once; their largest bend and contradiction."""
     whole = listed.pairs - listed.pairs % WIDTH
     bends, wrongs, bend, worst = spread(0.0), spread(0.0), 0.0, 0.0
     for c in range(0, whole, WIDTH):
-        bent8, wrong8 = fill_pair(c, spread(0.0), spring0, fixed, step, listed, room, out)
+        bent8, wrong8 = fill_pair(c, spread(0.0), spring0, step, listed, room, out)
         bends, wrongs = select(bent8 > bends, bent8, bends), select(wrong8 > wrongs, wrong8, wrongs)
     for c in range(whole, listed.pairs):
-        bent, wrong = fill_pair(c, 0.0, spring0, fixed, step, listed, room, out)
+        bent, wrong = fill_pair(c, 0.0, spring0, step, listed, room, out)
         bend, worst = select(bent > bend, bent, bend), select(wrong > worst, wrong, worst)
     put(room, 0, bends)
     put(room, WIDTH, wrongs)
@@ -306,7 +297,7 @@ def _fill_pairs(spring0, fixed, step, listed, room, out):
 
 
 @kernel
-def _fill_walls(spring0, fixed, step, listed, out):
+def _fill_walls(spring0, step, listed, out):
     """Fill in all contacts with walls; their largest contradiction."""
     q, q0, n, worst = step.q, step.q0, listed.radius.size, 0.0
     for c in range(listed.pairs, listed.gap.size):
@@ -317,13 +308,13 @@ def _fill_walls(spring0, fixed, step, listed, out):
             slip -= listed.radius[i] * (q[2 * n + i] - q0[2 * n + i])
         out.nx[c], out.nz[c] = nx, nz
         overlap = at_wall(q[i], q[n + i], nx, nz, listed.gap[c])
-        _, wrong = _fill(c, overlap, slip, 0.0, listed.wall_law, spring0, fixed, step, listed, out)
+        _, wrong = _fill(c, overlap, slip, 0.0, listed.wall_law, spring0, step, listed, out)
         worst = select(wrong > worst, wrong, worst)
     return worst
 
 
-# Springs and statuses are arguments of their own, beside the increment that holds them: only of an argument does the
-# compiler know that it is None.
+# Springs are arguments of their own, beside the increment that holds them: only of an argument does the compiler know
+# that it is None.
 @kernel
 def contacts(step, pair_spring, wall_spring, listed, room, out, force):
     """Forces of the listed contacts at the end of an increment.
@@ -341,8 +332,8 @@ def contacts(step, pair_spring, wall_spring, listed, room, out, force):
     Longest part of a spring that a curved way has made, and the largest force by which contacts with kept statuses
     differ from those by the return map.
     """
-    bend, worst = _fill_pairs(pair_spring, step.fixed, step, listed, room, out)
-    wrong = _fill_walls(wall_spring, step.fixed, step, listed, out)
+    bend, worst = _fill_pairs(pair_spring, step, listed, room, out)
+    wrong = _fill_walls(wall_spring, step, listed, out)
     n, turns, radius = listed.radius.size, force.size == 3 * listed.radius.size, listed.radius
     for c in range(listed.gap.size):
         if out.status[c] == 0.0:
@@ -364,11 +355,10 @@ def contacts(step, pair_spring, wall_spring, listed, room, out, force):
 
 
 @kernel
-def along_rolling(step, fixed, listed, out, force):
+def along_rolling(step, listed, out, force):
     """Fill in rolling resistance, where there is some, after :func:`contacts`; arguments as there.
 
-    ``fixed`` : ``step.fixed``. Returns the largest force by which those with kept statuses differ from those by the
-    return map.
+    Returns the largest force by which those with kept statuses differ from those by the return map.
     """
     n, size, worst = listed.radius.size, listed.gap.size, 0.0
     for c in range(size):
@@ -382,8 +372,7 @@ def along_rolling(step, fixed, listed, out, force):
         if b >= 2 * n:
             turned -= step.q[b] - step.q0[b]
         trial = step.spring[r] + _closed_part(step.overlap[c], out.overlap[c]) * arm * turned
-        most = _most(take(step.limits, r, 0.0), most)
-        found, spring, sense, wrong = _returned(trial, most, stiff, take(fixed, r, 0.0))
+        found, spring, sense, wrong = _returned(trial, _given(step.limits, r, most), stiff, r, step.fixed)
         worst = max(worst, wrong)
         out.tangential[r], out.spring[r] = found, spring
         out.status[r] = sense if abs(sense) > STICKING else float(STICKING)

@@ -85,11 +85,6 @@ class Trial:
         """(r (m + w),) statuses, negative for contacts that slide under a negative force."""
         return signed_status(np.abs(self.contacts.status).astype(np.int8), self.contacts.tangential)
 
-    @property
-    def borne(self) -> FloatArray:
-        """Normal force beside each status of :attr:`sense`."""
-        return np.resize(self.normal, len(self.contacts.status))
-
 
 def signed_status(status: np.ndarray, tangential: FloatArray) -> np.ndarray:
     """Statuses with the direction of sliding: negative where the tangential force is."""
@@ -115,7 +110,7 @@ class Equations:
         wall_gap = box.wall_gap(self.reference[self.wall_disk], radius[self.wall_disk], self.wall)
         self.wall_normals = wall_normals(self.wall)
         distance = np.sqrt(self.dx0 * self.dx0 + self.dz0 * self.dz0)  # rounded as that of a trial where nothing moves
-        self._room, self._no_rates = np.zeros(2 * WIDTH), np.zeros(self.dof)
+        self._room, self._no_rates, self._none = np.zeros(2 * WIDTH), np.zeros(self.dof), np.zeros(0)
         self.count = np.zeros((3, problem.n), np.int64)  #: room for kernels to count in
         self.rows = len(problem.laws)
         self.listed = self._list(gap, distance, wall_gap)
@@ -236,15 +231,15 @@ class Equations:
         if not (problem.pair_friction and problem.wall_friction):
             out.tangential[:], out.spring[:] = 0.0, 0.0
         step = statics.Increment(
-            q, known.q, self._no_rates if velocity is None else velocity, length, known.overlap, known.spring, limits,
-            None if fixed is None else fixed.astype(float),
+            q, known.q, self._no_rates if velocity is None else velocity, length, known.overlap, known.spring,
+            self._none if limits is None else limits, self._none if fixed is None else fixed.astype(float),
         )  # fmt: skip
         bend, contradiction = statics.contacts(
             step, known.spring if problem.pair_friction else None, known.spring if problem.wall_friction else None,
             listed, self._room, out, force,
         )  # fmt: skip
         if self.rows > 1:
-            contradiction = max(contradiction, statics.along_rolling(step, step.fixed, listed, out, force))
+            contradiction = max(contradiction, statics.along_rolling(step, listed, out, force))
         if self.held.size:
             force[self.held] = 0.0
 

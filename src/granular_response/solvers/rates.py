@@ -122,7 +122,7 @@ class RateProblem:
         """
         known = trial.configuration
         # one that bears nothing has no slip to go on with
-        idle = (np.abs(sense) == SLIDING) & (trial.borne <= self.force)
+        idle = (np.abs(sense) == SLIDING) & np.concatenate([trial.normal <= self.force] * self.system.rows)
         sense = np.where(idle, np.int8(STICKING), sense)
         ways = (OPTIONS.all, False, False), (SYSTEM.patience, True, False), (SYSTEM.patience, True, True)
         for rounds, worst, anew in ways:  # whether the worst alone change, and whether each tangent is factorised anew

@@ -55,10 +55,11 @@ def test_pairs_have_the_bits_in_vectors_that_each_has_alone(law, size):
     for fixed in (sense, None):
         trial = system.trial(known, q, fixed=fixed, velocity=rates, length=1e-3)
         alone = Response(*np.zeros((7, len(sense))))
-        kept = None if fixed is None else fixed.astype(float)
-        step = Increment(q, known.q, rates, 1e-3, known.overlap, known.spring, None, kept)
+        none = np.zeros(0)
+        kept = none if fixed is None else fixed.astype(float)
+        step = Increment(q, known.q, rates, 1e-3, known.overlap, known.spring, none, kept)
         for c in range(len(system.first)):
-            fill_pair(c, 0.0, known.spring, kept, step, system.listed, np.zeros(16), alone)
+            fill_pair(c, 0.0, known.spring, step, system.listed, np.zeros(16), alone)
         for name, found in alone._asdict().items():
             assert np.array_equal(found[: len(system.first)], getattr(trial.contacts, name)[: len(system.first)]), name
     own = system.trial(known, q, fixed=free.sense)

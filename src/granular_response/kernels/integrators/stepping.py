@@ -69,16 +69,20 @@ def correct(self, x, v, a, b, c, a_new, dt):
     """Second half of a step; see the module."""
 
 
+#: Of a step the first half, the second half, or the second half of one and the first half of the next.
+FIRST, SECOND, BOTH = 0, 1, 2
+
+
 @kernel(forceinline=True)
-def _turn_at(k, like, integrator, q, v, memory, force, seen, inverse_mass, dt):
+def _turn_at(k, like, integrator, halves, q, v, memory, inverse_mass, dt):
     a, b, c = memory.a, memory.b, memory.c
     x, u, w, y, z = take(q, k, like), take(v, k, like), take(a, k, like), take(b, k, like), take(c, k, like)
-    if force is not None:
-        a_new = take(force, k, like) * take(inverse_mass, k, like)
+    if halves != FIRST:
+        a_new = take(memory.force, k, like) * take(inverse_mass, k, like)
         x, u, w, y, z = correct(integrator, x, u, w, y, z, a_new, dt)
-    if seen is not None:
+    if halves != SECOND:
         x, u, w, y, s = predict(integrator, x, u, w, y, z, dt)
-        put(seen, k, s)
+        put(memory.seen, k, s)
     put(q, k, x)
     put(v, k, u)
     put(a, k, w)
@@ -87,13 +91,13 @@ def _turn_at(k, like, integrator, q, v, memory, force, seen, inverse_mass, dt):
 
 
 @kernel
-def _turn(integrator, q, v, memory, force, seen, inverse_mass, dt):
-    """End a step, with ``memory.force`` as ``force``, and begin the next, with ``memory.seen`` as ``seen``, or one."""
+def _turn(integrator, halves, q, v, memory, inverse_mass, dt):
+    """Do the ``halves`` of steps: FIRST, SECOND or BOTH."""
     whole = q.size - q.size % WIDTH
     for k in range(0, whole, WIDTH):
-        _turn_at(k, spread(0.0), integrator, q, v, memory, force, seen, inverse_mass, dt)
+        _turn_at(k, spread(0.0), integrator, halves, q, v, memory, inverse_mass, dt)
     for k in range(whole, q.size):
-        _turn_at(k, 0.0, integrator, q, v, memory, force, seen, inverse_mass, dt)
+        _turn_at(k, 0.0, integrator, halves, q, v, memory, inverse_mass, dt)
 
 
 @kernel(nogil=True)
@@ -113,7 +117,8 @@ def advance(integrator, steps, dt, schedule, limit, q, v, memory, model, taken=0
             look = (taken + step) % LOOK_EVERY == 0 and limit < np.inf
             if look and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
                 return step
-            _turn(integrator, q, v, memory, None, memory.seen, inverse_mass, dt)
+            # FIRST; of a constant the compiler would make a version of its own
+            _turn(integrator, BOTH if begun else FIRST, q, v, memory, inverse_mass, dt)
         done = taken + step + 1
         now = schedule.time + done * dt
         gravity = ramp(now, schedule.gravity_from, schedule.gravity_to, schedule.gravity_time)
@@ -121,10 +126,7 @@ def advance(integrator, steps, dt, schedule, limit, q, v, memory, model, taken=0
         forces(q, memory.seen, memory.force, gravity, load, dt, model)
         # whether the next one follows at once: there is one, and no look at the disks comes before it
         begun = step + 1 < steps and (done % LOOK_EVERY != 0 or not limit < np.inf)
-        if begun:
-            _turn(integrator, q, v, memory, memory.force, memory.seen, inverse_mass, dt)
-        else:
-            _turn(integrator, q, v, memory, memory.force, None, inverse_mass, dt)
+        _turn(integrator, BOTH if begun else SECOND, q, v, memory, inverse_mass, dt)
     return steps
 
 

@@ -15,13 +15,11 @@ from granular_response.plot import style
 from granular_response.scene.lattice import touching_largest
 from granular_response_paper.captions import WEIGHT, Caption, Datasets, Value, of_group
 from granular_response_paper.panels import different, family, label_ends, note, packing, titles
-from granular_response_paper.survey.crossover import ABOVE, FOUND
+from granular_response_paper.survey.crossover import ABOVE, CONFIDENCE, FOUND
 from granular_response_paper.survey.datasets import usual
 
 from .parameters import Parameters
 
-#: Ends of the bars, as fractions of the bootstrap draws.
-THIN = (0.025, 0.975)
 #: Experiments of Sec. VII: from what to what force, in particle weights.
 EXPERIMENTS = (
     ("photoelastic\ndisks, 2D:\nabout 150", 150.0, 150.0),
@@ -107,7 +105,7 @@ def _diagram(crossovers: xr.Dataset) -> Figure:
         # side by side, so that bars at one friction do not cover each other
         friction, force = one["friction"].values + APART * (k - 0.5 * (len(looks) - 1)), one["force"].values
         found = one["kind"].values == FOUND
-        bars = one["interval"].sel(level=list(THIN)).transpose("level", ...).values
+        bars = one["interval"].sel(level=list(CONFIDENCE)).transpose("level", ...).values
         for x, low, high in zip(friction[found], *bars[:, found], strict=True):
             if low < high:
                 _bar(axes, x, low, high, FORCES, 0.9, look["color"])
@@ -191,7 +189,7 @@ def _starts(starts: xr.Dataset) -> Figure:
             here = (starts["polydispersity"].values == delta) & (starts["friction"].values == friction)
             one = starts.isel(case=here).sortby("distance")
             for axes, name, data in ((dips, "dip", one.isel(width=0)), (contacts, "contacts", one)):
-                value, ends = data[name].values, data[f"{name}_interval"].sel(level=list(THIN)).values
+                value, ends = data[name].values, data[f"{name}_interval"].sel(level=list(CONFIDENCE)).values
                 around = np.abs(ends.reshape(-1, 2).T - value)
                 bars = {"markersize": 3.0, "elinewidth": 0.8, "capsize": 2.0, "label": f"$\\mu = {friction:g}$"}
                 axes.errorbar(one["distance"].values, value, around, **look | bars)
