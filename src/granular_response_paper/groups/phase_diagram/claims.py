@@ -398,13 +398,12 @@ def resembles(data: Data) -> Numbers:
         typical: dict[str, list[float]] = {"below": [], "above": []}
         for slab in slabs:
             single, shapes, case = (slab.of(data, n, width=WIDE) for n in ("realizations", "shapes", "crossovers"))
-            off = single["difference"].median("realization")
-            force = shapes["applied_force"].where(np.isfinite(off))
-            low, high = case["interval"].values[[0, -1]]
-            below = (force < min(low, case["force"] / near)) & (case["kind"] != BELOW)
-            above = (force > max(high, case["force"] * near)) & (case["kind"] != ABOVE)
-            typical["below"] += off.values[below].tolist()
-            typical["above"] += off.values[above].tolist()
+            off, force = single["difference"].median("realization").values, shapes["applied_force"].values
+            (low, *_, high), at, kind = case["interval"].values, case["force"].values, case["kind"].values
+            below = np.isfinite(off) & (force < min(low, at / near)) & (kind != BELOW)
+            above = np.isfinite(off) & (force > max(high, at * near)) & (kind != ABOVE)
+            typical["below"] += off[below].tolist()
+            typical["above"] += off[above].tolist()
         found = [over_realizations(values) if len(values) > 2 else None for values in typical.values()]
         method = "bootstrap of the median over cases and forces"
         if any(found):
