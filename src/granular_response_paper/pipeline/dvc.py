@@ -82,8 +82,8 @@ def running(arguments: Sequence[str], folder: Path) -> Iterator[subprocess.Popen
             os.killpg(guard.pid, signal.SIGINT)
             with suppress(subprocess.TimeoutExpired):
                 run.wait(PATIENCE)
-            if run.poll() is None:
-                os.killpg(guard.pid, signal.SIGTERM)
+            # the stage too: DVC waits for it, but not where the interruption comes while it starts it
+            os.killpg(guard.pid, signal.SIGTERM)
             raise
         except BaseException:
             os.killpg(guard.pid, signal.SIGTERM)
