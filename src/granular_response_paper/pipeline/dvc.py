@@ -78,19 +78,15 @@ def running(arguments: Sequence[str], folder: Path) -> Iterator[subprocess.Popen
     ):
         try:
             yield run
+            run.wait()
         except KeyboardInterrupt:  # by the terminal, which reaches this process alone
             os.killpg(guard.pid, signal.SIGINT)
             with suppress(subprocess.TimeoutExpired):
                 run.wait(PATIENCE)
-            # the stage too: DVC waits for it, but not where the interruption comes while it starts it
-            os.killpg(guard.pid, signal.SIGTERM)
-            raise
-        except BaseException:
-            os.killpg(guard.pid, signal.SIGTERM)
             raise
         finally:
+            os.killpg(guard.pid, signal.SIGTERM)  # a stage may outlive DVC that was interrupted while it started it
             run.wait()
-            guard.kill()
 
 
 if __name__ == "__main__":
