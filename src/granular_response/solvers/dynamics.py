@@ -30,6 +30,7 @@ from ..kernels.integrators import INTEGRATORS, LOOK_EVERY, Memory, advance
 from ..kernels.model import Model, Pairs, Schedule, Walls, rows, springs_of
 from ..kernels.neighbours import count_closed, mark_closed
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
+from ..machine.machine_code import kind, typed
 from ..state import FLOOR, FloatArray, Reached, State, wall_normals
 from .candidates import Candidates
 from .overlaps import overlap_at_start
@@ -165,6 +166,7 @@ class Dynamics:
             ),
             problem.rule,
         )  # fmt: skip
+        self._advance_all = typed(advance, kind(self.integrator, self.rows, self.model))
 
     def _fill_history(self) -> None:
         self.history[:] = 0.0
@@ -210,7 +212,7 @@ class Dynamics:
         while left:
             start, taken = (0.0, self.steps - self.began) if self.uncut else (self.time, 0)
             schedule = Schedule(start, *map(float, self.gravity), *map(float, self.load))
-            done = advance(
+            done = self._advance_all(
                 self.integrator, left, self.time_step, schedule, self.candidates.limit,
                 self.q, self.v, self.rows, self.model, taken,
             )  # fmt: skip
@@ -391,7 +393,7 @@ class _Relaxation:
         self.unrest: deque[float] = deque(maxlen=half_swing(dynamics.problem, dynamics.time_step))
         self.network: NDArray[np.bool_] | None = None
         self.fixed = 0
-        self.largest = 0.0
+        self.energy = self.largest = 0.0
         self.settled = self.rolling = False
         self.scale = 1e6 * (1.0 + abs(load[1]) * float(np.abs(dynamics.problem.load).sum()))
 
@@ -400,16 +402,19 @@ class _Relaxation:
         """Whether the packing is at rest, or ``maximum_steps`` have been taken."""
         return self.settled or self.dynamics.steps - self.started >= self.stop.maximum_steps
 
-    def look(self, progress: Callable[[Dynamics, float], None] | None) -> None:
+    @property
+    def left(self) -> float:
+        """What the stop compares with its limit: the largest acceleration of the last readings, or the energy."""
+        return max(self.unrest, default=math.inf) if self.stop.acceleration > 0.0 else self.energy
+
+    def look(self) -> None:
         """Judge the state after ``RelaxationOptions.check_every`` more steps."""
         dynamics, stop = self.dynamics, self.stop
-        energy = dynamics.kinetic_energy()
+        self.energy = energy = dynamics.kinetic_energy()
         if not energy < self.scale:
             raise DynamicsError(dynamics._blow_up())
         self.largest = max(self.largest, energy)
         fallen = max(stop.fallen * self.largest, OPTIONS.motionless)
-        if progress is not None:
-            progress(dynamics, energy)
         if dynamics.time < self.ramp_time:
             return
         if dynamics.load[1] and (lifted := dynamics.lifted_disk()) is not None:
@@ -477,7 +482,8 @@ def relax(
     Parameters
     ----------
     dynamics : the packing; ``stop`` : when it ends; ``gravity``, ``load`` : linear ramps ``(from, to, duration)``.
-    progress : called with the dynamics and the kinetic energy per disk.
+    progress : called with the dynamics, and with what the stop compares with its limit: the acceleration, infinite
+        before the end of ramps and while disks fall, or the kinetic energy per disk.
 
     Raises
     ------
@@ -488,5 +494,7 @@ def relax(
     while not relaxation.ended:
         left = stop.maximum_steps - (dynamics.steps - relaxation.started)
         dynamics.advance(min(OPTIONS.check_every, left))  # not a step more than the scene allows
-        relaxation.look(progress)
+        relaxation.look()
+        if progress is not None:
+            progress(dynamics, relaxation.left)
     return relaxation.state()

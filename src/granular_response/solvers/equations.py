@@ -20,6 +20,7 @@ from ..contact.coulomb import limit
 from ..kernels import statics, transitions
 from ..linalg import REMEMBERED, elimination
 from ..machine.lanes import WIDTH
+from ..machine.machine_code import kind, typed
 from ..state import OPEN, SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
 from .close_pairs import close_pairs
 from .pattern import pattern
@@ -114,6 +115,11 @@ class Equations:
         self.count = np.zeros((3, problem.n), np.int64)  #: room for kernels to count in
         self.rows = len(problem.laws)
         self.listed = self._list(gap, distance, wall_gap)
+        # kernels that a path calls at every point
+        of = kind(self.listed, problem.pair_friction or None, problem.wall_friction or None)
+        self._contacts, self._count_ties = typed(statics.contacts, of), typed(transitions.count_ties, of)
+        self.next_changes, self.until = typed(transitions.next_changes, of), typed(transitions.until, of)
+        self.changed_stiffness = typed(transitions.changed_stiffness, of)
         self.held = problem.held.unknowns(problem.n)
         # one order of elimination for all states of a large lattice
         as_built = problem.n > REMEMBERED and problem.packing.ordered
@@ -160,7 +166,7 @@ class Equations:
         if not self.problem.rotations:
             return np.empty(0, np.int64)
         self.count[:] = 0
-        transitions.count_ties(self.listed, sense.astype(float), trial.normal, 0.0, self.count)
+        self._count_ties(self.listed, sense.astype(float), trial.normal, 0.0, self.count)
         return 2 * self.problem.n + np.flatnonzero(self.count[2] == 0)
 
     def coupled(self, sense: np.ndarray) -> np.ndarray:
@@ -234,7 +240,7 @@ class Equations:
             q, known.q, self._no_rates if velocity is None else velocity, length, known.overlap, known.spring,
             self._none if limits is None else limits, self._none if fixed is None else fixed.astype(float),
         )  # fmt: skip
-        bend, contradiction = statics.contacts(
+        bend, contradiction = self._contacts(
             step, known.spring if problem.pair_friction else None, known.spring if problem.wall_friction else None,
             listed, self._room, out, force,
         )  # fmt: skip

@@ -51,7 +51,7 @@ def next_changes(
     ``sense`` (m + w,) : signed statuses; ``force``, ``negligible`` : a force and a rate of a force that are none.
     """
     found = Changes(*np.empty((3, len(sense))))
-    transitions.next_changes(
+    system.next_changes(
         velocity, system.listed, trial.contacts, sense.astype(float), force, negligible, system.count, found
     )
     return found
@@ -112,7 +112,7 @@ class RateProblem:
 
     def until(self, trial: Trial, c: int, what: int, displacement: FloatArray) -> tuple[float, float]:
         """Force (mean weights) left until contact ``c`` does ``what``; by how much a displacement (dof,) lowers it."""
-        return transitions.until(c, what, trial.configuration.q, displacement, self.system.listed, trial.contacts)
+        return self.system.until(c, what, trial.configuration.q, displacement, self.system.listed, trial.contacts)
 
     def solve(self, trial: Trial, sense: np.ndarray) -> Rates | None:
         """Rates at an equilibrium with statuses that do not contradict themselves; None where none are found.

@@ -73,7 +73,7 @@ def settle(
     gravity, load : linear ramps ``(from, to, duration)``.
     fall : whether this is the fall under gravity, which in large packings goes on with larger steps.
     accept : whether an equilibrium will do; by default, when it is stable.
-    progress : called with the dynamics and the kinetic energy per disk; may end the motion by raising.
+    progress : as of :func:`.dynamics.relax`; may end the motion by raising.
 
     Raises
     ------

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -17,7 +16,7 @@ from ..scene.errors import show
 from ..scene.given import finite_numbers
 from ..state import MOVED_FAR, FloatArray, State
 from .choice import Choice
-from .dynamics import Dynamics, Stop, half_swing, relax
+from .dynamics import Dynamics, Stop, relax
 from .energy import minimise
 from .equilibrium import certify, check_overlaps, finish, reaction
 from .idle import idle_settings
@@ -374,17 +373,14 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
     report = None
     if progress is not None:
         limit, what = stop.acceleration or stop.kinetic_energy, stage + (long_fall(problem) if fall else "")
-        highest = [limit * 10.0, 0.0]
-        # as for the rule by which it ends: a packing that swings as one passes its balance again and again
-        readings: deque[float] = deque(maxlen=half_swing(problem, resolve_time_step(problem)))
+        highest, done = limit * 10.0, 0.0
 
-        def report(dynamics: Dynamics, energy: float) -> None:
-            readings.append(dynamics.mean_acceleration() if stop.acceleration else energy)
-            left = max(readings) if stop.acceleration else energy
-            highest[0] = max(highest[0], left)
-            done = np.log(highest[0] / max(left, limit)) / np.log(highest[0] / limit)
-            highest[1] = max(highest[1], float(done)) if highest[0] > left else highest[1]
-            progress(highest[1], 1.0, what)
+        def report(_: Dynamics, left: float) -> None:
+            nonlocal highest, done
+            if math.isfinite(left):
+                highest = max(highest, left)
+                done = max(done, math.log(highest / max(left, limit)) / math.log(highest / limit))
+            progress(done, 1.0, what)
 
     if problem.plan.static:
         return settle(problem, start, PROTOCOL, stop, what=stage, fall=fall, progress=report, **ramps)

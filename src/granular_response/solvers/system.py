@@ -130,7 +130,7 @@ class StaticSystem(Equations):
             most = 2 * len(contacts)
             sides = np.zeros((2, most, 6))
             columns = transitions.Columns(np.zeros(most, np.int64), np.zeros((most, 6), np.int64), *sides)
-            rows = transitions.changed_stiffness(
+            rows = self.changed_stiffness(
                 contacts, updated.made, sense, known.q, self.listed, self.problem.freedoms, self.pattern.place, columns
             )
             owner, places, left, right = columns

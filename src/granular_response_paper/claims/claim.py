@@ -165,7 +165,8 @@ class Data:
     def value(self, group: str, name: str, over: Callable[..., Any] = np.asarray, **labels: Any) -> float:
         """One number, ``dataset.variable``, at the given labels; ``over`` reduces what dimensions are left."""
         dataset, _, variable = name.rpartition(".")
-        values = np.asarray(over(at(self.get(group, dataset), **labels)[variable].values))
+        study = self.get(group, dataset)
+        values = np.asarray(over(study.variables[variable].isel(_first(study, labels), "ignore").values))
         needs(values.size == 1, f"{name}: {values.size} numbers in place of one")
         needs(np.isfinite(values).all(), f"{name}: no number is stored")
         return float(values.item())
@@ -188,9 +189,9 @@ class Data:
     def brackets(self, group: str, table: str, /, **labels: Any) -> list[Quantity]:
         """Those of all events at the given labels; raises NotMeasured if there is none."""
         events = self.get(group, table)
-        found = events.isel(_places(events, labels))
-        ends = zip(found["low"].values.tolist(), found["high"].values.tolist(), strict=True)
-        return [Quantity.bracket(*one) for one in ends]
+        places = _places(events, labels)
+        ends = (events.variables[end].isel(places).values.tolist() for end in ("low", "high"))
+        return [Quantity.bracket(*one) for one in zip(*ends, strict=True)]
 
     def protocol(
         self, measure: Callable[[Data], Quantity], from_rest: str = "", friction: float = 0.0, *, dashpots: bool = True
@@ -237,7 +238,12 @@ def at(dataset: xr.Dataset, **labels: float | str) -> xr.Dataset:
 
     Labels may be of several coordinates along one dimension, or of a scalar, which must have that value.
     """
-    return dataset.isel({dimension: found[0] for dimension, found in _places(dataset, labels).items()})
+    return dataset.isel(_first(dataset, labels))
+
+
+def _first(dataset: xr.Dataset, labels: Mapping[str, float | str]) -> dict[Hashable, int]:
+    """Along each dimension, the first entry that has all of the labels."""
+    return {dimension: found[0] for dimension, found in _places(dataset, labels).items()}
 
 
 def _places(dataset: xr.Dataset, labels: Mapping[str, float | str]) -> dict[Hashable, list[int]]:
@@ -245,12 +251,16 @@ def _places(dataset: xr.Dataset, labels: Mapping[str, float | str]) -> dict[Hash
     masks: dict[Hashable, np.ndarray] = {}
     for name, label in labels.items():
         needs(name in dataset.variables, f"{name} is not stored")
-        stored = dataset[name].values
-        same = stored.astype(str) == label if isinstance(label, str) else np.isclose(stored, label, 1e-9, 0.0)
-        if not dataset[name].dims:
+        variable = dataset.variables[name]
+        stored = variable.values
+        if isinstance(label, str):
+            same = stored.astype(str) == label
+        else:
+            same = np.abs(stored - label) <= 1e-9 * abs(label)
+        if not variable.dims:
             needs(bool(same), f"is not stored at {name} = {label}")
             continue
-        (dimension,) = dataset[name].dims
+        (dimension,) = variable.dims
         masks[dimension] = masks.get(dimension, True) & same
         needs(masks[dimension].any(), f"nothing is stored at {name} = {label}")
     return {dimension: np.flatnonzero(mask).tolist() for dimension, mask in masks.items()}

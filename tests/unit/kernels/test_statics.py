@@ -2,13 +2,12 @@
 
 from dataclasses import replace
 
-import numba as nb
 import numpy as np
 import pytest
 from small_scenes import free_disks, scene, shaken, started
 
 from granular_response.contact import LAWS
-from granular_response.kernels.statics import Increment, Response, contacts, fill_pair
+from granular_response.kernels.statics import Increment, Response, fill_pair
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.stability import Spectrum
@@ -41,17 +40,6 @@ def test_forces_agree_with_dynamics_at_rest(friction, spring, law):
     for found, part in ((trial.normal, "normal_force"), (trial.tangential, "tangential_force")):
         expected = np.concatenate([getattr(state.pairs, part), getattr(state.walls, part)])
         assert found == pytest.approx(expected, abs=1e-11)
-
-
-@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
-def test_forces_are_compiled_once_whatever_is_given():
-    """It is the dearest kernel of a slab to compile."""
-    system, known = started(problem_with("both"), shaken(problem_with("both"), spring=1e-6))
-    free = system.trial(known, known.q)
-    made = len(contacts.signatures)
-    system.trial(known, known.q, fixed=free.sense)
-    system.trial(known, known.q, limits=np.full(len(known.spring), 0.05))
-    assert len(contacts.signatures) == made
 
 
 @pytest.mark.parametrize("law", LAWS)

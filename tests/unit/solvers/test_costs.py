@@ -6,13 +6,14 @@ difference that is understood is stored with ``--force-regen``.
 
 from dataclasses import replace
 
+import numba as nb
 import pytest
 from refusals import refuses
 from small_scenes import free_disks, pushed, scene
 
 from granular_response.observe.network import mirror_disks
 from granular_response.scene import Scene
-from granular_response.solvers import energy
+from granular_response.solvers import dynamics, energy, equations
 from granular_response.solvers.energy import _Descent, minimise
 from granular_response.solvers.equilibrium import EquilibriumError, finish
 from granular_response.solvers.problem import Problem
@@ -55,6 +56,26 @@ def test_a_solution_costs_what_it_did(name, data_regression):
     solution = solve_scene(SOLVED[name])
     states = [solution.rest, *solution.loaded]
     data_regression.check([spent(state.reached) for state in states])
+
+
+def test_kernels_whose_types_are_looked_at_once_have_the_same_ones_each_time(monkeypatch):
+    """Their machine code would read other arrays as if they were those of the first call."""
+    first, called = {}, set()
+
+    def checked(compiled, of):
+        def call(*arguments):
+            called.add(compiled.__name__)
+            found = [nb.typeof(one) for one in arguments]
+            assert found == first.setdefault((compiled.__name__, of), found), compiled.__name__
+            return compiled(*arguments)
+
+        return call
+
+    for module in (dynamics, equations):
+        monkeypatch.setattr(module, "typed", checked)
+    for name in "a slab with much friction", "a slab by dynamics", "disks that resist rolling", "disks by the 3/2 law":
+        solve_scene(SOLVED[name])
+    assert called == {"advance", "changed_stiffness", "contacts", "count_ties", "next_changes", "until"}
 
 
 def half_way() -> tuple[Problem, State]:

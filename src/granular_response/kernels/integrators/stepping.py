@@ -69,8 +69,9 @@ def correct(self, x, v, a, b, c, a_new, dt):
     """Second half of a step; see the module."""
 
 
-#: Of a step the first half, the second half, or the second half of one and the first half of the next.
-FIRST, SECOND, BOTH = 0, 1, 2
+#: Of a step the first half, the second half, or the second half of one and the first half of the next. Of constants of
+#: Python the compiler would make a version each of what they are given to.
+FIRST, SECOND, BOTH = np.int64(0), np.int64(1), np.int64(2)
 
 
 @kernel(forceinline=True)
@@ -117,8 +118,7 @@ def advance(integrator, steps, dt, schedule, limit, q, v, memory, model, taken=0
             look = (taken + step) % LOOK_EVERY == 0 and limit < np.inf
             if look and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
                 return step
-            # FIRST; of a constant the compiler would make a version of its own
-            _turn(integrator, BOTH if begun else FIRST, q, v, memory, inverse_mass, dt)
+            _turn(integrator, FIRST, q, v, memory, inverse_mass, dt)
         done = taken + step + 1
         now = schedule.time + done * dt
         gravity = ramp(now, schedule.gravity_from, schedule.gravity_to, schedule.gravity_time)
