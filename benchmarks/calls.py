@@ -3,8 +3,6 @@
 `python benchmarks/calls.py OUTPUT.json`. Both ways are timed in turns in one process, on slabs of two sizes.
 """
 
-from __future__ import annotations
-
 import sys
 
 from timing import least, write
@@ -32,7 +30,6 @@ def main(path: str) -> None:
                 times[way].append(least(lambda scene=scene: solve_scene(scene))[1]["processor"])
         seconds = {f"processor_seconds_types_{way.replace(' ', '_')}": min(found) for way, found in times.items()}
         rows.append({"disks": scene.packing.disk_count, "friction": FRICTION, "force": FORCE, **seconds})
-        print(rows[-1])
     write(path, {"runs": rows})
 
 
