@@ -10,4 +10,5 @@ file="$PWD/dask-$SLURM_JOB_ID.json"
 trap 'kill $(jobs -p) 2>/dev/null; rm -f "$file"' EXIT
 dask scheduler --port 0 --no-dashboard --scheduler-file "$file" &
 srun dask worker --scheduler-file "$file" --nworkers 1 --nthreads 1 --no-dashboard &
-python sweep.py --dask "$file"
+python sweep.py --dask "$file" &
+wait -n  # for the sweep, or for a scheduler or workers that fail: it would wait for them until its time is up

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from commands import python
+from commands import LONGEST, python
 from places import ROOT
 from refusals import refuses
 
@@ -372,3 +372,8 @@ def test_the_scripts_for_a_cluster_run_as_they_stand(tmp_path):
     shutil.rmtree(tmp_path / "kept")
     of_dask, _ = run(commands[4])
     xr.testing.assert_identical(of_dask, alone)
+    (programs / "dask").write_text("#!/bin/bash\nexit 3\n")
+    (programs / "dask").chmod(0o755)
+    given = {"cwd": tmp_path, "env": {**os.environ, "PATH": path, "SLURM_JOB_ID": "9"}}
+    failed = subprocess.run(["bash", "dask.sh"], capture_output=True, timeout=LONGEST, **given)
+    assert failed.returncode == 3  # no wait for a scheduler that is not there
