@@ -9,6 +9,6 @@ eval "$(python -m granular_response.machine.floating_point)"  # the same roundin
 file="$PWD/dask-$SLURM_JOB_ID.json"
 trap 'kill $(jobs -p) 2>/dev/null; rm -f "$file"' EXIT
 dask scheduler --port 0 --no-dashboard --scheduler-file "$file" &
+until [ -e "$file" ]; do kill -0 $!; sleep 1; done  # the job ends where the scheduler does not start
 srun dask worker --scheduler-file "$file" --nworkers 1 --nthreads 1 --no-dashboard &
-python sweep.py --dask "$file" &
-wait -n  # for the sweep, or for a scheduler or workers that fail: it would wait for them until its time is up
+python sweep.py --dask "$file"

@@ -43,7 +43,9 @@ def main() -> None:
     if options.dask:
         from distributed import Client
 
-        executor = Client(scheduler_file=options.dask).get_executor()
+        client = Client(scheduler_file=options.dask)
+        client.wait_for_workers(1, timeout=300)  # seconds; where none start, the sweep would wait for ever
+        executor = client.get_executor()
     if options.part:
         first, count = int(os.environ["SLURM_ARRAY_TASK_ID"]), int(os.environ["SLURM_ARRAY_TASK_COUNT"])
         axes["packing.realization"] = axes["packing.realization"][first::count]
