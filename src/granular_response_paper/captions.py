@@ -110,18 +110,15 @@ def of_group(
     Fields of a template are ``fields``, and the parameters of its picture. Raises KeyError for a picture without a
     template, or a field that is not given.
     """
-    found = findings or {}
-    templates = _templates(group)
-
-    def filled(stem: str, name: str) -> str:
-        return _Fields().vformat(templates[stem][name], (), {**parameters[stem], **fields})
-
-    def caption(stem: str, of: Mapping[str, Value]) -> Caption:
-        finding, text, alternative = found.get(stem, ""), filled(stem, "text"), filled(stem, "alternative")
-        title = str(templates[stem].get("title", ""))
-        return Caption(f"{finding} {text}".strip(), f"{alternative} {finding}".strip(), of, title)
-
-    return {stem: caption(stem, of) for stem, of in parameters.items()}
+    told: dict[str, Caption] = {}
+    for stem, of in parameters.items():
+        template, finding = _templates(group)[stem], (findings or {}).get(stem, "")
+        text, alternative = (
+            _Fields().vformat(template[name], (), {**of, **fields}) for name in ("text", "alternative")
+        )
+        title = str(template.get("title", ""))
+        told[stem] = Caption(f"{finding} {text}".strip(), f"{alternative} {finding}".strip(), of, title)
+    return told
 
 
 def question(group: str) -> str:

@@ -112,11 +112,6 @@ def between(happened: Callable[[float], bool], low: float, high: float, width: f
         return (0.0, low) if happened(low) else (high, float("nan"))
 
 
-def events_dataset(found: Sequence[Event]) -> xr.Dataset:
-    """Events as a table along ``event``."""
-    return table(found, "event", kind=Event)
-
-
 def states_picture(
     states: Sequence[State], problem: Problem, dimension: str = "state", of: Sequence[str] | None = PICTURE
 ) -> xr.Dataset:

@@ -117,11 +117,7 @@ def _add_single_pairs(start, spring, rolls, pairs, motion):
                 rolls.couple[i] += scratch[3 * WIDTH + lane]
                 rolls.couple[j] -= scratch[3 * WIDTH + lane]
     for r in range(whole, end):
-        i = runs[r, 0]
-        j = runs[r, 1]
-        px, pz, pt, pc = _forces(0.0, i, j, runs[r, 3], None, spring, rolls, pairs, motion)
-        _add(i, px, pz, pt, pc, spring, rolls, motion)
-        _add(j, -px, -pz, pt, -pc, spring, rolls, motion)
+        _add_run(r, spring, rolls, pairs, motion)
 
 
 # Springs, rims and what rolls are arguments of their own, beside what holds them: only of an argument does the compiler

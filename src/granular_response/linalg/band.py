@@ -81,7 +81,10 @@ class BandLU:
         """The solutions for (n,) or (k, n); with row exchanges where those without them are no good."""
         rows = np.atleast_2d(right)
         if self._exchanged is None:
-            found = self._solve(rows)
+            n, b = rows.shape[1], self._b
+            room = band_lu.padded(rows, b)
+            band_lu.solve(self._rows.ravel(), n, b, room.ravel(), room.shape[1])
+            found = room[:, b : b + n]
         else:
             found = np.array([self._exchanged.solve(row) for row in rows])
         return found.reshape(right.shape)
@@ -92,9 +95,3 @@ class BandLU:
         if self.pivots.all() and np.abs(self.pivots).max() <= GROWTH * np.abs(self._matrix.data).max():
             return None
         return splu(self._matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.001, options={"SymmetricMode": True})
-
-    def _solve(self, right: FloatArray) -> FloatArray:
-        n, b = right.shape[1], self._b
-        room = band_lu.padded(right, b)
-        band_lu.solve(self._rows.ravel(), n, b, room.ravel(), room.shape[1])
-        return room[:, b : b + n]

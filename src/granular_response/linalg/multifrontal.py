@@ -9,9 +9,7 @@ The fronts of a large matrix are split into subtrees, on which several threads w
 above them, whose matrix products are split into blocks of columns. Neither split looks at the number of threads, and
 what subtrees leave is added in the order of the tree: the bits are those of a single thread.
 
-Besides exact factorisations there are rough ones of large matrices, for solutions by iteration: in single precision,
-which takes half the time and memory, and with what subtrees leave, so that for a matrix which differs in few places
-only the subtrees that have them are eliminated anew, and the fronts above those.
+Besides exact factorisations there are rough ones of large matrices, for solutions by iteration (:mod:`.nearby`).
 """
 
 from __future__ import annotations
@@ -315,7 +313,8 @@ class _Elimination:
             solved, _ = lapack.dsytrs(lower, pivot, np.asfortranarray(f21.T), lower=1)
             update = _by_columns(updates, f22, outer, outer)
             update -= f21 @ solved
-        return _negative_blocks(lower, pivot)
+        # of the block diagonal D, in which a 2 x 2 block has one eigenvalue of each sign
+        return int((lower.diagonal()[pivot > 0] < 0).sum()) + int((pivot < 0).sum()) // 2
 
     def _above(self, front: int, spread: threads.Map) -> None:
         """Eliminate a front above the subtrees, its matrix products in blocks."""
@@ -443,10 +442,3 @@ class LU:
 def _by_columns(flat: FloatArray, begin: int, rows: int, columns: int) -> FloatArray:
     """(rows, columns) view of a matrix that is stored by columns."""
     return flat[begin : begin + rows * columns].reshape(columns, rows).T
-
-
-def _negative_blocks(f11: FloatArray, pivot) -> int:
-    """Negative eigenvalues of the block diagonal D of ``dsytrf`` (lower)."""
-    diagonal = f11.diagonal()
-    # a 2 x 2 block has one eigenvalue of each sign
-    return int((diagonal[pivot > 0] < 0).sum()) + int((pivot < 0).sum()) // 2

@@ -91,7 +91,7 @@ def by_type(function: Callable) -> Any:
 
 
 def kind(*values: Any) -> tuple:
-    """What values have in common that compiled code does not tell apart: types, also of what is in named tuples.
+    """The types of values as compiled code tells them apart, also of those in named tuples. Arrays are contiguous.
 
     Examples
     --------

@@ -113,15 +113,13 @@ class FilePacking(PackingDescription):
         return self._folder
 
     @property
-    def file(self) -> Path:
-        return Path(self._folder or ".", self.path)
-
-    @property
     def files(self) -> list[Path]:
-        return [self.file, *([Path(self._folder or ".", self.springs)] if self.springs else [])]
+        return [Path(self._folder or ".", one) for one in (self.path, self.springs) if one]
 
     def _table(self) -> formats.Table:
-        return self._read(lambda: formats.read(self.file, self.format or formats.by_suffix(self.path), self.columns))
+        return self._read(
+            lambda: formats.read(self.files[0], self.format or formats.by_suffix(self.path), self.columns)
+        )
 
     def mean_radius(self) -> float | None:
         """Mean radius in m; None where the table names no unit of length. Raises SceneError if it cannot be read."""

@@ -53,7 +53,7 @@ def _in_slots(values: FloatArray, slot: NDArray[np.int64], slots: int) -> FloatA
     return room
 
 
-def list_candidates(packing: Packing, laws: tuple[Law, Law], position: FloatArray, stride: float) -> Candidates:
+def list_candidates(packing: Packing, laws: tuple[Law, Law], position: FloatArray, stride: float = 0.0) -> Candidates:
     """List candidate contacts of a packing at ``position`` (n, 2); ``laws`` are those between disks and at walls.
 
     As long as every disk is near its lattice site, the neighbours on the lattice are the only ones that can

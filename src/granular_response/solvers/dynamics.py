@@ -32,12 +32,18 @@ from ..kernels.neighbours import count_closed, mark_closed
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..machine.machine_code import kind, typed
 from ..state import FLOOR, FloatArray, Reached, State, wall_normals
-from .candidates import Candidates
+from .candidates import Candidates, list_candidates
 from .overlaps import overlap_at_start
 from .problem import Problem
 from .springs import carry_springs, spring_contacts
 
 Ramp = tuple[float, float, float]
+
+
+def ramped(ramp: Ramp, time: float) -> float:
+    """Where a ramp is at a time, as ``kernels.integrators.stepping.ramp`` has it."""
+    start, end, duration = ramp
+    return float(end if time >= duration else start + (end - start) * (time / duration))
 
 
 @dataclass(frozen=True)
@@ -147,22 +153,23 @@ class Dynamics:
     def _list(self, state: State, stride: float = 0.0) -> None:
         """List candidates around a state's positions and take over its springs."""
         problem = self.problem
-        self.candidates: Candidates = problem.list_candidates(state.position, stride=stride)
+        self.candidates: Candidates = list_candidates(problem.packing, problem.laws[0], state.position, stride)
         c = self.candidates
         pair_laws, wall_laws = zip(*problem.laws, strict=True)
         springs = [c.in_slots(row) for row in carry_springs(problem.n, state.pairs, c.first, c.second)]
         wall_springs = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
-        arm, couple = c.in_slots(problem.pair_arms(c.first, c.second)), aligned_zeros(problem.n)
+        arm, wall_arm = problem.arms(c.first, c.second, c.wall_disk)
+        pair_rows = rows(pair_laws, springs, c.in_slots(arm), aligned_zeros(problem.n))
         self.model = Model(
             problem.n, problem.weight, self._inverse_mass, problem.packing.radius, self.rim,
             problem.load, problem.load_disk,
             Pairs(
-                c.runs, c.separation[0], c.separation[1], c.reach, c.shape, *rows(pair_laws, springs, arm, couple),
+                c.runs, c.separation[0], c.separation[1], c.reach, c.shape, *pair_rows,
                 aligned_zeros(SCRATCH), problem.pair_law,
             ),
             Walls(
                 c.wall_disk, wall_normals(c.wall), c.wall_gap, c.wall_shape,
-                *rows(wall_laws, wall_springs, problem.wall_arms(c.wall_disk)), problem.wall_law,
+                *rows(wall_laws, wall_springs, wall_arm), problem.wall_law,
             ),
             problem.rule,
         )  # fmt: skip
@@ -177,8 +184,7 @@ class Dynamics:
 
     def _now(self, ramp: Ramp) -> float:
         """Where a ramp is now."""
-        start, end, duration = ramp
-        return float(end if self.time >= duration else start + (end - start) * self.time / duration)
+        return ramped(ramp, self.time)
 
     def set_ramps(self, gravity: Ramp = (1.0, 1.0, 0.0), load: Ramp = (0.0, 0.0, 0.0)) -> None:
         """Start new linear ramps ``(from, to, duration)`` now; the clock restarts at zero."""

@@ -132,10 +132,8 @@ class Equations:
         problem, m, w = self.problem, len(self.first), len(self.wall_disk)
         loaded = np.zeros(problem.n, np.int64)
         loaded[problem.load_disk] = LOADED
-        shape, wall_shape = problem.pair_shapes(self.first, self.second), problem.wall_shapes(self.wall_disk)
-        arms = [np.zeros(0)]
-        if self.rows > 1:
-            arms = [problem.pair_arms(self.first, self.second), problem.wall_arms(self.wall_disk)]
+        shape, wall_shape = problem.shapes(self.first, self.second, self.wall_disk)
+        arms = problem.arms(self.first, self.second, self.wall_disk) if self.rows > 1 else (np.zeros(0),)
         return statics.Listed(
             disks=np.stack([np.r_[self.first, self.wall_disk], np.r_[self.second, np.full(w, -1)]], axis=1),
             pairs=m,

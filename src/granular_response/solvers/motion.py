@@ -18,7 +18,7 @@ from ..scene import Scene, SceneError
 from ..scene.errors import show
 from ..scene.given import finite_numbers
 from ..state import FloatArray, State
-from .dynamics import Dynamics, DynamicsError, Ramp
+from .dynamics import Dynamics, DynamicsError, Ramp, ramped
 from .overlaps import too_deep
 from .problem import Problem
 from .size import check_memory
@@ -154,11 +154,7 @@ def _reached(dynamics: Dynamics, rest: float) -> tuple[State, float]:
     state, at = dynamics.state(), dynamics
     if rest:
         one = Dynamics(dynamics.problem, state, dynamics.problem.scene.protocol.integrator, rest)
-        start, end, duration = dynamics.load
-        now, then = (
-            start + (end - start) * (min(time / duration, 1.0) if duration else 1.0)
-            for time in (dynamics.time, dynamics.time + rest)
-        )
+        now, then = (ramped(dynamics.load, time) for time in (dynamics.time, dynamics.time + rest))
         one.set_ramps(dynamics.gravity, (now, then, rest))
         one.advance(1)
         state, at = replace(one.state(), load_factor=then), one

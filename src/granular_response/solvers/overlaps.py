@@ -30,10 +30,9 @@ class RemovalOptions:
 
     #: Overlap that is left. A contact of stiffness 1e6 mg / mean radius that holds it could lift a disk by 0.005.
     left: float = 1e-4
-    #: Part of what would take its overlaps out by which a disk moves: faster steps throw disks farther.
+    #: Part of its last step, and of what would take its overlaps out, by which a disk moves: faster steps throw disks
+    #: farther.
     part: float = 0.5
-    #: Part of its last step by which it moves on, for the same reason no more.
-    kept: float = 0.5
     #: Most steps.
     steps: int = 20_000
 
@@ -88,7 +87,7 @@ def without_overlaps(packing: Packing) -> Packing:
         push, largest = _push(packing, position, first, second)
         if largest <= OPTIONS.left:
             return replace(packing, position=position)
-        step = OPTIONS.kept * step + OPTIONS.part * push
+        step = OPTIONS.part * (step + push)
         position = position + step
     raise SceneError(
         f"packing.overlaps = 'removed': an overlap of {largest:.2g} mean radii is left after {OPTIONS.steps} steps, "

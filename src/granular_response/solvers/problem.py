@@ -17,7 +17,7 @@ from ..contact import RULES, Law, without_friction
 from ..scene import Packing, Scene, SceneError, resolve_disk
 from ..state import FloatArray, State, reduced_radii
 from ..state.box import bodies
-from .candidates import SKIN, Candidates, list_candidates
+from .candidates import SKIN, list_candidates
 from .choice import Plan, plan
 from .close_pairs import close_pairs
 from .given_springs import given_springs
@@ -241,27 +241,15 @@ class Problem:
         """Whether nothing holds the packing as a whole along x: no side walls, a smooth floor, no displacement."""
         return self.packing.periodic and not self.wall_friction and not (self.held.axis == 0).any()
 
-    def list_candidates(self, position: FloatArray, *, stride: float = 0.0) -> Candidates:
-        """Candidate contacts at ``position`` (n, 2), as :func:`.candidates.list_candidates` finds them."""
-        return list_candidates(self.packing, self.laws[0], position, stride)
-
-    def pair_shapes(self, first, second) -> FloatArray | None:
-        """(m,) what the contact law needs of the radii of pairs."""
+    def shapes(self, first, second, at_wall) -> tuple[FloatArray | None, FloatArray | None]:
+        """(m,) and (w,) what the contact law needs of the radii of pairs, and of disks at walls."""
         radius = self.packing.radius
-        return self.pair_law.shapes(radius[first], radius[second])
+        return self.pair_law.shapes(radius[first], radius[second]), self.wall_law.shapes(radius[at_wall], None)
 
-    def wall_shapes(self, disk) -> FloatArray | None:
-        """(w,) what the contact law needs of the radii of disks at walls."""
-        return self.wall_law.shapes(self.packing.radius[disk], None)
-
-    def pair_arms(self, first, second) -> FloatArray:
-        """(m,) reduced radii of pairs."""
+    def arms(self, first, second, at_wall) -> tuple[FloatArray, FloatArray]:
+        """(m,) and (w,) reduced radii of pairs, and of disks at walls: their own."""
         radius = self.packing.radius
-        return reduced_radii(radius[first], radius[second])
-
-    def wall_arms(self, disk) -> FloatArray:
-        """(w,) reduced radii of disks at walls: their own."""
-        return reduced_radii(self.packing.radius[disk])
+        return reduced_radii(radius[first], radius[second]), reduced_radii(radius[at_wall])
 
     def bare_state(self) -> State:
         """The unloaded initial packing: no displacement, no motion, and no springs but those that were given.
@@ -285,7 +273,7 @@ class Problem:
         ValueError
             When a contact that carries a spring is not among the new candidates.
         """
-        c = self.list_candidates(state.position)
+        c = list_candidates(self.packing, self.laws[0], state.position)
         pairs = spring_contacts(c.first, c.second, carry_springs(self.n, state.pairs, c.first, c.second))
         walls = spring_contacts(c.wall_disk, c.wall, carry_springs(self.n, state.walls, c.wall_disk, c.wall))
         return self.with_static_forces(replace(state, pairs=pairs, walls=walls))
@@ -306,7 +294,5 @@ class Problem:
         """The contacts of a state between disks, then those at walls, each with its laws."""
         pairs, walls = state.pairs, state.walls
         of_pairs, of_walls = zip(*self.laws, strict=True)
-        return (
-            Kind(pairs, of_pairs, self.pair_shapes(pairs.first, pairs.second)),
-            Kind(walls, of_walls, self.wall_shapes(walls.first)),
-        )
+        shape, wall_shape = self.shapes(pairs.first, pairs.second, walls.first)
+        return Kind(pairs, of_pairs, shape), Kind(walls, of_walls, wall_shape)

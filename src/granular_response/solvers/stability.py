@@ -216,13 +216,6 @@ def divergence(spectrum: Spectrum) -> FloatArray | None:
     return None
 
 
-def judged(system: StaticSystem, trial: Trial) -> tuple[int | None, tuple[int, ...]]:
-    """Unstable directions as :func:`diverging` counts them, and disks that nothing determines."""
-    spectrum = Spectrum(system, trial)
-    undetermined = spectrum.undetermined
-    return diverging(spectrum), undetermined
-
-
 def diverging(spectrum: Spectrum) -> int | None:
     """The number of unstable directions that contacts go along with, 1 for any number where contacts slide.
 

@@ -60,7 +60,7 @@ def _rates(problem: Problem, state: State, v: FloatArray) -> tuple[tuple[FloatAr
         (wall_normals(state.walls.second).T, u[k], w[k], radius[k] * spin[k], spin[k]),
     ):
         found.append((du * normal[0] + dw * normal[1], dw * normal[0] - du * normal[1] - rims, turn))
-    arms = problem.pair_arms(i, j), problem.wall_arms(k)
+    arms = problem.arms(i, j, k)
     return tuple((apart, slip, arm * turn) for (apart, slip, turn), arm in zip(found, arms, strict=True))
 
 
@@ -112,8 +112,9 @@ def slid(problem: Problem, before: State, after: State) -> Slid:
     normal = wall_normals(before.walls.second)
     along = moved[k, 1] * normal[:, 0] - moved[k, 0] * normal[:, 1]
     slip = distance * turn - radius[i] * turned[i] - radius[j] * turned[j]
-    pairs = _lost(before.pairs, after.pairs, slip, problem.pair_arms(i, j) * (turned[i] - turned[j]))
-    walls = _lost(before.walls, after.walls, along - radius[k] * turned[k], problem.wall_arms(k) * turned[k])
+    arm, wall_arm = problem.arms(i, j, k)
+    pairs = _lost(before.pairs, after.pairs, slip, arm * (turned[i] - turned[j]))
+    walls = _lost(before.walls, after.walls, along - radius[k] * turned[k], wall_arm * turned[k])
     return Slid(pairs, walls)
 
 

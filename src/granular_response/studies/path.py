@@ -157,9 +157,6 @@ class LoadPath:
         force), or to an absolute ``tolerance``. Events are looked at exactly, or so far ``beside`` on both sides, where
         contacts have their status before and after.
 
-        ``low`` is 0 if it has happened at the first force already, ``high`` nan if not up to the last one; ``print`` of
-        both says so in words.
-
         Examples
         --------
         >>> path = gr.studies.LoadPath.of(result.scene)

@@ -64,8 +64,6 @@ def unchanged(at_both: bool, low: float, high: float) -> str:
 def first_change(values: Sequence[float] | FloatArray, happened: Iterable[bool]) -> First:
     """The last of ``values`` before the first True of ``happened`` and its own.
 
-    The former is 0 where it has happened at the first value already, the latter nan where it has not up to the last.
-
     Examples
     --------
     >>> gr.studies.first_change([1.0, 2.0, 4.0], [False, False, True])

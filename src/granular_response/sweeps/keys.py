@@ -118,7 +118,7 @@ class _Content:
             return [repr(value.dtype.descr), value.shape, _sha256(value.tobytes())]
         if isinstance(value, Path):
             scene = self.described(value) if value.name.endswith(_SCENE_FILES) else []
-            return [str(value), *([_content(value), *scene] if value.is_file() else [])]
+            return [str(value), *([_sha256(_read(value)), *scene] if value.is_file() else [])]
         if isinstance(value, range):
             return [str(value)]
         if isinstance(value, Enum):
@@ -135,7 +135,7 @@ class _Content:
             outside = KNOWN_LAWS[value.law].law if isinstance(value, Contact) else None
             law = [outside] if outside else []
             fields = plain(getattr(value, name) for name in type(value).model_fields)
-            return [*fields, *map(_content, files), *plain(law)]
+            return [*fields, *(_sha256(_read(file)) for file in files), *plain(law)]
         if dataclasses.is_dataclass(value):
             return plain(getattr(value, field.name) for field in dataclasses.fields(value))
         raise Indistinct(f"a value of class {type(value).__qualname__} cannot be told from others by its content")
@@ -259,10 +259,6 @@ def _own(file: Path) -> bool:
     """Whether a module is the user's own: also one of an archive, which cannot be read."""
     installed = {"site-packages", "dist-packages"} & set(file.parts) or str(file).startswith(_INSTALLED)
     return bool(file.suffix) and not installed
-
-
-def _content(file: Path) -> str:
-    return _sha256(_read(file))
 
 
 def _read(file: Path) -> bytes:

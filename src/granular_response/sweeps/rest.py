@@ -9,6 +9,7 @@ whether it finds a state or computes it.
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 
 from ..scene import Scene
 from ..solvers import solution as solvers
@@ -47,14 +48,6 @@ def rest_of(scene: Scene) -> State:
     return rest_state(Problem.from_scene(scene))
 
 
-def _time_step(problem: Problem) -> float | str | None:
-    """The time step, as the scene says it where that is not a stable one: whoever needs it will refuse it."""
-    try:
-        return resolve_time_step(problem)
-    except UnstableTimeStep:
-        return problem.scene.protocol.time_step
-
-
 def name(problem: Problem) -> str:
     """Equal for problems with the same rest state."""
     packing, protocol = problem.packing, problem.scene.protocol
@@ -63,9 +56,12 @@ def name(problem: Problem) -> str:
     preparation = problem.scene.preparation
     # a packing prepared without friction may turn away once it has it, however it was prepared; taps are motion
     if method == "dynamics" or preparation.taps or (problem.rotations and preparation.gravity == "frictionless"):
+        step: float | str | None = protocol.time_step
+        with suppress(UnstableTimeStep):  # whoever needs a stable one will refuse it
+            step = resolve_time_step(problem)
         numerics = (
             protocol.integrator,
-            _time_step(problem),
+            step,
             problem.plan.stop_energy,
             problem.plan.stop_acceleration,
             problem.plan.larger_steps,

@@ -1,19 +1,7 @@
 """A claim is a function beside a sentence: what it yields are the numbers that the sentence is judged by.
 
-    claim = Claims("pile_dip", {"scene.packing.layers": 11})
-
-    @claim("P1", "V.F, Fig. 17c", Ask("dip per largest stress", at_least("visible"), "%"))
-    def dip(data):
-        '''<the sentence of the paper, word for word>
-
-        Short: Piles have a dip without friction
-        Here: Without friction the stress dips by {0} under the apex.
-        '''
-        yield data.value("pile_dip", "stress.dip", case="frictionless")
-
-A function yields, for each case, its name (left out for the only one) and a number for each :class:`Ask`. One case,
-``primary``, decides; the others say how far the sentence holds. The mapping beside the group's name has the
-parameters of the paper: on other data nothing is measured.
+One case, ``primary``, decides; the others say how far the sentence holds. docs/claims.md has an example, and what
+function, docstring and decorator say.
 """
 
 from __future__ import annotations
@@ -256,7 +244,7 @@ def _places(dataset: xr.Dataset, labels: Mapping[str, float | str]) -> dict[Hash
         if isinstance(label, str):
             same = stored.astype(str) == label
         else:
-            same = np.abs(stored - label) <= 1e-9 * abs(label)
+            same = np.abs(stored - float(label)) <= 1e-9 * abs(label)
         if not variable.dims:
             needs(bool(same), f"is not stored at {name} = {label}")
             continue

@@ -7,6 +7,7 @@ import pytest
 from small_scenes import free_disks, scene, shaken
 
 from granular_response.scene import Scene, SceneError
+from granular_response.solvers.candidates import list_candidates
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import solve_scene
 from granular_response.solvers.springs import carry_springs
@@ -43,7 +44,7 @@ def test_candidates_hold_every_contact_within_their_limit(move):
     problem = Problem.from_scene(scene())
     rng = np.random.default_rng(2)
     position = problem.packing.position + rng.uniform(-move, move, (problem.n, 2))
-    c = problem.list_candidates(position)
+    c = list_candidates(problem.packing, problem.laws[0], position)
     assert c.limit > 0.2
     step = rng.normal(size=(50, problem.n, 2))
     step *= 0.999 * c.limit / np.linalg.norm(step, axis=2, keepdims=True)
@@ -61,7 +62,7 @@ def test_candidates_hold_every_contact_within_their_limit(move):
 def test_slots_of_no_listed_pair_have_no_reach():
     """Runs are lengthened for vector instructions, over pairs that may be listed elsewhere: these must never touch."""
     problem = Problem.from_scene(scene(7, 30))
-    c = problem.list_candidates(problem.packing.position)
+    c = list_candidates(problem.packing, problem.laws[0], problem.packing.position)
     empty = np.setdiff1d(np.arange(len(c.reach)), c.slot)
     assert len(empty) and not c.reach[empty].any()
     assert np.array_equal(c.reach[c.slot], problem.packing.radius[c.first] + problem.packing.radius[c.second])

@@ -233,8 +233,6 @@ def upward(y: FloatArray, z: FloatArray) -> str:
 
     Raises FormatError where both differ.
     """
-    if len(y) == 0:
-        return "z"
     flat_y, flat_z = np.ptp(y) == 0.0, np.ptp(z) == 0.0
     must(flat_y or flat_z, "disks must lie in one plane, y or z must be the same for all")
     return "z" if flat_y and not (flat_z and z[0] == 0.0) else "y"

@@ -18,7 +18,7 @@ from ..increment import Work, solve_increment
 from ..problem import Problem
 from ..rates import OPTIONS as RATES
 from ..rates import RateProblem
-from ..stability import judged
+from ..stability import Spectrum, diverging
 from ..system import OPTIONS as SYSTEM
 from ..system import Configuration, StaticSystem, Trial
 
@@ -227,7 +227,8 @@ class Leg:
     def kept(self, point: Point) -> State:
         """The certified state of a point."""
         trial, state = point.at_rest()
-        modes, undetermined = judged(point.system, trial)
+        spectrum = Spectrum(point.system, trial)
+        undetermined, modes = spectrum.undetermined, diverging(spectrum)
         self.count(point.system)
         spent, certificate = self.record, certify(self.problem, state, modes=modes, undetermined=undetermined)
         reached = Reached("path", certificate, increments=spent.increments, factorisations=spent.factorisations)

@@ -114,7 +114,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     found = computed(asked, "prepared slabs", work=lambda place: asked[place].args[1].preparation.ramp_time)
     every = [found[place] for place in sorted(found)]
     cases = [one for one in every if not one.mobilized.polydispersity and not one.mobilized.taps]
-    events = slab.events_dataset([event for one in cases for event in one.events])
+    events = table([event for one in cases for event in one.events], "event")
     names = axes(name=(AGAINST, "event"), margin=(MARGINS, "fraction below the Coulomb limit"))
     mobilized = table([one.mobilized for one in every], "case")
     datasets = {

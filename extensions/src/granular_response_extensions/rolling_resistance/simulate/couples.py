@@ -121,5 +121,5 @@ def decay(scene: Scene, depth: FloatArray, couple: FloatArray) -> tuple[float, f
 def couples(problem: Problem, state: State, parts: NDArray[np.bool_]) -> FloatArray:
     """(k,) couples on parts of the packing, (k, n), by the contacts across their borders."""
     i, j = state.pairs.first, state.pairs.second
-    couple = problem.pair_arms(i, j) * state.pairs.rolling_force
+    couple, _ = state.couples(problem.packing.radius)
     return np.array([couple[part[i] & ~part[j]].sum() - couple[part[j] & ~part[i]].sum() for part in parts])

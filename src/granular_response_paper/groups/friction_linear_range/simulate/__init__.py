@@ -22,7 +22,7 @@ from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.friction_linear_range.parameters import EqualRowsPaths, Parameters
-from granular_response_paper.records import axes, variables
+from granular_response_paper.records import axes, table, variables
 from granular_response_paper.tasks import computed
 
 FRICTION, APPLIED = "coefficient of friction between disks", f"applied force {WEIGHTS}"
@@ -145,8 +145,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     ends = studies.first_change(large["force"].values, large["asymmetry"].values > parameters.asymmetry)
     text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {parameters.asymmetry:g}"
     found.append(slab.Event("loss_of_symmetry", given.friction, *ends, text))
-    datasets["events"] = slab.events_dataset(found)
-    datasets["events_equal_rows"] = slab.events_dataset(literal)
+    datasets["events"] = table(found, "event")
+    datasets["events_equal_rows"] = table(literal, "event")
     return labelled(datasets, base)
 
 

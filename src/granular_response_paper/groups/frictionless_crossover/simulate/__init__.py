@@ -34,7 +34,7 @@ from granular_response.sweeps.rest import rest_state
 from granular_response_paper import slab_response
 from granular_response_paper.groups.frictionless_crossover.parameters import Parameters
 from granular_response_paper.records import axes, column, record, stacked, table, variables
-from granular_response_paper.slab_response import Event, events_dataset
+from granular_response_paper.slab_response import Event
 from granular_response_paper.tasks import computed
 
 #: What is not kept of the measurements: it is about friction.
@@ -62,7 +62,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         ),
         "rest": first.pictures["rest"],
         "states": first.pictures["states"].sel(force=list(forces)),
-        "events": events_dataset(first.events[: len(EVENTS)]),
+        "events": table(first.events[: len(EVENTS)], "event"),
         "sizes": along("slab", outcomes, *asked["sizes"]),
         "regions": along("slab", outcomes, *asked["regions"])[
             ["teardrop_depth", "teardrop_width", "reaches_floor", "layers", "normal_stiffness"]

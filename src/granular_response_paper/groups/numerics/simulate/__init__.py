@@ -71,12 +71,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     return labelled(datasets, _scene(asked, asked.friction))
 
 
-def _loads(asked: Parameters) -> list[dict[str, Any]]:
-    return [{"disk": "top-centre", "force": [0.0, -asked.force]}]
-
-
 def _scene(asked: Parameters, friction: float) -> Scene:
-    return asked.scene.updated({"loads": _loads(asked), "contact.friction": friction})
+    return asked.scene.updated({"loads.0.force": [0.0, -asked.force], "contact.friction": friction})
 
 
 def _tasks(asked: Parameters, grid: FloatArray) -> Mapping[str, list[partial[Any]]]:
@@ -86,7 +82,7 @@ def _tasks(asked: Parameters, grid: FloatArray) -> Mapping[str, list[partial[Any
     verlet = base.updated({"contact.friction": asked.friction, "protocol": protocol})
     bare = [usual.updated({"protocol": {"stop_rule": rule, "static_finish": False}}) for rule in STOP_RULES]
     integrated = usual.updated({"protocol.time_step": asked.integrator_time_step})
-    slab = disorder.scene.updated({"loads": _loads(asked)})
+    slab = disorder.scene.updated({"loads.0.force": [0.0, -asked.force]})
     slabs = [slab.updated({"packing.realization": r}) for r in range(disorder.realizations)]
     return {
         "damping": [

@@ -92,9 +92,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         if np.isfinite(high) and low > 0.0 and high - low > tolerance
     }
     brackets |= computed(searches, "crossovers")
-    events = slab.events_dataset(
-        [slab.Event(name, base.contact.friction, *brackets[name], text) for name, (text, _) in EVENTS.items()]
-    ).drop_vars("friction")
+    found = [slab.Event(name, base.contact.friction, *brackets[name], text) for name, (text, _) in EVENTS.items()]
+    events = table(found, "event").drop_vars("friction")
     events["low"].attrs["long_name"] = "stiffness ratio before the event"
 
     further = variables(

@@ -166,8 +166,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     of_run = table([one for one in found for _ in one.forces], "run")
     forces = np.concatenate([one.forces for one in found])
     datasets = {
-        "brackets": slab.events_dataset([one.event for one in found]).assign(table(found, "event").variables),
-        "equal_rows": slab.events_dataset([done["equal rows"]]),
+        "brackets": table([one.event for one in found], "event").assign(table(found, "event").variables),
+        "equal_rows": table([done["equal rows"]], "event"),
         "runs": runs.assign(of_run.variables).assign(force=variable("run", forces, APPLIED)),
         "held": done["held"],
         "copies": slab.measured_along("copy", [done[name] for name in packings]).assign(
