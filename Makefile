@@ -74,7 +74,7 @@ survey: setup ## Run the large ensembles of disordered slabs and larger packings
 	$(PY) -P -m granular_response_paper.pipeline.dvc repro data/survey/dvc.yaml
 	$(PY) data/survey/document.py
 
-test: tools ## Run all tests and the linters (JOBS=2 for two processes)
+test: tools ## Run all tests (JOBS=2 for two processes)
 	$(PY) -m pytest -n $(JOBS) --dist worksteal
 
 fuzz: tools # Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
@@ -87,7 +87,7 @@ coverage: tools # What the unit tests reach but for compiled kernels; fails belo
 	$(PY) -m coverage run -m pytest tests/unit
 	$(PY) -m coverage report --show-missing --skip-covered
 
-lint: tools ## Run the linters and the type checker alone
+lint: tools ## Run the linters and the type checker
 	$(PY) -m ruff check
 	$(PY) -m mypy
 	$(PY) $(BIN)/lint-imports

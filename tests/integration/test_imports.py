@@ -1,12 +1,6 @@
-"""What an import loads, the signatures of the public namespace, and that linters find nothing.
-
-The type checker, which takes half a minute, is a part of ``make lint``.
-"""
+"""What an import loads, and the signatures of the public namespace."""
 
 import inspect
-import os
-import subprocess
-import sys
 from collections.abc import Mapping
 from operator import attrgetter
 from pathlib import Path
@@ -14,7 +8,7 @@ from types import FunctionType, MethodType
 
 import pytest
 from commands import python
-from places import DATA, ROOT
+from places import DATA
 
 import granular_response as gr
 
@@ -81,17 +75,3 @@ def test_a_law_from_elsewhere_does_not_trouble_other_processes(tmp_path):
     for script in (with_it, plain):
         python("-c", script, NUMBA_CACHE_DIR=str(tmp_path))
     assert list(tmp_path.rglob("*.nbi"))
-
-
-def tool(*command: str) -> None:
-    paths = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
-    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": paths})
-    assert run.returncode == 0, run.stdout + run.stderr
-
-
-def test_ruff():
-    tool(sys.executable, "-m", "ruff", "check", "--no-cache", "--output-format=concise")
-
-
-def test_contracts_of_the_layers():
-    tool(str(Path(sys.executable).with_name("lint-imports")), "--no-logo")

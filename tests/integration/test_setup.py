@@ -162,16 +162,6 @@ def test_the_next_set_up_waits_for_what_a_killed_one_has_started(setup):
         fcntl.flock(held, fcntl.LOCK_EX)
 
 
-def test_an_environment_is_made_within_the_checkout_where_a_link_leads_out_of_it(setup, tmp_path):
-    """What the link leads to is somebody else's."""
-    elsewhere = tmp_path / "elsewhere"
-    elsewhere.mkdir()
-    (elsewhere / "file").touch()
-    Path(".venv").symlink_to(elsewhere)
-    whole(setup)
-    assert not Path(".venv").is_symlink() and [one.name for one in elsewhere.iterdir()] == ["file"]
-
-
 @pytest.mark.parametrize("way", [shutil.copytree, shutil.move])
 def test_the_environment_of_a_copied_or_renamed_checkout_is_made_anew(setup, tmp_path, monkeypatch, way):
     whole(setup)
@@ -237,13 +227,6 @@ def test_pip_sees_no_other_setting_of_the_user(setup, monkeypatch):
     names = {name for name in reached["env"] if name.startswith(("PIP_", "PYTHON", "SETUPTOOLS_"))}
     assert names == {"PIP_PROXY", "PIP_CONFIG_FILE", "PIP_DISABLE_PIP_VERSION_CHECK"}
     assert reached["env"]["PIP_CONFIG_FILE"] == os.devnull
-
-
-def test_a_python_that_makes_no_environments_names_the_package_that_is_missing(setup, monkeypatch):
-    monkeypatch.setattr(setup.importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(SystemExit, match=rf"apt install python3\.{sys.version_info.minor}-venv$"):
-        setup.main([])
-    assert not Path(".venv").exists()
 
 
 @pytest.mark.parametrize("sign", [b":", b"$", b'"', b"`", b"\\", b"\n", b"[", b"{", b"}", b"\xff"])

@@ -125,15 +125,6 @@ def test_a_damaged_file_is_never_read(tmp_path, whole, cut, place, flip):
     refuses(StoreError, None, store.read, path)
 
 
-def test_without_a_folder_for_temporary_files_a_dataset_is_made_beside_its_place(path, tmp_path, monkeypatch):
-    """What was computed is not lost with it."""
-    store.write(path, dataset())
-    before = path.read_bytes()
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "nowhere"))
-    store.write(path, dataset())
-    assert path.read_bytes() == before and list(path.parent.iterdir()) == [path]
-
-
 @pytest.fixture
 def next_run():
     """What a process does once for each folder is done again, as by another process."""

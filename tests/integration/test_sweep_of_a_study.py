@@ -1,4 +1,4 @@
-"""A study gives the same file wherever its sweeps run: by its command, and on a real Dask cluster on this machine."""
+"""A study gives the same file with worker processes."""
 
 import contextlib
 import io
@@ -9,10 +9,7 @@ from pathlib import Path
 import pytest
 import reduced
 
-from granular_response.sweeps import tasks
-from granular_response.sweeps.resources import using
 from granular_response_paper import cli
-from granular_response_paper.pipeline import simulation
 
 GROUP = "superposition"
 
@@ -36,14 +33,4 @@ def test_its_command_writes_the_same_bytes_with_workers(folder, expected, monkey
     with contextlib.redirect_stdout(io.StringIO()), pytest.raises(SystemExit) as ended:
         cli.main()
     assert ended.value.code == 0
-    assert Path("here.nc").read_bytes() == expected
-
-
-def test_a_cluster_writes_the_same_bytes(folder, expected, cluster, monkeypatch):
-    sent = []
-    submitted = tasks._submitted
-    monkeypatch.setattr(tasks, "_submitted", lambda *given: (sent.append(given[0]), submitted(*given)))
-    with cluster.get_client() as client, using(executor=client.get_executor()) as resources:
-        simulation.simulate(GROUP, Path("here.nc"))
-        assert sent and set(sent) == {resources.executor}
     assert Path("here.nc").read_bytes() == expected

@@ -1,4 +1,4 @@
-"""The check of a state from its positions alone: what is right passes, whatever is tampered with is found."""
+"""The check of a state from its positions alone finds whatever is tampered with."""
 
 from dataclasses import replace
 from functools import partial
@@ -16,14 +16,12 @@ from granular_response.state import OPEN, SLIDING, STICKING, Contacts
 
 
 @pytest.fixture(scope="module")
-def solution() -> Solution:
-    return solve_scene(scene(contact__friction=0.2, wall__friction=0.1, loads=pushed(0.5, -4.0, 0.3)))
-
-
-@pytest.fixture
-def state(solution):
-    """Under the load."""
-    return solution.loaded[0]
+def rolling() -> Solution:
+    """With contacts at either limit; disks of two sizes, so that an arm is not a radius."""
+    resists = {"friction": 0.3, "rolling_friction": 0.02, "rolling_stiffness_ratio": 0.5}
+    changes = {f"{kind}__{name}": value for kind in ("contact", "wall") for name, value in resists.items()}
+    sizes = {"packing__polydispersity": 0.2, "packing__lattice_constant": "touching-largest", "packing__seed": 3}
+    return solve_scene(scene(protocol__time_step="auto", loads=pushed(1.0, -4.0, 0.3), **changes, **sizes))
 
 
 def moved(state, disk: int, x: float, z: float):
@@ -102,65 +100,33 @@ def complaint(solution: Solution, state) -> str:
     return contradiction(state, check(solution, state), rounding_of(solution))
 
 
-def test_solved_states_pass(solution):
-    for state in (solution.rest, *solution.loaded):
-        found = check(solution, state)
-        assert found.force_residual < 1e-9
-        assert found.torque_residual < 1e-9
-        assert found.coulomb_excess < 1e-9
-        assert found.force_mismatch < rounding_of(solution)
-        assert found.unlisted == found.stale_springs == found.escaped == 0
-        assert complaint(solution, state) == ""
-    assert (solution.loaded[0].pairs.status == SLIDING).any()  # or Coulomb's limit would not have been tried
-
-
-# Other laws, other sides, and history
-
-
-@pytest.fixture(scope="module")
-def other() -> Solution:
-    changes = {"contact__law": "hertz", "packing__sides": "periodic", "packing__polydispersity": 0.05}
-    return solve_scene(scene(contact__friction=0.3, wall__friction=0.3, **changes))
-
-
-def test_the_three_halves_law_and_periodic_sides_pass(other):
-    for state in (other.rest, *other.loaded):
-        assert check(other, state).force_residual < 1e-9
-        assert complaint(other, state) == ""
-    x = other.rest.position[:, 0]
-    pairs = other.rest.pairs
-    across = np.abs(x[pairs.first] - x[pairs.second]) > 0.5 * other.problem.packing.width
-    assert (across & pairs.touching).any()  # or the nearest image would not have been tried
-
-
-def test_disks_in_flight_are_found(other):
+def test_disks_in_flight_are_found(rolling):
     """A pair that hangs in the air in contact is in flight too; at rest, nothing is."""
-    rest = other.rest
-    assert check(other, rest).in_flight == 0
-    high = rest.position + np.array([0.0, 5.0])
-    found = check(other, replace(rest, position=high))
+    rest = rolling.rest
+    assert check(rolling, rest).in_flight == 0
+    high = 0.99 * rest.position + np.array([0.005 * rolling.problem.packing.width, 5.0])  # off the side walls too
+    found = check(rolling, replace(rest, position=high))
     assert found.in_flight > 1
     settled = replace(rest, position=high, reached=replace(rest.reached, settled=True))
-    assert anachronism(other, settled, found, 0.0).endswith("in flight, said to be at rest")
+    assert anachronism(rolling, settled, found, 0.0).endswith("in flight, said to be at rest")
 
 
-def test_a_fall_that_took_no_time_is_found():
-    falling = {"packing__polydispersity": 0.2, "packing__lattice_constant": "touching-largest"}
-    solution = solve_scene(scene(contact__friction=0.2, protocol__time_step="auto", loads=[], **falling))
-    rest = solution.rest
+def test_a_fall_that_took_no_time_is_found(rolling):
+    rest = rolling.rest
     assert rest.reached.steps
-    assert anachronism(solution, rest, check(solution, rest), 0.0) == ""
+    assert anachronism(rolling, rest, check(rolling, rest), 0.0) == ""
     short = replace(rest, reached=replace(rest.reached, steps=1, more_relaxations=None))
-    early = replace(solution, rest=short)
-    assert "said to have fallen by" in anachronism(early, short, check(solution, rest), 0.0)
+    early = replace(rolling, rest=short)
+    assert "said to have fallen by" in anachronism(early, short, check(rolling, rest), 0.0)
 
 
-def test_another_load_factor_than_was_asked_for_is_found(solution, state):
-    found = check(solution, state)
-    assert anachronism(solution, state, found, 1.0) == ""
-    assert "said to be at rest" in anachronism(solution, state, found, 2.0)
+def test_another_load_factor_than_was_asked_for_is_found(rolling):
+    state = rolling.loaded[0]
+    found = check(rolling, state)
+    assert anachronism(rolling, state, found, 1.0) == ""
+    assert "said to be at rest" in anachronism(rolling, state, found, 2.0)
     moving = replace(state, reached=replace(state.reached, settled=False))
-    assert anachronism(solution, moving, found, 2.0) == ""
+    assert anachronism(rolling, moving, found, 2.0) == ""
 
 
 def test_a_disk_that_bears_next_to_nothing_is_judged_by_what_it_bears():
@@ -177,42 +143,3 @@ def test_a_disk_that_bears_next_to_nothing_is_judged_by_what_it_bears():
     assert found.relative_residual == pytest.approx(1.0)
     whole = audit(state, problem.packing.radius, problem.weight, 8.0, *rule, np.zeros((3, 3)), rounding=1e-5)
     assert whole.relative_residual == 0.0  # a weight that no digit of a position shows
-
-
-# Rolling resistance
-
-
-@pytest.fixture(scope="module")
-def rolling() -> Solution:
-    """With contacts at either limit; disks of two sizes, so that an arm is not a radius."""
-    resists = {"friction": 0.3, "rolling_friction": 0.02, "rolling_stiffness_ratio": 0.5}
-    changes = {f"{kind}__{name}": value for kind in ("contact", "wall") for name, value in resists.items()}
-    sizes = {"packing__polydispersity": 0.2, "packing__lattice_constant": "touching-largest", "packing__seed": 3}
-    return solve_scene(scene(protocol__time_step="auto", loads=pushed(1.0, -4.0, 0.3), **changes, **sizes))
-
-
-def test_couples_of_rolling_resistance_balance(rolling):
-    for state in (rolling.rest, *rolling.loaded):
-        found = check(rolling, state)
-        assert max(found.force_residual, found.torque_residual, found.coulomb_excess, found.rolling_excess) < 1e-9
-        assert complaint(rolling, state) == ""
-    for contacts in (rolling.loaded[0].pairs, rolling.loaded[0].walls):  # or they would not have been tried
-        assert (contacts.rolling_status == STICKING).any()
-    assert (rolling.loaded[0].pairs.rolling_status == SLIDING).any()
-
-
-def test_a_contact_may_name_its_disks_either_way(rolling):
-    """Who is first turns over what rolls, and leaves normal and tangential parts as they are."""
-    state = rolling.loaded[0]
-    pairs = state.pairs
-    turned = replace(
-        pairs, first=pairs.second, second=pairs.first,
-        rolling_force=-pairs.rolling_force, rolling_spring=-pairs.rolling_spring,
-    )  # fmt: skip
-    assert check(rolling, replace(state, pairs=turned)) == check(rolling, state)
-
-
-@pytest.mark.parametrize("key", ["contact.rolling_friction", "wall.rolling_friction"])
-def test_rolling_resistance_that_is_not_the_scenes_is_found(rolling, key):
-    tampered = replace(rolling, scene=rolling.scene.updated({key: 0.0}))
-    assert complaint(tampered, rolling.loaded[0])

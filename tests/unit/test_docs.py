@@ -30,18 +30,14 @@ NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
 
 
 class Targets(HTMLParser):
-    """What HTML within a document leads to, and its comments."""
+    """What HTML within a document leads to."""
 
     def __init__(self) -> None:
         super().__init__()
         self.found: list[str] = []
-        self.comments: list[str] = []
 
     def handle_starttag(self, tag, attrs):
         self.found += [value for key, value in attrs if key in {"href", "src"}]
-
-    def handle_comment(self, data):
-        self.comments.append(data.strip())
 
 
 def tokens(text: str):
@@ -86,16 +82,6 @@ def test_pictures_and_links_of_a_page_lead_somewhere(name):
     assert [target for target in targets if broken(str(target), page)] == []
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_page_has_no_directive_in_place_of_content(name):
-    text = (ROOT / name).read_text(encoding="utf-8")
-    kinds = [token.info for token in tokens(text) if token.type == "fence"]
-    assert [kind for kind in kinds if kind.startswith("{")] == []
-    words = [token.content for token in tokens(text) if token.type == "text"]
-    assert [word for word in words if re.search(r"\{\w+\}$|^:::|ADDRESS", word)] == []
-    assert {comment for comment in html(text).comments if not re.fullmatch(r"generated: [\w-]+|end", comment)} == set()
-
-
 PLACES = [(name, place["name"]) for name, page in zip(NAMES, PAGES, strict=True)
           for place in expand.PLACE.finditer(page.read_text(encoding="utf-8"))]  # fmt: skip
 
@@ -126,21 +112,6 @@ def test_the_python_of_a_page_draws_and_prints_what_it_says(name, tmp_path, monk
     assert [file for file in found.files if not pictures.same(tmp_path / file, pictures.FOLDER / file)] == []
     quoted = re.findall(r"```python\n(?:.*?)```(?:\n\n```text\n(.*?)```)?", text, re.DOTALL)
     assert [rounded(one) for one in found.printed] == [rounded(one) for one in quoted]
-
-
-def test_every_picture_belongs_to_a_page_and_all_are_small():
-    files = {path.name: path.stat().st_size for path in pictures.FOLDER.glob("*.png")}
-    assert set(files) == {file for name in pictures.pages() for file in pictures.images(name)}
-    assert sum(files.values()) < 1.5e6
-
-
-def test_the_shell_blocks_of_the_readme_say_what_a_reader_runs():
-    """``.ci/run`` runs them in a fresh clone, in their order."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    blocks = [token.content for token in tokens(text) if token.type == "fence" and token.info == "sh"]
-    commands = [line.partition("#")[0].strip() for line in "".join(blocks).splitlines()]
-    assert {"make reproduce", "make test", "make figure FIGURE=7", "make extensions"} <= set(commands)
-    assert any(line.endswith("pip install .") for line in commands)
 
 
 def test_every_kind_of_packing_has_a_section_and_a_public_name():

@@ -3,20 +3,15 @@
 import numpy as np
 import pytest
 import xarray as xr
-from places import ROOT
 
 from granular_response.scene import Scene
 from granular_response.store import files as store
-from granular_response_paper import captions, report
+from granular_response_paper import captions
 from granular_response_paper.captions import Caption, of_scene
 from granular_response_paper.groups.stiffness_ratio_crossover import draw as ratio
 from granular_response_paper.groups.symmetry_breaking import draw as symmetry
 from granular_response_paper.pipeline import drawing
 from granular_response_paper.registry import GroupError, collections
-from granular_response_paper.report import pictures
-
-#: Of a caption on the page.
-MOST_WORDS = 80
 
 
 def test_parameters_end_the_caption_in_the_papers_symbols():
@@ -44,14 +39,6 @@ def test_fields_of_a_template_are_filled_in_and_lists_put_in_words():
 def test_every_picture_has_a_title_of_its_own(group):
     titles = [one["title"] for name, one in captions._templates(group).items() if name != "question"]
     assert len(set(titles)) == len(titles)
-
-
-@pytest.mark.parametrize("collection", collections(), ids=lambda one: one.name)
-def test_captions_on_the_page_have_few_words(collection):
-    """With the title, without the parameters, which are folded."""
-    shown = pictures.collect(ROOT / collection.folder / report.FIGURES)
-    words = {picture.stem: len(f"{picture.title}. {picture.caption}".split()) for picture in shown}
-    assert words and not {stem: count for stem, count in words.items() if count > MOST_WORDS}
 
 
 def test_a_finding_follows_the_data():

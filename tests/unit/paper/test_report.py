@@ -14,12 +14,11 @@ import pytest
 from claims_data import by_row, dataset, over
 from PIL import Image
 from places import ROOT
-from refusals import refuses
 
 from granular_response.store import files as store
 from granular_response_paper import report
 from granular_response_paper.claims import table as claims
-from granular_response_paper.claims.claim import ClaimsError, Data, judge
+from granular_response_paper.claims.claim import Data, judge
 from granular_response_paper.registry import PAPER, collections
 from granular_response_paper.report import against, explorer, forest, readings
 from granular_response_paper.report.typeset import typeset
@@ -207,13 +206,6 @@ def test_every_statement_of_the_paper_that_fails_and_every_finding_is_said_on_th
     assert numbers and all(len(number.replace(".", "").lstrip("0")) <= 4 for number in numbers)
 
 
-def test_every_picture_of_the_paper_is_in_one_chapter():
-    numbers = [number for chapter in report.SAID["chapters"] for number in chapter["figures"]]
-    assert sorted(numbers) == list(range(1, 25))
-    known = {row.id for row in claims.claims_in(PAPER)}
-    assert known >= TOLD
-
-
 def test_the_extensions_answer_each_question_with_its_own_picture():
     answered = report.answers(ROOT / report.ANSWERS)
     pictures = [stem for _, _, stem in answered]
@@ -345,11 +337,3 @@ def test_explorer_data_are_those_of_the_states():
     assert data["slabs"][0]["about"] == "ordered packing, µ = 0, µ_wall = 0, k_N = 3000 mg/R"
     assert [one["friction"] for one in data["range"]] == [0.0, 0.2, 1.0]
     assert data["range"][0]["force"] == [1.0, 4.0]  # Fig. 6 ends at 50
-
-
-@pytest.mark.parametrize(("content", "problem"), [(None, "No such file"), ("{", "Expecting"), ("[]", "is not a")])
-def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
-    if content is not None:
-        (tmp_path / "figures").mkdir()
-        (tmp_path / "figures" / "claims.json").write_text(content)
-    refuses(ClaimsError, rf"claims\.json: {problem}", report.files, tmp_path)

@@ -1,12 +1,8 @@
 """Packings from other programs, and back."""
 
-import bz2
 import gzip
-import lzma
-import pickle
 import re
 import warnings
-import zlib
 from pathlib import Path
 
 import numpy as np
@@ -378,15 +374,11 @@ def test_heights_that_point_down_are_asked_about_and_turned(tmp_path):
 def test_packed_files_are_named_as_what_they_are(tmp_path, name):
     """The message went by chance of the bytes."""
     packed = {
-        "(gzip)": gzip.compress(DUMP.encode()), "(bzip2)": bz2.compress(DUMP.encode()),
-        "(xz)": lzma.compress(DUMP.encode()), "(zstd)": b"\x28\xb5\x2f\xfd\x00", "zip archive": b"PK\x03\x04",
-        "UTF-16": DUMP.encode("utf-16"), "netCDF": b"\x89HDF\r\n\x1a\n", "zip archive,": b"PK\x05\x06" + bytes(18),
-        "RAR": b"Rar!\x1a\x07\x01\x00", "Git LFS": b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\n",
-        "web page": b"<!DOCTYPE html>\n<title>404</title>\n", "Parquet": b"PAR1\x15\x04",
-        "MATLAB": b"MATLAB 5.0 MAT-file", "SQLite": b"SQLite format 3\x00", "JSON": b'{"x": [1, 3]}',
-        "(lzma)": lzma.compress(DUMP.encode(), format=lzma.FORMAT_ALONE), "(zlib)": zlib.compress(DUMP.encode()),
-        "pickle": pickle.dumps([1, 3]), "binary": DUMP.encode("utf-16-le"), "style xyz": b"2\nAtoms. Timestep: 0\n",
-        "style yaml": b"# poured\ntimestep: 0\nnatoms: 2\n", "style cfg": b"Number of particles = 2\n",
+        "(gzip)": gzip.compress(DUMP.encode()), "zip archive": b"PK\x03\x04", "UTF-16": DUMP.encode("utf-16"),
+        "netCDF": b"\x89HDF\r\n\x1a\n", "Git LFS": b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\n",
+        "web page": b"<!DOCTYPE html>\n<title>404</title>\n", "JSON": b'{"x": [1, 3]}',
+        "binary": DUMP.encode("utf-16-le"), "style xyz": b"2\nAtoms. Timestep: 0\n",
+        "style yaml": b"# poured\ntimestep: 0\nnatoms: 2\n",
     }  # fmt: skip
     for said, content in packed.items():
         (tmp_path / name).write_bytes(content)

@@ -33,7 +33,6 @@ MISSING = {
 NAMED = dict.fromkeys(NUMBERS)
 UNORDERED = {"set": {*NUMBERS}, "frozenset": frozenset(NUMBERS), "keys": NAMED.keys(), "dict": NAMED}
 BOX = {"radius": 1.0, "width": 8.0, "scene": {"loads": []}}
-POURED = {"packing": {"kind": "poured", "disks": 4, "width": 20}}
 
 
 def programme(values):
@@ -44,31 +43,15 @@ def force(values):
     return gr.Scene.from_dict({"loads": [{"disk": "top-centre", "force": values}]}).loads[0].force
 
 
-def sizes(values):
-    return gr.Scene.from_dict(POURED).updated({"packing.sizes": values}).packing.sizes
-
-
-def fractions(values):
-    return gr.Scene.from_dict(POURED).updated({"packing": {"sizes": [1, 2], "fractions": values}}).packing.fractions
-
-
-def displacement(values):
-    return gr.Load(disk=0, displacement=values).displacement
-
-
 def reduced(values):
     return gr.LaboratoryUnits().reduced_scene({"loads": [{"disk": 0, "force": values}]})["loads"][0]["force"]
 
 
 ENTRIES = {
     "x": lambda values: gr.Scene.from_arrays(x=values, z=[1, 1], **BOX).packing.x,
-    "z": lambda values: gr.Scene.from_arrays(x=[2, 6], z=values, **BOX).packing.z,
     "mass": lambda values: gr.Scene.from_arrays(x=[2, 6], z=[1, 1], mass=values, **BOX).packing.mass,
-    "Arrays": lambda values: gr.Arrays(x=values, z=[1, 1], radius=[1, 1], width=8.0).x,
-    "origin": lambda values: gr.Scene.from_arrays(x=[5], z=[8], origin=values, radius=1, width=9.0).packing.origin,
     "load_factors": programme, "continued": load_programme, "axis": lambda values: _values({"a.b": values})["a.b"],
-    "force": force, "sizes": sizes, "fractions": fractions, "displacement": displacement,
-    "places": lambda values: _places("x", values).tolist(),
+    "force": force, "places": lambda values: _places("x", values).tolist(),
 }  # fmt: skip
 
 
@@ -82,8 +65,8 @@ def test_arrays_of_any_kind_are_their_numbers(entry, kind):
 @pytest.mark.parametrize("entry", ENTRIES)
 @pytest.mark.parametrize("kind", MISSING)
 def test_what_is_missing_is_no_number(entry, kind):
-    if entry == "axis" or (entry == "displacement" and kind == "none"):
-        known = plain(MISSING[kind])[1]  # null is a value of some keys, and says that a direction is free
+    if entry == "axis":
+        known = plain(MISSING[kind])[1]  # null is a value of some keys
         assert known is None if kind == "none" else pd.isna(known)
         return
     refuses(ValueError, None, ENTRIES[entry], MISSING[kind])

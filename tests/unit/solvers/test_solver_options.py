@@ -38,15 +38,6 @@ def test_newtons_method_ends_where_its_options_say(monkeypatch):
     assert not newton(equations, known, external)[1].converged
 
 
-def test_changed_stiffnesses_make_no_factorisation_up_to_a_number(loaded, monkeypatch):
-    def factorisations() -> int:
-        return follow(*loaded, [1.0])[0].reached.factorisations
-
-    few = factorisations()
-    monkeypatch.setattr(system, "OPTIONS", replace(system.OPTIONS, most_changed=0))
-    assert factorisations() > 2 * few
-
-
 def test_a_landing_leaves_force_and_a_factorisation_as_its_options_say(loaded, monkeypatch):
     """Coarser events have other loads, by no more than the force that is left; the floor feels nothing of it."""
 

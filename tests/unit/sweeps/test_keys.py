@@ -14,7 +14,7 @@ from refusals import refuses
 
 from granular_response.scene import Scene
 from granular_response.scene.material import KNOWN_LAWS, KnownLaw
-from granular_response.sweeps.keys import Indistinct, _imports, key
+from granular_response.sweeps.keys import Indistinct, key
 
 
 @dataclasses.dataclass(frozen=True)
@@ -123,29 +123,6 @@ def test_the_springs_of_a_packing_count_by_their_content(tmp_path):
     refuses(Indistinct, r"disks.contacts.csv cannot be read", key, Scene.from_text(text, folder=tmp_path))
 
 
-PACKING = """
-from pathlib import Path
-from typing import Literal
-from granular_response.scene.base import PackingDescription
-class Mine(PackingDescription):
-    kind: Literal["mine"] = "mine"
-    @property
-    def files(self):
-        return [Path(__file__).with_suffix(".txt")]
-"""
-
-
-def test_files_that_a_packing_of_ones_own_lists_count(tmp_path, monkeypatch):
-    monkeypatch.syspath_prepend(tmp_path)
-    (tmp_path / "packing_of_mine.py").write_text(PACKING)
-    (tmp_path / "packing_of_mine.txt").write_text("1")
-    mine = importlib.import_module("packing_of_mine").Mine()
-    before = key(mine)
-    assert key(mine) == before
-    (tmp_path / "packing_of_mine.txt").write_text("2")
-    assert key(mine) != before
-
-
 LAW = """
 import granular_response as gr
 from granular_response.contact import Linear
@@ -223,30 +200,10 @@ def test_modules_count_whatever_the_way_to_them(tmp_path, monkeypatch, module):
     refuses(Indistinct, "cannot be read", key, task)
 
 
-class Listed(list):
-    pass
-
-
 class Factor(Task):
     def __init__(self, factor):
         super().__init__(0.1, np.ones(2))
         object.__setattr__(self, "factor", factor)
-
-
-class Slotted(list):
-    __slots__ = ("unit",)
-
-
-@dataclasses.dataclass
-class Described(list):
-    unit: str = ""
-
-
-@pytest.mark.parametrize("kind", [Listed, Slotted, Described])
-def test_attributes_beside_the_items_of_a_list_count(kind):
-    one, other = kind(), kind()
-    one.unit, other.unit = "mm", "m"
-    assert key(one) != key(other) != key(kind())
 
 
 def test_attributes_beside_a_value_count():
@@ -266,8 +223,3 @@ def test_a_scene_of_mappings_or_by_its_file_counts_with_its_table(tmp_path, monk
         keys.append([key(one) for one in (mapped, {"scene": mapped}, "scene.yaml", Path("scene.yaml"))])
     assert keys[0] == keys[2] and not {*keys[0]} & {*keys[1]}
     assert key("none.yaml") == key("none.yaml") and key({"packing": 1}) != key({"packing": 2})
-
-
-def test_a_script_in_another_language_imports_nothing():
-    assert _imports(b"import numpy\n", "mine") == {"numpy"}
-    assert not _imports(b"print 'hello'\n", "mine") and not _imports(b"import a\0", "mine")
