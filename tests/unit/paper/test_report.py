@@ -14,11 +14,12 @@ import pytest
 from claims_data import by_row, dataset, over
 from PIL import Image
 from places import ROOT
+from refusals import refuses
 
 from granular_response.store import files as store
 from granular_response_paper import report
 from granular_response_paper.claims import table as claims
-from granular_response_paper.claims.claim import Data, judge
+from granular_response_paper.claims.claim import ClaimsError, Data, judge
 from granular_response_paper.registry import PAPER, collections
 from granular_response_paper.report import against, explorer, forest, readings
 from granular_response_paper.report.typeset import typeset
@@ -337,3 +338,11 @@ def test_explorer_data_are_those_of_the_states():
     assert data["slabs"][0]["about"] == "ordered packing, µ = 0, µ_wall = 0, k_N = 3000 mg/R"
     assert [one["friction"] for one in data["range"]] == [0.0, 0.2, 1.0]
     assert data["range"][0]["force"] == [1.0, 4.0]  # Fig. 6 ends at 50
+
+
+@pytest.mark.parametrize(("content", "problem"), [(None, "No such file"), ("{", "Expecting"), ("[]", "is not a")])
+def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
+    if content is not None:
+        (tmp_path / "figures").mkdir()
+        (tmp_path / "figures" / "claims.json").write_text(content)
+    refuses(ClaimsError, rf"claims\.json: {problem}", report.files, tmp_path)
