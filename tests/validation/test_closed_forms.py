@@ -2,7 +2,7 @@
 
 Units: mean radius, mean mass, g; weights are 1. Not repeated here: rolling and sliding of a disk on a floor and on an
 incline (MFIX DEM04, Chrono, ti-DEMPM: ``test_decks.py``), two disks pressed together (MFIX DEM03), collisions
-(``test_motion_closed_forms.py``), Hertz contacts by three methods (``test_lammps.py``). Tolerances were declared before
+(``test_motion_closed_forms.py``), Hertz contacts by three methods (``test_hertz.py``). Tolerances were declared before
 the values were looked at.
 """
 

@@ -42,6 +42,17 @@ def test_floor_forces_at_rest_agree_with_lammps(friction, method, limit):
     assert floor_force(rest, FLOOR_DISKS) == pytest.approx(expected, abs=limit, rel=0)
 
 
+@pytest.mark.parametrize(("friction", "method"), [("0", "auto"), ("0.2", "dynamics"), ("1", "dynamics")])
+def test_contact_network_agrees_with_lammps(friction, method):
+    """The number of closed contacts, but for those closer to opening than two codes agree."""
+    solution = slab(float(friction), 4.0, method)
+    for state, key in ((solution.rest, "contacts_gravity"), (solution.loaded[-1], "contacts_loaded")):
+        expected = reference(friction)["tol_1e-22"][key]
+        doubtful = int((np.abs(state.pairs.overlap) < 1e-7).sum())
+        assert abs(int(state.pairs.touching.sum()) - expected["closed"]) <= doubtful
+        assert state.pairs.overlap.max() == pytest.approx(expected["max_overlap"], rel=2e-4)
+
+
 #: The same with the 3/2 law. Without friction the slab as it stands has equilibria of nearly the same energy, and each
 #: code falls into another: its rows are pressed together.
 HERTZ_LIMITS = {("0", "auto"): 1e-7, ("0.2", "dynamics"): 5e-5, ("0.2", "path"): 5e-5, ("1", "dynamics"): 5e-5}

@@ -1,6 +1,7 @@
 """Stress tests: time steps, energy, rolling, and random scenes whose results are checked from positions alone."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -117,6 +118,39 @@ def test_statics_from_far_away_and_between_hardly_any_digits_is_not_wrong(tmp_pa
             random_scenes.write_table(tmp_path / "packing.csv", table)
         trial = random_scenes.attempt(described, str(tmp_path))
         assert (trial.outcome != "wrong", trial.message) == (True, trial.message)
+
+
+DESCRIPTION = {
+    "packing": {"kind": "slab", "layers": 3, "disks_per_row": 4},
+    "contact": {"friction": 0.3},
+    "wall": {"friction": 0.2},
+    "protocol": {"method": "auto", "integrator": "beeman", "time_step": "auto"},
+}
+
+
+def test_a_table_of_disks_has_twins_too(tmp_path):
+    third = 1.0 + np.sqrt(3.0)
+    table = np.array([(2.0, 1.0, 1.0), (4.0, 1.0, 1.0), (6.2, 1.1, 1.1), (3.0, third, 1.0), (5.1, third + 0.1, 0.9)])
+    random_scenes.write_table(tmp_path / "packing.csv", table)
+    described = {**DESCRIPTION, "packing": {"kind": "file", "path": "packing.csv", "width": 8.0}}
+    loads = [{"disk": 3, "force": [0.1, -1.0]}, {"disk": 4, "displacement": [1e-4, None]}]
+    for load in loads:
+        trial = random_scenes.attempt({**described, "loads": [load]}, str(tmp_path), twin=True)
+        assert (trial.outcome, trial.message) == ("certified", "")
+        assert trial.twin_difference < random_scenes.TWINS
+
+
+def test_a_solver_that_gives_a_wrong_answer_is_caught(tmp_path, monkeypatch):
+    solve = random_scenes.solve_scene
+
+    def wrong(scene, **keywords):
+        solution = solve(scene, **keywords)
+        moved = [replace(state, position=state.position * (1.0 - 1e-7)) for state in solution.loaded]
+        return replace(solution, loaded=moved)
+
+    monkeypatch.setattr(random_scenes, "solve_scene", wrong)
+    trial = random_scenes.attempt(DESCRIPTION, str(tmp_path))
+    assert trial.outcome == "wrong" and "force_residual is" in trial.message
 
 
 def test_no_random_scene_was_solved_wrongly():

@@ -1,6 +1,8 @@
 """Packings that go on with the springs of their contacts: our tables, dumps of LAMMPS, and a script for it."""
 
 import re
+import shutil
+import subprocess
 import warnings
 from dataclasses import replace
 
@@ -184,6 +186,18 @@ def test_a_script_brings_the_springs(result, tmp_path):
     smooth = gr.solve(SCENE.updated({"contact.friction": 0.0, "wall.friction": 0.0}), progress=False)
     assert "run 1" not in smooth.export(tmp_path / "smooth.lammps").read_text().splitlines()
     assert not (tmp_path / "smooth.slip").exists()
+
+
+@pytest.mark.skipif(shutil.which("lmp") is None, reason="LAMMPS is not installed")
+def test_lammps_keeps_it_at_rest_and_gives_it_back(result, tmp_path):
+    script = result.export(tmp_path / "in.lammps", state=-1)
+    script.write_text(re.sub(r"^(variable end equal) \d+$", r"\1 20000", script.read_text(), flags=re.MULTILINE))
+    done = subprocess.run(["lmp", "-in", script.name], cwd=tmp_path, capture_output=True, text=True, check=True)
+    (start,) = re.findall(r"^ +0 +\S+ +(\S+) *$", done.stdout, re.MULTILINE)[-1:]
+    assert float(start) < 1e-10
+    check_at_rest(
+        gr.solve(given("in.dump", "in.contacts.dump", tmp_path), progress=False), result.loaded[-1], within=1e-10
+    )
 
 
 ROW = re.compile(r"^1,.*\n", re.MULTILINE)
