@@ -55,7 +55,7 @@ def stripped(notebook: NotebookNode) -> NotebookNode:
             if "metadata" in output:
                 output.metadata = NotebookNode()
             if output.get("name") == "stderr":
-                output.text = re.sub(r"\r[^\r\n]*\n?", "", output.text)
+                output.text = re.sub(r"\r[^\r\n]*\n?|\A\n", "", output.text)  # the end may come by itself
         if "outputs" in cell:
             cell.outputs = [output for output in cell.outputs if output.get("text") != ""]
     return notebook

@@ -48,6 +48,13 @@ def test_a_stored_notebook_was_executed_from_top_to_bottom(path):
     assert any(kind in output.get("data", {}) for output in outputs(notebook) for kind in ("image/png", "image/gif"))
 
 
+@pytest.mark.parametrize("parts", [["\rworking: 1 of 2, 3 s \n"], ["\rworking: 1 of 2, 3 s ", "\n"]])
+def test_a_line_of_progress_is_no_output_in_whatever_parts_it_comes(parts):
+    cell = nbformat.v4.new_code_cell("")
+    cell.outputs = [nbformat.v4.new_output("stream", name="stderr", text=part) for part in parts]
+    assert notebooks.stripped(nbformat.v4.new_notebook(cells=[cell])).cells[0].outputs == []
+
+
 def test_the_first_notebook_shows_again_what_is_stored():
     """Every text, and as many pictures, from a kernel of its own: two that are drawn, and that of a result."""
     stored = read("first_response")
